@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from rockframe.plot import Player
     from rockframe.simulation.system import System
+    from rockframe.units.shown import UnitsLike
 
 _SHOWN = (
     "peak_rotation",
@@ -102,13 +103,15 @@ class RockframeAccessor:
             player.save(path, overwrite=overwrite)
         return player
 
-    def table(self, contents: str = "scalars") -> "pd.DataFrame":
+    def table(self, contents: str = "scalars", *, units: "UnitsLike" = None) -> "pd.DataFrame":
         """Give the dataset as :func:`rockframe.table` does.
 
         Parameters
         ----------
         contents : {"scalars", "histories", "events"}, optional
             What the rows are.
+        units : mapping of str to str, optional
+            Units by what they are of.
 
         Returns
         -------
@@ -121,7 +124,7 @@ class RockframeAccessor:
         """
         from rockframe.results.table import table
 
-        return table(self._dataset, contents)
+        return table(self._dataset, contents, units=units)
 
     @property
     def system(self) -> "System":

@@ -9,13 +9,14 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, FileError, shown
 from rockframe.plot._artists import CONTACT, SceneArtist
-from rockframe.plot._axes import BLUE, GREY
-from rockframe.plot._checks import check_run
+from rockframe.plot._axes import BLUE, GREY, units_of
+from rockframe.plot._checks import check_run, draws
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import runs_of
 from rockframe.plot._scene import Moving, figure_size
+from rockframe.units import ANGLE, LENGTH
 from rockframe.version import __version__
 from rockframe.writing import FileKind, checked_path, write_file
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
     from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import Window
+    from rockframe.units.shown import UnitsLike
 
 _USUAL_FRAMES: Final = 200
 """That an animation has at most unless its speed is given."""
@@ -168,6 +170,10 @@ class Animation:
         return f"<animation of {self.times.size} frames, {length:.1f} s; save('run.gif')>"
 
 
+@draws(
+    ax="sequence of Axes, for the scene, the rotation and each strip of contact",
+    title="the verdict",
+)
 def animation(
     run: xr.Dataset,
     *,
@@ -175,7 +181,8 @@ def animation(
     speed: float | None = None,
     frames_per_second: float = 20.0,
     magnify: float = 1.0,
-    rotation: str = "deg",
+    rotation: str | None = None,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> Animation:
@@ -195,11 +202,7 @@ def animation(
     magnify : float, optional
         By which displacements are multiplied in the drawing of the scene [1].
     rotation : str, optional
-        Unit of the trace, as for :func:`rockframe.plot.response`.
-    ax : sequence of Axes, optional
-        For the scene, the rotation and each strip of contact; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
+        Unit of the trace, as for :func:`rockframe.plot.response`; degrees unless given.
 
     Returns
     -------
@@ -232,7 +235,9 @@ def animation(
     faster = fitting if speed is None else _positive(speed, "speed")
     count = max(2, 1 + round(length * rate / faster))
     times = np.linspace(drawn.time[0], drawn.time[-1], count)
-    moving = Moving(drawn.dataset, "animation", magnify)
+    chosen = units_of(units, "animation")
+    trace_in = rotation or (None if chosen.reader.chose(ANGLE) else "deg")
+    moving = Moving(drawn.dataset, "animation", magnify, chosen)
     shown_at = drawn.nearest(times)
     width, height = figure_size(moving.drawer, wide=False)
     names = ["scene", "rotation", *strips_of([drawn])]
@@ -242,9 +247,10 @@ def animation(
         lambda figure: figure.subplots(len(names), 1, height_ratios=heights),
     )  # fmt: skip
     above, trace, *strips = on.panels
-    response(drawn.dataset, panels=("rotation", "contact"), rotation=rotation, ax=[trace, *strips])
+    response(drawn.dataset, panels=("rotation", "contact"), rotation=trace_in, units=units,
+             ax=[trace, *strips])  # fmt: skip
     trace.tick_params(labelbottom=False)
-    artist = SceneArtist(above, moving.drawer)
+    artist = SceneArtist(above, moving.drawer, length=chosen.of(LENGTH))
     spread = shown_at[np.linspace(0, count - 1, min(count, _FRAMED)).astype(int)]
     artist.frame([moving.at(int(place)) for place in spread])
     artist.rest(moving.upright)
@@ -268,11 +274,11 @@ def animation(
 
     draw(0)
     on.entitle(str(run.attrs.get("verdict", "")), title)
-    if on.own is not None:  # places are found once, not for every frame
-        on.own.canvas.draw()
-        on.own.set_layout_engine("none")
+    if ax is None:  # places are found once, not for every frame
+        on.panels.figure.canvas.draw()
+        on.panels.figure.set_layout_engine("none")
     page = partial(
-        player, run, window=window, magnify=magnify, rotation=rotation, title=title
+        player, run, window=window, magnify=magnify, rotation=rotation, units=units, title=title
     )  # fmt: skip
     return Animation(on.panels, draw, rate, drawn.time[shown_at], page)
 

@@ -9,7 +9,17 @@ import numpy as np
 
 from rockframe.dynamics.events import ContactState
 from rockframe.notebook import arguments_in_words
-from rockframe.plot._axes import BLUE, GREEN, GREY, ORANGE, VERMILLION, ink
+from rockframe.plot._axes import (
+    BLUE,
+    GREEN,
+    GREY,
+    METRES,
+    ORANGE,
+    VERMILLION,
+    Shown,
+    ink,
+    measured_in,
+)
 from rockframe.results.points import Placement
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, LinkedPoints
@@ -226,13 +236,17 @@ class SceneArtist:
     """A drawing that follows a scene."""
 
     def __init__(
-        self, axes: "Axes", drawer: Drawer, names: Mapping[str, str] | None = None
+        self,
+        axes: "Axes",
+        drawer: Drawer,
+        names: Mapping[str, str] | None = None,
+        length: Shown = METRES,
     ) -> None:
         self.axes, self.drawer, self._names = axes, drawer, names or {}
         self._artists: dict[str, Any] = {}
         self._marked: dict[str, Array] = {}
         axes.set_aspect("equal")
-        axes.set(xlabel="[m]", ylabel="[m]")
+        measured_in(axes, length)
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
 

@@ -1,36 +1,35 @@
 """What the axes of all figures share: labels with units, colours, a light grid.
 
-The colours are those of Okabe and Ito, which people with any colour vision tell apart, in an order
-in which the first ones are legible on white and on black. Text and axes have the colours of
-matplotlib's style.
+The colours have the hues of those of Okabe and Ito, which people with any colour vision tell apart,
+and a lightness each, so that they are told apart in print without colours too. The first ones are
+legible on white and on black. Text and axes have the colours of matplotlib's style.
 """
 
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.studies.intensities import PERIOD_OF, measure_words
-from rockframe.units import Measure
+from rockframe.units import LENGTH, Measure
+from rockframe.units.shown import ReaderUnits, reader_units, shown_unit
 from rockframe.units.shown import Shown as Shown
-from rockframe.units.shown import shown_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-BLUE: Final = "#0072b2"
-VERMILLION: Final = "#d55e00"
-GREEN: Final = "#009e73"
-PURPLE: Final = "#cc79a7"
+BLUE: Final = "#00598b"
+VERMILLION: Final = "#d45e00"
+GREEN: Final = "#007a59"
+PURPLE: Final = "#cd7da9"
 ORANGE: Final = "#e69f00"
-SKY: Final = "#56b4e9"
+SKY: Final = "#8cccf0"
 COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 STYLES: Final[tuple[Any, ...]] = ("-", "--", "-.", (0, (1, 1)))
 """Of lines that are compared, so that they are told apart without colours too."""
-_SLOW_TO_PLACE: Final = 20_000
-"""Samples of lines between which matplotlib looks for a place for long."""
 STANDS: Final = "#dfe7ef"
 _MANY_DECADES: Final = 200.0
 """End over start of axes that have no room for more than powers of ten."""
@@ -38,11 +37,30 @@ GREY: Final = "0.5"
 """Of what stands behind, legible on white and on black."""
 
 
+_LETTER, _LINE, _HANDLE = 0.07, 0.19, 0.55
+"""Sizes of a legend in small letters: a letter's width, a line's height, and what stands before
+words [in]."""
+
+
 def key(axes: "Axes", **style: Any) -> None:
-    """Write a legend where it hides least."""
-    samples = sum(len(np.atleast_1d(line.get_xdata())) for line in axes.get_lines())
-    place = "best" if samples < _SLOW_TO_PLACE else "upper right"
-    axes.legend(loc=place, fontsize="small", **style)
+    """Write a legend above what is drawn, for which the axis is made longer."""
+    words = axes.get_legend_handles_labels()[1]
+    title = str(style.get("title", ""))
+    width, height = axes.get_window_extent().size / axes.figure.dpi
+    entry = _HANDLE + _LETTER * max(map(len, words))
+    columns = int(np.clip((0.95 * width) // entry, 1, len(words)))
+    rows = -(-len(words) // columns) + bool(title)
+    share = min(0.6, (0.08 + _LINE * rows) / height)
+    linear = axes.get_yscale() == "linear"
+    low, high = axes.get_ylim()[0], axes.dataLim.y1 + (0.05 * axes.dataLim.height if linear else 0)
+    if linear and high > low:
+        axes.set_ylim(low, low + (high - low) / (1.0 - share))
+    elif high > low > 0.0:
+        axes.set_ylim(low, low * (1.05 * high / low) ** (1.0 / (1.0 - share)))
+    axes.legend(
+        loc="upper right", ncols=columns, fontsize="small", frameon=False, borderaxespad=0.2,
+        handlelength=1.8, columnspacing=1.2, **style,
+    )  # fmt: skip
 
 
 def ink() -> Any:
@@ -83,6 +101,14 @@ def powers_in_mathtext(unit: str) -> str:
     return re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
 
 
+_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def raised(text: str) -> str:
+    """Write powers of units in a text as powers, in letters."""
+    return re.sub(r"(?<=[^\W\d_])\^(-?\d+)", lambda power: power[1].translate(_RAISED), text)
+
+
 def grid(axes: "Axes") -> None:
     """Draw a light grid behind what is drawn."""
     axes.grid(visible=True, which="major", color=GREY, alpha=0.25, linewidth=0.6)
@@ -115,19 +141,57 @@ def colour_steps(along: xr.DataArray) -> Any:
     return colormaps["viridis"](np.linspace(0.1, 0.85, along.size))
 
 
+METRES: Final = Shown(str(LENGTH.unit), 1.0)
+
+
+def measured_in(axes: "Axes", length: Shown) -> None:
+    """Write lengths beside axes on which metres are drawn."""
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    class Places(MaxNLocator):
+        """Round numbers in the unit, where they are on the axis."""
+
+        def tick_values(self, vmin: float, vmax: float) -> Any:
+            places = super().tick_values(vmin / length.size, vmax / length.size)
+            return length.size * np.asarray(places)
+
+    if length.size != 1.0:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(Places("auto", steps=[1, 2, 2.5, 5, 10]))
+            axis.set_major_formatter(FuncFormatter(lambda place, _: f"{place / length.size:.6g}"))
+    axes.set(xlabel=f"[{length.words}]", ylabel=f"[{length.words}]")
+
+
 RELATIVE: Final = "relative"
 """The word for values that are made relative to a scale of the body."""
 
 
-def unit_of(given: object, measure: Measure, *, function: str, name: str) -> Shown:
-    """Read the unit of an axis."""
-    return shown_unit(given, measure, owner=f"rf.plot.{function}", name=name)
+@dataclass(frozen=True)
+class FigureUnits:
+    """Units of a figure's axes: that of an axis by its name, else the reader's, else the usual."""
+
+    owner: str
+    reader: ReaderUnits
+
+    def of(self, measure: Measure, usual: str = "", **given: object) -> Shown:
+        """Give the unit of an axis, of which the argument of its own may be given by its name."""
+        for name, unit in given.items():
+            if unit is not None:
+                return shown_unit(unit, measure, owner=self.owner, name=name)
+        usual = usual or str(measure.unit)
+        return self.reader.chose(measure) or shown_unit(usual, measure, owner=self.owner, name="")
+
+    def unless_relative(self, measure: Measure, **given: object) -> Shown | None:
+        """Give the unit of an axis; None where values are relative to a scale of the body."""
+        (unit,) = given.values()
+        if unit is None and self.reader.chose(measure) is None:
+            return None
+        if isinstance(unit, str) and unit == RELATIVE:
+            return None
+        return self.of(measure, "", **given)
 
 
-def unit_unless_relative(
-    given: object, measure: Measure, *, function: str, name: str
-) -> Shown | None:
-    """Read the unit of an axis; None where values are shown relative to a scale of the body."""
-    if isinstance(given, str) and given == RELATIVE:
-        return None
-    return unit_of(given, measure, function=function, name=name)
+def units_of(units: object, function: str) -> FigureUnits:
+    """Read the units of a figure."""
+    owner = f"rf.plot.{function}"
+    return FigureUnits(owner, reader_units(units, owner=owner))

@@ -12,9 +12,12 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, RockframeWarning, SchemaError
 from rockframe.shared_arguments import Argument, completed, with_raises
+from rockframe.units.shown import KINDS as SHOWN_KINDS
+from rockframe.units.shown import reader_units
 
 if TYPE_CHECKING:
     from rockframe.simulation.system import System
+    from rockframe.units.shown import UnitsLike
 
 Drawing = TypeVar("Drawing", bound=Callable[..., Any])
 
@@ -137,14 +140,25 @@ _DRAWN_BY: Final = (
 )
 
 
+_UNITS: Final = (
+    "Units by what they are of, such as ``{'acceleration': 'g', 'force': 'kN'}``: of "
+    f"{', '.join(SHOWN_KINDS)}. An argument that names the unit of one axis goes before it; "
+    "what has no unit stays without."
+)
+
+
 def draws(function: str = "", *, ax: str = "Axes", title: str = "") -> Callable[[Drawing], Drawing]:
-    """Say in a docstring what the figures share: `ax`, `title`, and what is refused.
+    """Say in a docstring what the figures share: `units`, `ax`, `title`, and what is refused.
 
     Parameters by the words of the manual: what `ax` may be, and the title unless one is given.
     """
     usual = f"; {title} unless given" if title else ""
+    within = "" if ax == "Axes" else " Or a figure or subfigure, for panels in it."
     shared = {
-        "ax": Argument(None, f"{ax}, optional", "What is drawn in; a new figure unless given."),
+        "units": Argument(None, "mapping of str to str, optional", _UNITS),
+        "ax": Argument(
+            None, f"{ax}, optional", f"What is drawn in; a new figure unless given.{within}"
+        ),
         "title": Argument(None, "str, optional", f"Title of the figure{usual}."),
     }
     what = KINDS[function].what if function else ""
@@ -199,9 +213,10 @@ def check_run(given: object, function: str) -> None:
         raise SchemaError(msg)
 
 
-def drawable(given: object, function: str) -> xr.Dataset:
-    """Give the dataset that a function draws, and refuse any other thing."""
-    return _checked(given, function, KINDS[function])
+def drawable(given: object, function: str, units: "UnitsLike" = None) -> xr.Dataset:
+    """Give the dataset that a function draws, in units of choice, and refuse any other thing."""
+    dataset = _checked(given, function, KINDS[function])
+    return reader_units(units, owner=f"rf.plot.{function}").of_all(dataset)
 
 
 def _checked(given: object, function: str, kind: DatasetKind) -> xr.Dataset:

@@ -9,15 +9,13 @@ from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     COLOURS,
     GREY,
-    RELATIVE,
     Shown,
     axis_label,
     colour_of,
     grid,
     ink,
     key,
-    unit_of,
-    unit_unless_relative,
+    units_of,
     zero_line,
 )
 from rockframe.plot._checks import draws, overturning_angles, refuse, system_of_run
@@ -25,7 +23,8 @@ from rockframe.plot._panels import single
 from rockframe.plot._response import of_rotation, relative
 from rockframe.plot._runs import Run, runs_of, runs_title
 from rockframe.results.schema import ENERGIES, SCHEMA
-from rockframe.units import ANGLE, Measure, Unit
+from rockframe.units import ANGLE
+from rockframe.units.kinds import ENERGY, MOMENT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,9 +32,8 @@ if TYPE_CHECKING:
     from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import RunsLike, Window
     from rockframe.simulation.system import System
+    from rockframe.units.shown import UnitsLike
 
-MOMENT: Final = Measure("a moment", Unit.NEWTON_METRE, "1 kN*m")
-ENERGY: Final = Measure("an energy", Unit.JOULE, "1 kJ")
 _STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
 _ANGLES: Final = 401
 """At which a body is held for a curve of moments."""
@@ -46,7 +44,8 @@ def phase(
     runs: "RunsLike",
     *,
     window: "Window" = None,
-    rotation: str = RELATIVE,
+    rotation: str | None = None,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Axes":
@@ -60,7 +59,7 @@ def phase(
         Start and end of what is drawn; all of it unless given [s].
     rotation : str, optional
         Unit of rotations, such as ``"deg"``; rates have it per second. Or ``"relative"``, over
-        the overturning angle.
+        the overturning angle, which is usual.
 
     Returns
     -------
@@ -75,7 +74,7 @@ def phase(
         A unit of another kind, or a window without samples.
     """
     given = runs_of(runs, "phase", window)
-    unit = unit_unless_relative(rotation, ANGLE, function="phase", name="rotation")
+    unit = units_of(units, "phase").unless_relative(ANGLE, rotation=rotation)
     on = single(ax, "phase", (5.6, 4.4))
     for run in given:
         across, up = of_rotation(run, unit), _rate(run, unit)
@@ -107,8 +106,9 @@ def moment_rotation(
     *,
     largest: float = 1.2,
     window: "Window" = None,
-    rotation: str = "deg",
-    moment: str = "kN*m",
+    rotation: str | None = None,
+    moment: str | None = None,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Axes":
@@ -126,7 +126,7 @@ def moment_rotation(
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is drawn of runs; all of it unless given [s].
     rotation, moment : str, optional
-        Units.
+        Units; degrees and kN m unless given.
 
     Returns
     -------
@@ -152,8 +152,9 @@ def moment_rotation(
     """
     from rockframe.simulation.system import System
 
-    angle = unit_of(rotation, ANGLE, function="moment_rotation", name="rotation")
-    size = unit_of(moment, MOMENT, function="moment_rotation", name="moment")
+    chosen = units_of(units, "moment_rotation")
+    angle = chosen.of(ANGLE, "deg", rotation=rotation)
+    size = chosen.of(MOMENT, "kN*m", moment=moment)
     if isinstance(given, System):
         held = _held(given, largest)
         on = single(ax, "moment_rotation", (5.6, 4.2))
@@ -187,7 +188,8 @@ def energies(
     run: xr.Dataset,
     *,
     window: "Window" = None,
-    energy: str = "kJ",
+    energy: str | None = None,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Axes":
@@ -200,7 +202,7 @@ def energies(
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is drawn; all of it unless given [s].
     energy : str, optional
-        Unit.
+        Unit; kJ unless given.
 
     Returns
     -------
@@ -219,7 +221,7 @@ def energies(
     if len(given) > 1:
         raise SchemaError(refuse("energies", run))
     _need(given, ENERGIES, "energies")
-    unit = unit_of(energy, ENERGY, function="energies", name="energy")
+    unit = units_of(units, "energies").of(ENERGY, "kJ", energy=energy)
     (whole,) = given
     from_start = {
         name: unit.of(whole.dataset[name] - (whole.dataset[name][0] if name in _STATES else 0.0))
@@ -251,7 +253,7 @@ def energies(
     zero_line(on.axes)
     on.axes.set(xlabel="time [s]", ylabel=axis_label("energy", unit.words))
     on.axes.set_xlim(part.time[0], part.time[-1])
-    on.legend(*on.axes.get_legend_handles_labels(), ncols=4)
+    on.legend(*on.axes.get_legend_handles_labels(), columns=4)
     on.entitle(runs_title(given), title)
     return on.axes
 

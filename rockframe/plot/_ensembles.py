@@ -18,10 +18,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from rockframe.plot._panels import AxesLike
+    from rockframe.units.shown import UnitsLike
 
 
 @draws("ensemble")
-def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Axes":
+def ensemble(
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Axes":
     """Draw an empirical distribution with its bands.
 
     Dark, the bounds that hold at each value; light, those that hold everywhere at once.
@@ -35,7 +42,7 @@ def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     -------
     matplotlib.axes.Axes
     """
-    given = drawable(dataset, "ensemble")
+    given = drawable(dataset, "ensemble", units)
     on = single(ax, "ensemble", (5.6, 3.9))
     axes = on.axes
     values = given["ordered_value"].rename(str(given.attrs["variable"]))
@@ -56,7 +63,11 @@ def ensemble(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
 
 @draws("probability", ax="two Axes", title="the verdict")
 def probability(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Panels":
     """Draw what the verdict depends on, and how the share that overturns goes with it.
 
@@ -72,7 +83,7 @@ def probability(
     -------
     Panels
     """
-    given = drawable(dataset, "probability")
+    given = drawable(dataset, "probability", units)
     names = ("indices", "shares")
     on = sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
     left, right = on.panels
@@ -113,7 +124,11 @@ _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 @draws("fragility", ax="Axes, or one for each limit state", title="the verdict")
 def fragility(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Axes | Panels":
     """Draw the probability that limit states are exceeded.
 
@@ -138,7 +153,7 @@ def fragility(
         The dataset is no fragility; the message names the function that draws what was given. Or
         it has more structures than a figure shows: twelve, over two measures one.
     """
-    given = drawable(dataset, "fragility")
+    given = drawable(dataset, "fragility", units)
     if "limit_state" not in given.dims:
         given = given.expand_dims("limit_state")
     alone = [dim for dim, size in given["fragility_status"].sizes.items() if size == 1]
@@ -161,6 +176,8 @@ def fragility(
         on = _sheet(ax, drawn)
         for axes, one in zip(on.panels, drawn, strict=True):
             _contours(axes, one, measures)
+    if len(measures) == 1:
+        on.name_lines()
     known = "independent_count" in given
     on.entitle(sentences(given) if known else str(dataset.attrs.get("verdict", "")), title)
     return on.axes if len(measures) == 1 and not structures else on.panels
@@ -224,7 +241,6 @@ def _curves(axes: "Axes", named: list[tuple[str, xr.Dataset]], measure: str) -> 
         ylim=(-0.02, 1.02),
     )
     axes.set_xlim(left=0.0)
-    axes.legend(frameon=False, fontsize="small", loc="best")
     grid(axes)
 
 
@@ -232,12 +248,14 @@ def _contours(axes: "Axes", one: xr.Dataset, measures: list[str]) -> None:
     across, up = measures
     surface = one[_NAME].transpose(up, across)
     axes.contourf(
-        one[across], one[up], surface, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.8
+        one[across], one[up], surface, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.5
     )
     lines = axes.contour(
         one[across], one[up], surface, levels=_LEVELS, colors=COLOURS[0], linewidths=0.9
     )
-    axes.clabel(lines, fontsize="small", fmt="%.2f")
+    for label in axes.clabel(lines, fontsize="small", fmt="%.2f", inline_spacing=2, colors="black"):
+        label.set_bbox({"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6})
+        label.set_rotation(0.0)
     axes.set(
         xlabel=label_of_intensity(one[across], one),
         ylabel=label_of_intensity(one[up], one),

@@ -13,13 +13,15 @@ from rockframe.plot._axes import (
     BLUE,
     GREEN,
     GREY,
+    VERMILLION,
     Shown,
     axis_label,
     colour_of,
     grid,
     ink,
+    key,
     style_of,
-    unit_of,
+    units_of,
     zero_line,
 )
 from rockframe.plot._checks import check_motion, draws
@@ -36,10 +38,7 @@ if TYPE_CHECKING:
     from rockframe.motion import GroundMotion, VelocityPulse
     from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import Window
-
-
-_LETTERS: Final = 90
-"""That a row of a legend has room for."""
+    from rockframe.units.shown import UnitsLike
 
 
 @dataclass(frozen=True)
@@ -50,12 +49,6 @@ class Drawn:
     label: str | None
     colour: str
     style: Any
-
-
-def columns_of(given: list[Drawn]) -> int:
-    """Give the columns of a legend that names motions below a figure."""
-    longest = max(len(one.label or "") for one in given)
-    return max(1, min(len(given), _LETTERS // (longest + 6)))
 
 
 def motions_title(given: list[Drawn]) -> str:
@@ -101,9 +94,10 @@ def motion(
     motion: "MotionsLike",
     *,
     window: "Window" = None,
-    acceleration: str = "m/s^2",
-    velocity: str = "m/s",
-    displacement: str = "m",
+    acceleration: str | None = None,
+    velocity: str | None = None,
+    displacement: str | None = None,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Panels":
@@ -136,22 +130,19 @@ def motion(
 
     given = drawn_motions(motion, "motion")
     cut = window_of(window, "motion")
-    units = [
-        unit_of(unit, measure, function="motion", name=name)
-        for unit, measure, name in zip(
-            (acceleration, velocity, displacement),
-            (ACCELERATION, VELOCITY, LENGTH),
-            _ROWS,
-            strict=True,
-        )
-    ]
+    chosen = units_of(units, "motion")
+    shown_in = (
+        chosen.of(ACCELERATION, acceleration=acceleration),
+        chosen.of(VELOCITY, velocity=velocity),
+        chosen.of(LENGTH, displacement=displacement),
+    )
     found = [_part(velocity_and_displacement(one.motion), cut) for one in given]
     upwards = None
     if len(given) == 1 and given[0].motion.si.vertical is not None:
         upwards = _part(velocity_and_displacement(given[0].motion, component="vertical"), cut)
     on = sheet(ax, "motion", _ROWS, (7.2, 5.4), lambda figure: figure.subplots(3, 1, sharex=True))
     colours = (ink(), BLUE, GREEN)
-    for axes, name, unit, colour in zip(on.panels, _ROWS, units, colours, strict=True):
+    for axes, name, unit, colour in zip(on.panels, _ROWS, shown_in, colours, strict=True):
         if upwards is not None:
             _line(axes, upwards, f"vertical_ground_{name}", unit, GREY, "vertical")
         for one, history in zip(given, found, strict=True):
@@ -169,9 +160,9 @@ def motion(
             max(float(history["time"][-1]) for history in found),
         )
     if upwards is not None:
-        on.axes.legend(loc="upper right", fontsize="small", ncols=2, frameon=False)
+        key(on.axes)
     elif len(given) > 1:
-        on.legend(*on.axes.get_legend_handles_labels(), ncols=columns_of(given))
+        on.legend(*on.axes.get_legend_handles_labels(), fontsize="small")
     on.panels[-1].set_xlabel("time [s]")
     if on.own is not None:
         on.own.align_ylabels(on.panels)
@@ -209,14 +200,11 @@ def _mark_peak(axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, colour
     )
 
 
-_MOTION: Final = "#999999"
-_PULSE: Final = "#cc6677"
-_RESIDUAL: Final = "#222255"
-
-
+@draws(ax="two Axes", title="name of the motion, period and verdict")
 def velocity_pulse(
     pulse: "VelocityPulse[GroundMotion]",
     *,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> Panels:
@@ -226,10 +214,6 @@ def velocity_pulse(
     ----------
     pulse : VelocityPulse
         As :meth:`rockframe.GroundMotion.velocity_pulse` gives it.
-    ax : two Axes, optional
-        What is drawn in; a new figure unless given.
-    title : str, optional
-        Title of a new figure; name of the motion, period and verdict unless given.
 
     Returns
     -------
@@ -250,6 +234,7 @@ def velocity_pulse(
             f"got {shown(pulse)}"
         )
         raise ComponentError(msg)
+    unit = units_of(units, "velocity_pulse").of(VELOCITY)
     on = sheet(
         ax, "velocity_pulse", ("the motion", "the residual motion"), (8.0, 4.6),
         lambda figure: figure.subplots(2, 1, sharex=True, sharey=True),
@@ -260,18 +245,18 @@ def velocity_pulse(
         velocity_and_displacement(motion) for motion in (pulse.extracted, pulse.residual)
     )
     time = extracted["time"].to_numpy() - float(pulse.lead.m_as("s"))
-    of_pulse = extracted["ground_velocity"].to_numpy()
-    left = residual["ground_velocity"].to_numpy()
-    above.plot(time, of_pulse + left, color=_MOTION, linewidth=1.0, label="motion")
+    of_pulse = unit.of(extracted["ground_velocity"])
+    left = unit.of(residual["ground_velocity"])
+    above.plot(time, of_pulse + left, color=GREY, linewidth=1.0, label="motion")
     words = f"pulse, $T_p$ = {pulse.period.m_as('s'):.3g} s"
-    above.plot(time, of_pulse, color=_PULSE, linewidth=1.8, label=words)
-    below.plot(time, left, color=_RESIDUAL, linewidth=1.0, label="residual motion")
+    above.plot(time, of_pulse, color=VERMILLION, linewidth=1.8, label=words)
+    below.plot(time, left, color=BLUE, linewidth=1.0, label="residual motion")
     reach = 1.1 * max(float(np.abs(of_pulse + left).max()), float(np.abs(left).max()))
     for axes in (above, below):
         axes.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
-        axes.set(ylabel="ground velocity [m s$^{-1}$]", xlim=(time[0], time[-1]))
+        axes.set(ylabel=axis_label("ground\nvelocity", unit.words), xlim=(time[0], time[-1]))
         axes.set_ylim(-reach, reach)
-        axes.legend(loc="upper right", fontsize="small", frameon=False)
         grid(axes)
+    on.name_lines()
     below.set_xlabel("time [s]")
     return on.panels

@@ -1,49 +1,68 @@
 """Dynamic analyses, maps of overturning, and spectra over the size of the block."""
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import (
     BLUE,
-    COLOURS,
-    ORANGE,
+    GREEN,
+    GREY,
+    PURPLE,
     SKY,
     STANDS,
     VERMILLION,
+    colour_of,
     colour_steps,
     grid,
     label_of,
     label_of_intensity,
     plain_ticks,
+    style_of,
+    units_of,
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.units import ACCELERATION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from rockframe.plot._panels import AxesLike
+    from rockframe.units.shown import UnitsLike
 
 _MOST_NAMED: Final = 8
 """Motions with a line in the legend."""
-_WAYS: Final = (VERMILLION, BLUE, SKY, ORANGE, "0.6")
+_LEAST_FRACTILES: Final = 4
+_FRACTILES: Final = (0.16, 0.5, 0.84)
+_STYLED: Final = (1, 0, 2)
+"""Dashes of each."""
+_HEIGHTS: Final = 400
+_WAYS: Final = (VERMILLION, BLUE, SKY, PURPLE, GREEN)
+MAP_COLOURS: Final = (STANDS, *_WAYS)
+"""Of what stands, and of what overturns after none, one and more impacts."""
 _CAPPED: Final = 1.0
 """Peaks over the overturning angle that are drawn alike."""
 
 
 @draws("dynamic_analysis", ax="two Axes", title="the verdict")
 def dynamic_analysis(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Panels":
-    """Draw peak rotations over the intensity, and the share of motions that overturned.
+    """Draw the intensity over the peak rotation that it brings, and the share that overturned.
 
-    Left, a line for each motion, and a mark where it first overturns; hollow marks where the
-    verdict changes again. Right, the share of motions whose capacity is below an intensity, for
-    each limit state.
+    Left, a line in grey for each motion, up to where it first overturns, with a mark there; hollow
+    marks where the verdict changes again. Of four motions or more, fractiles: the peaks below which
+    16, 50 and 84 % of the motions stay at an intensity; where one turns level, that share has
+    overturned. Fewer motions have a colour each. Right, the share of motions whose capacity is
+    below an intensity, for each limit state.
 
     Parameters
     ----------
@@ -54,35 +73,38 @@ def dynamic_analysis(
     -------
     Panels
     """
-    given = drawable(dataset, "dynamic_analysis")
+    given = drawable(dataset, "dynamic_analysis", units)
     name = str(given.attrs.get("intensity", "scale"))
     intensity = given[name].broadcast_like(given["peak_relative_rotation"])
     on = sheet(
-        ax, "dynamic_analysis", ("peaks", "shares"), (7.6, 3.7),
-        lambda figure: figure.subplots(1, 2, width_ratios=(1.4, 1)),
+        ax, "dynamic_analysis", ("peaks", "shares"), (7.6, 4.4),
+        lambda figure: figure.subplots(1, 2, width_ratios=(1.4, 1), sharey=True),
     )  # fmt: skip
     left, right = on.panels
-    colours = colour_steps(given["motion"])
-    last = given.isel(limit_state=-1)
-    for number, colour in enumerate(colours):
-        one, along = given.isel(motion=number), intensity.isel(motion=number)
-        peak = one["peak_relative_rotation"].clip(max=_CAPPED)
-        label = str(one["motion"].item()) if given.sizes["motion"] <= _MOST_NAMED else None
-        left.plot(along, peak, color=colour, lw=0.9, label=label)
+    several = given.sizes["motion"] >= _LEAST_FRACTILES
+    last, lines = given.isel(limit_state=-1), list[tuple[Any, Any]]()
+    for number in range(given.sizes["motion"]):
+        one, along = given.isel(motion=number), intensity.isel(motion=number).to_numpy()
         flips = last.isel(motion=number)["scale_above"].to_numpy()
-        places = _at(flips[~np.isnan(flips)], one["scale"].to_numpy(), along.to_numpy())
-        left.plot(places[:1], np.full(len(places[:1]), _CAPPED), "o", color=colour, ms=4)
-        rest = places[1:]
-        left.plot(rest, np.full(len(rest), _CAPPED), "o", mfc="none", color=colour, ms=3)
+        places = _at(flips[~np.isnan(flips)], one["scale"].to_numpy(), along)
+        line = _until_flips(along, one["peak_relative_rotation"].to_numpy(), places)
+        colour = GREY if several else colour_of(number)
+        words = ("motions" if number == 0 else None) if several else str(one["motion"].item())
+        left.plot(line[1], line[0], color=colour, lw=0.7, label=words)
+        for some, face in ((places[:1], colour), (places[1:], "none")):
+            left.plot(np.full(len(some), _CAPPED), some, "o", mfc=face, color=colour, ms=3)
+        lines.append(line)
+    if several:
+        up = np.linspace(0.0, min(along[-1] for along, _ in lines), _HEIGHTS)
+        for number, (share, values) in enumerate(_fractiles(lines, up)):
+            words, style = f"{100.0 * share:.0f} %", style_of(_STYLED[number])
+            left.plot(values, up, color=VERMILLION, ls=style, lw=1.6, label=words)
     left.set(
-        xlabel=label_of_intensity(given[name], given),
-        ylabel=r"peak of $|\alpha|/\theta$ [-]",
-        ylim=(0.0, 1.06),
+        xlabel=r"peak of $|\alpha|/\theta$ [-]",
+        ylabel=label_of_intensity(given[name], given),
+        xlim=(0.0, 1.03),
     )
-    left.set_xlim(left=0.0)
-    if given.sizes["motion"] <= _MOST_NAMED:
-        left.legend(frameon=False, fontsize="small")
-    most = 0.0
+    left.set_ylim(bottom=0.0)
     for number, state in enumerate(given["limit_state"].to_numpy()):
         capacity = given["capacity_scale"].isel(limit_state=number).to_numpy()
         places = [
@@ -92,26 +114,46 @@ def dynamic_analysis(
             if np.isfinite(scale)
         ]  # fmt: skip
         ordered = np.sort(np.array([0.0, *places]))
-        most = max(most, float(ordered[-1]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
-        colour = COLOURS[number % len(COLOURS)]
-        right.step(ordered, shares, where="post", color=colour, label=str(state))
-    right.set(
-        xlabel=label_of_intensity(given[name], given),
-        ylabel="share of the motions [-]",
-        ylim=(0.0, 1.02),
-    )
-    right.set_xlim(0.0, 1.15 * most if most > 0.0 else left.get_xlim()[1])
-    right.legend(frameon=False, fontsize="small")
+        right.step(shares, ordered, where="pre", color=colour_of(number), label=str(state))
+    right.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
+    on.name_lines()
     on.entitle(cases_verdict(given), title)
     return on.panels
 
 
+def _until_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
+    """Give intensities and peaks of a motion, with those at which the verdict changes."""
+    up = np.concatenate([along, flips])
+    order = np.argsort(up, kind="stable")
+    return up[order], np.concatenate([peaks.clip(max=_CAPPED), np.full(len(flips), _CAPPED)])[order]
+
+
+def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]:
+    """Give shares of the motions, and the peaks below which these stay at intensities."""
+    peaks = np.sort(
+        [np.interp(up, np.append(0.0, along), np.append(0.0, peak)) for along, peak in lines],
+        axis=0,
+    )
+    found: list[tuple[float, Any]] = []
+    for share in _FRACTILES:
+        place = share * (len(lines) - 1)
+        below, above = peaks[int(place)], peaks[int(np.ceil(place))]
+        # between a peak and a fall nothing lies
+        within = below + (place - int(place)) * (above - below)
+        found.append((share, np.where(above >= _CAPPED, _CAPPED, within)))
+    return found
+
+
 @draws("overturning_map")
 def overturning_map(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Axes":
     """Draw which pulses overturn, after how many impacts, and the boundaries between.
 
@@ -123,14 +165,15 @@ def overturning_map(
     Returns
     -------
     matplotlib.axes.Axes
-        On rigid ground the axes are amplitude over that of uplift and
-        frequency over the block's.
+        On rigid ground the axes are amplitude over that of uplift and frequency over the block's,
+        unless `units` has one of accelerations.
     """
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    given = drawable(dataset, "overturning_map")
-    relative = "relative_pulse_frequency" in given.coords
+    given = drawable(dataset, "overturning_map", units)
+    asked = units_of(units, "overturning_map").reader.chose(ACCELERATION) is not None
+    relative = "relative_pulse_frequency" in given.coords and not asked
     across = given["relative_pulse_frequency" if relative else "frequency"]
     up = given["relative_peak_ground_acceleration" if relative else "amplitude"]
     told = int(given.attrs["impacts_told_apart"])
@@ -161,14 +204,18 @@ def overturning_map(
     if not known.all():
         words.append("no verdict")
         patches.append(Patch(facecolor="none", edgecolor="0.6", label=words[-1]))
-    on.legend(patches, words, ncols=2)
+    on.legend(patches, words, columns=2)
     on.entitle("What overturns: dots are boundaries that were halved", title)
     return axes
 
 
 @draws("rocking_spectrum", ax="Axes, one for each slenderness")
 def rocking_spectrum(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Panels":
     """Draw peak rotations over the size of the block, a panel for each slenderness.
 
@@ -181,7 +228,7 @@ def rocking_spectrum(
     -------
     Panels
     """
-    given = drawable(dataset, "rocking_spectrum")
+    given = drawable(dataset, "rocking_spectrum", units)
     on = _sheet(ax, "rocking_spectrum", given)
     for place, axes in enumerate(on.panels):
         one = given.isel(slenderness=place)
@@ -197,7 +244,11 @@ def rocking_spectrum(
 
 @draws("overturning_spectrum", ax="Axes, one for each slenderness")
 def overturning_spectrum(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Panels":
     """Draw the least intensity that overturns over the size of the block, on logarithmic axes.
 
@@ -210,7 +261,7 @@ def overturning_spectrum(
     -------
     Panels
     """
-    given = drawable(dataset, "overturning_spectrum")
+    given = drawable(dataset, "overturning_spectrum", units)
     on = _sheet(ax, "overturning_spectrum", given)
     measure = given["capacity_intensity"].rename(str(given.attrs["intensity"]))
     for place, axes in enumerate(on.panels):
@@ -256,4 +307,4 @@ def _finish(on: Sheet, given: xr.Dataset) -> None:
     for axes in on.panels:
         plain_ticks(axes)
     if given.sizes["motion"] <= _MOST_NAMED:
-        on.legend(*on.axes.get_legend_handles_labels(), fontsize="small", ncols=2)
+        on.name_lines()

@@ -1,5 +1,6 @@
 """Panels that figures are drawn in: those of a new pyplot figure, or given ones."""
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from textwrap import wrap
@@ -12,20 +13,34 @@ from rockframe.errors import ComponentError, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, SubFigure
 
-    AxesLike: TypeAlias = Axes | Iterable[Any] | None
+    AxesLike: TypeAlias = Axes | Figure | SubFigure | Iterable[Any] | None
 
 
 _LETTERS_PER_INCH: Final = 12.0
 """At matplotlib's own size of letters, with a margin of about a fifteenth on both sides."""
+_USUAL_SIZE: Final = 10.0
 
 
-def set_title(figure: "Figure", words: str) -> None:
+_NO_BREAK: Final = "\N{NO-BREAK SPACE}"
+_FACTOR: Final = r"(?:[kMGmc]?(?:m|N|Pa|J|g|rad|Hz|s)|t|°|%|deg|mm|ft|lbf)(?:\^-?\d+)?(?![\w^])"
+_NUMBER: Final = re.compile(rf"(?<![\w.])-?\d[\d.e+-]*(?: {_FACTOR}(?:/{_FACTOR})?)+")
+"""A number with its unit, between which no line of a title ends."""
+
+
+def set_title(figure: "Figure | SubFigure", words: str) -> None:
     """Write a title above a figure, in as many lines as it needs."""
-    width = int(_LETTERS_PER_INCH * figure.get_figwidth())
-    lines = [line for given in words.splitlines() for line in _lines(given, width)]
-    # matplotlib breaks lines that still do not fit, as those of larger letters
+    from matplotlib import rcParams
+
+    letters = _LETTERS_PER_INCH * _USUAL_SIZE / float(rcParams["font.size"])
+    width = int(letters * figure.bbox.width / figure.get_dpi())
+    lines = [
+        line.replace(_NO_BREAK, " ")
+        for given in words.splitlines()
+        for line in _lines(given, width)
+    ]
+    # matplotlib breaks lines that still do not fit, as those of wide letters
     figure.suptitle("\n".join(lines), fontsize="medium", wrap=True)
 
 
@@ -33,11 +48,15 @@ def _lines(words: str, width: int) -> list[str]:
     """Break first behind semicolons and sentences, and only then between words."""
     if len(words) <= width:
         return [words]
+    words = _NUMBER.sub(lambda one: one[0].replace(" ", _NO_BREAK), words)
     for mark in ("; ", ". "):
         for place in range(width - 1, width // 3, -1):
             if words.startswith(mark, place):
                 return [words[: place + 1], *_lines(words[place + 2 :], width)]
     return wrap(words, width)
+
+
+_LETTERS_OF_HANDLE: Final = 7
 
 
 class Panels(tuple[Any, ...]):
@@ -62,10 +81,10 @@ class Panels(tuple[Any, ...]):
 
 @dataclass(frozen=True)
 class Sheet:
-    """What is drawn on: panels, and their figure where it was made for them."""
+    """What is drawn on: panels, and their figure where they were made in it."""
 
     panels: Panels
-    own: "Figure | None"
+    own: "Figure | SubFigure | None"
 
     @property
     def axes(self) -> "Axes":
@@ -79,14 +98,32 @@ class Sheet:
         if self.own is not None:
             set_title(self.own, title or usual)
         elif title:
-            self.axes.set_title(title, fontsize="medium")
+            self.axes.set_title(title, fontsize="medium", wrap=True)
 
-    def legend(self, handles: Sequence[Any], labels: Sequence[str], **style: Any) -> None:
-        """Write a legend below the figure; of given panels, in the last one."""
+    def legend(
+        self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any
+    ) -> None:
+        """Write a legend below the figure; of given panels, in the last one.
+
+        It has as many columns as there is room for, and no more than told.
+        """
+        held = self.own or self.panels.figure
+        width = _LETTERS_PER_INCH * held.bbox.width / self.panels.figure.get_dpi()
+        fitting = int(width // (_LETTERS_OF_HANDLE + max(map(len, labels))))
+        style |= {"ncols": max(1, min(len(labels), columns, fitting))}
         if self.own is not None:
             self.own.legend(handles, labels, loc="outside lower center", frameon=False, **style)
         else:
-            self.panels[-1].legend(handles, labels, fontsize="small")
+            self.panels[-1].legend(handles, labels, **{"fontsize": "small", **style})
+
+    def name_lines(self) -> None:
+        """Write one legend of what is named in all panels."""
+        named = {
+            label: handle
+            for axes in self.panels
+            for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+        }
+        self.legend(list(named.values()), list(named), fontsize="small")
 
 
 def sheet(
@@ -94,13 +131,15 @@ def sheet(
     function: str,
     names: Sequence[str],
     size: tuple[float, float],
-    make: "Callable[[Figure], Any]",
+    make: "Callable[[Any], Any]",
 ) -> Sheet:
-    """Take the panels that are given, or make a figure with new ones.
+    """Take the panels that are given, or make new ones in the figure that is given or in a new one.
 
-    A figure is one of pyplot, so that a notebook shows it and ``show()`` opens a window. With
-    `ax` none is made.
+    A new figure is one of pyplot, so that a notebook shows it and ``show()`` opens a window.
     """
+    if len(names) > 1 and _is_figure(ax):
+        given = cast("Figure", ax)
+        return Sheet(Panels(np.ravel(make(given))), given)
     if ax is not None:
         return Sheet(Panels(_given(ax, function, names)), None)
     from matplotlib import pyplot
@@ -128,6 +167,12 @@ def _given(ax: Any, function: str, names: Sequence[str]) -> "list[Axes]":
         msg = f"rf.plot.{function}: ax must be {wanted}, got {len(found)} Axes"
         raise ComponentError(msg)
     return cast("list[Axes]", found)
+
+
+def _is_figure(ax: object) -> bool:
+    from matplotlib.figure import FigureBase
+
+    return isinstance(ax, FigureBase)
 
 
 def _called(axes: "Axes") -> str:

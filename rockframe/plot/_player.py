@@ -13,18 +13,19 @@ import numpy as np
 import xarray as xr
 
 from rockframe.plot._artists import CONTACT, SOIL, Layout
-from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, unit_unless_relative
-from rockframe.plot._checks import check_run
+from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_of
+from rockframe.plot._checks import check_run, draws
 from rockframe.plot._response import CONTACT_COLOURS, contact_names_of, of_rotation, strips_of
 from rockframe.plot._runs import runs_of
 from rockframe.plot._scene import Moving
 from rockframe.signals.arrays import Array
-from rockframe.units import ANGLE
+from rockframe.units import ACCELERATION, ANGLE
 from rockframe.version import __version__
 from rockframe.writing import FileKind, generator, write_file
 
 if TYPE_CHECKING:
     from rockframe.plot._runs import Window
+    from rockframe.units.shown import UnitsLike
 
 _FRAMES_PER_SECOND: Final = 25.0
 _MOST_FRAMES: Final = 900
@@ -107,12 +108,14 @@ class Player:
         return f"<player of {self._length:.1f} s, {len(self._html) / 1e3:.0f} kB; save('run.html')>"
 
 
+@draws(title="the verdict")
 def player(
     run: xr.Dataset,
     *,
     window: "Window" = None,
     magnify: float = 1.0,
-    rotation: str = "deg",
+    rotation: str | None = None,
+    units: "UnitsLike" = None,
     title: str | None = None,
 ) -> Player:
     """Make a page that plays a run: the scene to scale above the traces of rotation and ground.
@@ -130,9 +133,7 @@ def player(
     magnify : float, optional
         By which displacements are multiplied in the drawing of the scene [1].
     rotation : str, optional
-        Unit of the trace, as for :func:`rockframe.plot.response`.
-    title : str, optional
-        Title of the page; the verdict unless given.
+        Unit of the trace, as for :func:`rockframe.plot.response`; degrees unless given.
 
     Returns
     -------
@@ -154,8 +155,11 @@ def player(
     """
     check_run(run, "player")
     (drawn,) = runs_of(run, "player", window)
-    unit = unit_unless_relative(rotation, ANGLE, function="player", name="rotation")
-    moving = Moving(drawn.dataset, "player", magnify)
+    chosen = units_of(units, "player")
+    usual = rotation or (None if chosen.reader.chose(ANGLE) else "deg")
+    unit = chosen.unless_relative(ANGLE, rotation=usual)
+    ground = chosen.of(ACCELERATION)
+    moving = Moving(drawn.dataset, "player", magnify, chosen)
     start, end = float(drawn.time[0]), float(drawn.time[-1])
     count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MOST_FRAMES))
     shown_at = drawn.nearest(np.linspace(start, end, count))
@@ -164,8 +168,8 @@ def player(
     label = _label("rotation", "-" if unit is None else unit.words)
     traces = [
         _trace(of_rotation(drawn, unit), label, BLUE, store),
-        _trace(drawn.dataset["ground_acceleration"].to_numpy(),
-               _label("ground acceleration", "m/s²"), "ink", store),
+        _trace(ground.of(drawn.dataset["ground_acceleration"]),
+               _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip
     sentence = str(run.attrs.get("verdict", "")) if title is None else title
     data = {
@@ -287,7 +291,7 @@ def _surface(found: Layout) -> Array:
 
 
 def _label(words: str, unit: str) -> str:
-    return f"{words} [{unit}]"
+    return f"{words} [{raised(unit)}]"
 
 
 def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict[str, Any]:

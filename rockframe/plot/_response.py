@@ -3,7 +3,6 @@
 Events are marked on the rotation, and strips below it show the contact states.
 """
 
-from collections.abc import Mapping
 from difflib import get_close_matches
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final
@@ -20,22 +19,20 @@ from rockframe.plot._axes import (
     GREY,
     ORANGE,
     PURPLE,
-    RELATIVE,
     VERMILLION,
     Shown,
     axis_label,
     colour_of,
     ink,
     key,
-    unit_of,
-    unit_unless_relative,
+    units_of,
     zero_line,
 )
-from rockframe.plot._checks import overturning_angles
+from rockframe.plot._checks import draws, overturning_angles
 from rockframe.plot._panels import Panels, sheet
 from rockframe.plot._runs import Run, runs_of, runs_title
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import ReaderUnits, reader_units
+from rockframe.units.shown import ReaderUnits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,6 +40,7 @@ if TYPE_CHECKING:
 
     from rockframe.plot._panels import AxesLike
     from rockframe.plot._runs import RunsLike, Window
+    from rockframe.units.shown import UnitsLike
 
 
 CONTACT_COLOURS: Final = {
@@ -152,7 +150,7 @@ def draw_events(axes: "Axes", runs: list[Run], unit: "Shown | None") -> None:
                 markersize=4.5, markeredgewidth=0.9, label=label, zorder=3,
             )  # fmt: skip
     if named:
-        key(axes, ncols=2)
+        key(axes)
 
 
 def events_by_kind(run: Run) -> "dict[str, np.ndarray]":
@@ -170,19 +168,22 @@ CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
 _SI_ACCELERATION: Final = Shown(str(ACCELERATION.unit), 1.0)
 _SI_LENGTH: Final = Shown(str(LENGTH.unit), 1.0)
+_AT_REST: Final = 1e-12
+"""Rotations below are rounding [rad]."""
 _STACKED: Final = "rotation_on_cap"
 
 
+@draws(ax="sequence of Axes, one for each panel", title="the verdict")
 def response(
     runs: "RunsLike",
     *,
     panels: "str | tuple[str, ...]" = tuple(_HEIGHTS),
     window: "Window" = None,
-    rotation: str = RELATIVE,
-    vertical: str = RELATIVE,
-    acceleration: str = "m/s^2",
-    units: "Mapping[str, str] | None" = None,
+    rotation: str | None = None,
+    vertical: str | None = None,
+    acceleration: str | None = None,
     events: bool = False,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Panels":
@@ -201,20 +202,14 @@ def response(
         Start and end of what is drawn; all of it unless given [s].
     rotation : str, optional
         Unit of rotations, such as ``"deg"`` or ``"rad"``; or ``"relative"``, over the overturning
-        angle, with degrees at the right.
+        angle, with degrees at the right, which is usual.
     vertical : str, optional
         Unit of vertical displacements, such as ``"mm"``; or ``"relative"``, over the settlement
-        under the weight where the base gives way, with millimetres at the right.
+        under the weight where the base gives way, with millimetres at the right, which is usual.
     acceleration : str, optional
-        Unit of the ground's acceleration, such as ``"g_0"``.
-    units : mapping of str to str, optional
-        Units of other histories by what they are of, such as ``{"force": "kN"}``.
+        Unit of the ground's acceleration, such as ``"g"``.
     events : bool, optional
         Whether events are marked on the rotation.
-    ax : Axes or sequence of Axes, optional
-        What is drawn in, one for each panel; a new figure unless given.
-    title : str, optional
-        Title of the figure; the verdict unless given.
 
     Returns
     -------
@@ -243,12 +238,12 @@ def response(
     >>> axes.figure.savefig("rotation.png")  # doctest: +SKIP
     """
     given = runs_of(runs, "response", window)
+    chosen = units_of(units, "response")
     shown_in = {
-        "ground": unit_of(acceleration, ACCELERATION, function="response", name="acceleration"),
-        "rotation": unit_unless_relative(rotation, ANGLE, function="response", name="rotation"),
-        "vertical": unit_unless_relative(vertical, LENGTH, function="response", name="vertical"),
+        "ground": chosen.of(ACCELERATION, acceleration=acceleration),
+        "rotation": chosen.unless_relative(ANGLE, rotation=rotation),
+        "vertical": chosen.unless_relative(LENGTH, vertical=vertical),
     }
-    others = reader_units(units, owner="rf.plot.response")
     marked = truth(events, owner="rf.plot.response", name="events")
     strips = strips_of(given)
     names = [
@@ -272,7 +267,7 @@ def response(
             state, words = strips[name]
             draw_contact(axes, state, words)
         elif name not in _DRAW:
-            _history(axes, given, name, others)
+            _history(axes, given, name, chosen.reader)
         else:
             _DRAW[name](axes, given, shown_in[name])
     if marked and "rotation" in drawn:
@@ -401,6 +396,8 @@ def _rotation(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
     if axes.get_legend_handles_labels()[1] != ["block"]:
         key(axes)
     zero_line(axes)
+    if max(float(np.abs(run.dataset["rotation"]).max()) for run in runs) < _AT_REST:
+        axes.set_ylim(-1e-3, 1e-3)  # rounding is no rotation
     if unit is not None:
         axes.set_ylabel(axis_label("rotation", unit.words))
         return

@@ -8,13 +8,14 @@ import xarray as xr
 from rockframe.arguments import truth
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
+from rockframe.plot._axes import FigureUnits, units_of
 from rockframe.plot._checks import check_run, draws, require_system, system_of_run
 from rockframe.plot._panels import single
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.signals.arrays import Array
 from rockframe.simulation.plan import points_of
 from rockframe.system.geometry import Geometry, geometry_of
-from rockframe.units import TIME, QuantityLike, to_si
+from rockframe.units import ANGLE, LENGTH, TIME, QuantityLike, to_si
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from rockframe.plot._panels import AxesLike
     from rockframe.simulation.system import System
+    from rockframe.units.shown import UnitsLike
 
 _FOLLOWED: Final = (
     "rotation",
@@ -47,6 +49,7 @@ def scene(
     *,
     points: "Mapping[str, tuple[QuantityLike, QuantityLike]] | None" = None,
     legend: bool = True,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Axes":
@@ -64,7 +67,8 @@ def scene(
     Returns
     -------
     matplotlib.axes.Axes
-        In metres, with the middle of the lowest base at the origin. A block is drawn as the
+        To scale, in metres unless `units` has one of lengths, with the middle of the lowest base
+        at the origin. A block is drawn as the
         rectangle of its width and height, whatever it was made from; a frame with its members.
         Pads have no thickness in the equations; they are drawn with one.
 
@@ -93,7 +97,8 @@ def scene(
         msg = f"rf.plot.scene: {'; '.join(faults)}"
         raise ComponentError(msg)
     on = single(ax, "scene", figure_size(drawer, wide=named))
-    artist = SceneArtist(on.axes, drawer, names=part_labels(system.parts, drawer.geometry))
+    names = part_labels(system.parts, drawer.geometry)
+    artist = SceneArtist(on.axes, drawer, names, units_of(units, "scene").of(LENGTH))
     artist.frame([at])
     artist.mark({point.name: (point.x, point.y) for point in marked})
     artist.draw(at)
@@ -109,6 +114,7 @@ def state(
     time: "QuantityLike | None" = None,
     *,
     magnify: float = 1.0,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Axes":
@@ -127,7 +133,8 @@ def state(
     Returns
     -------
     matplotlib.axes.Axes
-        In metres, relative to the ground, :eq:`eq-scene-places`; dashed, the block at rest.
+        As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; dashed, the block at
+        rest.
         Contact has its own colour: points and lines where bases bear, pads that are pressed.
 
     Raises
@@ -147,11 +154,12 @@ def state(
     ''
     """
     check_run(run, "state")
-    moving = Moving(run, "state", magnify)
+    chosen = units_of(units, "state")
+    moving = Moving(run, "state", magnify, chosen)
     place = moving.nearest(time)
     at = moving.at(place)
     on = single(ax, "state", figure_size(moving.drawer, wide=False))
-    artist = SceneArtist(on.axes, moving.drawer)
+    artist = SceneArtist(on.axes, moving.drawer, length=chosen.of(LENGTH))
     artist.frame([at])
     artist.rest(moving.upright)
     artist.mark(moving.points)
@@ -163,8 +171,11 @@ def state(
 class Moving:
     """A run as a scene that moves."""
 
-    def __init__(self, run: xr.Dataset, function: str, magnify: object) -> None:
+    def __init__(
+        self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None
+    ) -> None:
         self.function = function
+        self.angle = (units or units_of(None, function)).of(ANGLE, "deg")
         number = float(cast("float", magnify)) if isinstance(magnify, int | float) else -1.0
         if not 0.0 < number < np.inf:
             msg = f"rf.plot.{function}: magnify must be a number above zero, got {shown(magnify)}"
@@ -226,9 +237,10 @@ class Moving:
 
     def words(self, place: int) -> str:
         """Tell time and rotation of a sample."""
-        angle = np.degrees(self._columns["rotation"][place])
+        angle = float(self.angle.of(self._columns["rotation"][place]))
         share = float(self.run["relative_rotation"][place])
-        text = f"{self.time[place]:.3f} s: {angle:.2f}°, {100.0 * share:.0f} % of overturning"
+        turned = f"{angle:.2f}°" if self.angle.words == "°" else f"{angle:.3g} {self.angle.words}"
+        text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.0f} % of overturning"
         factor = self.drawer.magnify
         return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
 

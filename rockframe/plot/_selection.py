@@ -5,12 +5,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import BLUE, GREY, VERMILLION, grid, plain_ticks
+from rockframe.plot._axes import BLUE, GREY, VERMILLION, axis_label, grid, key, plain_ticks
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Panels, sheet
 
 if TYPE_CHECKING:
     from rockframe.plot._panels import AxesLike
+    from rockframe.units.shown import UnitsLike
 
 _SET: Final = BLUE
 _TARGET: Final = VERMILLION
@@ -19,7 +20,13 @@ _LETTERS: Final = 34
 
 
 @draws("selection", ax="two Axes", title="the target and the number of motions")
-def selection(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Panels":
+def selection(
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Panels":
     """Draw the scaled spectra of a set, their median and spread, and the target.
 
     Left the accelerations; right the misfit of each motion, in the order of the set.
@@ -35,7 +42,7 @@ def selection(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None =
         Bands reach one standard deviation of the logarithm to both
         sides.
     """
-    drawable(dataset, "selection")
+    dataset = drawable(dataset, "selection", units)
     count = dataset.sizes["motion"]
     on = sheet(
         ax, "selection", ("spectra", "misfits"), (8.6, max(4.0, min(9.0, 1.0 + 0.16 * count))),
@@ -68,9 +75,11 @@ def selection(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None =
         xscale="log",
         yscale="log",
         xlabel="period [s]",
-        ylabel="pseudo-spectral acceleration [m s$^{-2}$]",
+        ylabel=axis_label(
+            "pseudo-spectral acceleration", dataset["scaled_spectral_acceleration"].attrs["units"]
+        ),
     )
-    spectra.legend(fontsize="small", frameon=False)
+    key(spectra)
     labels = [str(label) for label in dataset["motion"].to_numpy()]
     factors = dataset["scale_factor"].to_numpy()
     misfits.barh(range(count), dataset["spectral_misfit"], color=GREY, alpha=0.7)

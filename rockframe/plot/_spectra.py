@@ -17,14 +17,14 @@ from rockframe.plot._axes import (
     key,
     plain_ticks,
     style_of,
-    unit_of,
+    units_of,
     zero_line,
 )
 from rockframe.plot._checks import draws
-from rockframe.plot._motion import Drawn, columns_of, drawn_motions, motions_title
+from rockframe.plot._motion import Drawn, drawn_motions, motions_title
 from rockframe.plot._panels import Panels, sheet, single
 from rockframe.plot._runs import window_of
-from rockframe.units import ACCELERATION
+from rockframe.units import ACCELERATION, VELOCITY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from rockframe.plot._runs import Window
     from rockframe.suites import TargetSpectrum
     from rockframe.units import QuantityLike, RatioLike
+    from rockframe.units.shown import UnitsLike
 
 
 _RESOLUTION: Final = "0.05 Hz"  # of short pulses; that of long records is finer
@@ -44,6 +45,7 @@ _PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}
 _PANELS: Final = ("history", "response", "fourier")
 
 
+@draws(ax="three Axes", title="the motion's name")
 def spectra(
     motion: "MotionsLike",
     periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
@@ -51,7 +53,8 @@ def spectra(
     *,
     component: str = "horizontal",
     window: "Window" = None,
-    acceleration: str = "m/s^2",
+    acceleration: str | None = None,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Panels":
@@ -68,16 +71,13 @@ def spectra(
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of the history that is drawn; spectra are those of the whole motion [s].
     acceleration : str, optional
-        Unit of accelerations, such as ``"g_0"``.
-    ax : three Axes, optional
-        What is drawn in: history, response spectra, Fourier spectra; a new figure unless given.
-    title : str, optional
-        Title of the figure; the motion's name unless given.
+        Unit of accelerations, such as ``"g"``.
 
     Returns
     -------
     Panels
-        The response spectra are those of the pseudo-spectral acceleration.
+        History, response spectra and Fourier spectra. The response spectra are those of the
+        pseudo-spectral acceleration.
 
     Raises
     ------
@@ -92,7 +92,9 @@ def spectra(
 
     given = drawn_motions(motion, "spectra")
     cut = window_of(window, "spectra")
-    unit = unit_of(acceleration, ACCELERATION, function="spectra", name="acceleration")
+    chosen = units_of(units, "spectra")
+    unit = chosen.of(ACCELERATION, acceleration=acceleration)
+    amplitude = chosen.of(VELOCITY)
     found = [
         (
             one,
@@ -113,10 +115,10 @@ def spectra(
         name = f"{_PREFIX[str(component)]}ground_acceleration"
         _history(on.panels[0], history.sel(time=slice(*cut)), name, unit, one)
         _response(on.panels[1], response, unit, one)
-        _fourier(on.panels[2], fourier, one)
-    _label(on.panels, found, unit)
+        _fourier(on.panels[2], fourier, amplitude, one)
+    _label(on.panels, found, unit, amplitude)
     if len(given) > 1:
-        on.legend(*on.panels[1].get_legend_handles_labels(), ncols=columns_of(given))
+        on.legend(*on.panels[1].get_legend_handles_labels(), fontsize="small")
     on.entitle(motions_title(given), title)
     return on.panels
 
@@ -145,13 +147,14 @@ def _response(axes: "Axes", dataset: xr.Dataset, unit: Shown, one: Drawn) -> Non
         )
 
 
-def _fourier(axes: "Axes", dataset: xr.Dataset, one: Drawn) -> None:
+def _fourier(axes: "Axes", dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
     drawn = dataset.isel(frequency=slice(1, None))
     colour = ink() if one.label is None else one.colour
-    axes.semilogx(drawn["frequency"], drawn["fourier_amplitude"], color=colour, linewidth=0.7)
+    values = unit.of(drawn["fourier_amplitude"])
+    axes.semilogx(drawn["frequency"], values, color=colour, linewidth=0.7)
 
 
-def _label(panels: Panels, found: list[Any], unit: Shown) -> None:
+def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> None:
     history, response, fourier = panels
     several = len(found) > 1
     times = [each[1]["time"].to_numpy() for each in found]
@@ -165,12 +168,12 @@ def _label(panels: Panels, found: list[Any], unit: Shown) -> None:
     response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
     response.set_ylim(bottom=0.0)
     if not several:
-        response.legend(title="damping", fontsize="small", title_fontsize="small", frameon=False)
-    highest = max(float(each[3]["fourier_amplitude"].max()) for each in found)
+        key(response, title="damping", title_fontsize="small")
+    highest = max(float(amplitude.of(each[3]["fourier_amplitude"]).max()) for each in found)
     if highest > 0.0:
         fourier.set_yscale("log")
         fourier.set_ylim(1e-4 * highest, 2.0 * highest)
-    fourier.set(xlabel="frequency [Hz]", ylabel="Fourier amplitude [m s$^{-1}$]")
+    fourier.set(xlabel="frequency [Hz]", ylabel=axis_label("Fourier amplitude", amplitude.words))
     plain_ticks(response, "x")
     plain_ticks(fourier, "x")
     grid(response)
@@ -189,7 +192,8 @@ def suite(
     *,
     component: str = "horizontal",
     target: "TargetSpectrum | None" = None,
-    acceleration: str = "g_0",
+    acceleration: str | None = None,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Axes":
@@ -208,7 +212,7 @@ def suite(
     target : TargetSpectrum, optional
         Drawn beside them.
     acceleration : str, optional
-        Unit.
+        Unit; g unless given.
 
     Returns
     -------
@@ -225,7 +229,7 @@ def suite(
     from rockframe.measures import response_spectrum
 
     given = drawn_motions(motions, "suite")
-    unit = unit_of(acceleration, ACCELERATION, function="suite", name="acceleration")
+    unit = units_of(units, "suite").of(ACCELERATION, "g", acceleration=acceleration)
     named = {one.label or motions_title(given): one.motion for one in given}
     found = response_spectrum(named, periods, damping_ratio, component=component)
     found = found.isel(period=np.flatnonzero(found["period"].to_numpy() > 0.0))
@@ -256,7 +260,7 @@ def suite(
     on.axes.set_xlim(period[0], period[-1])
     plain_ticks(on.axes)
     grid(on.axes)
-    key(on.axes, frameon=False)
+    key(on.axes)
     count = len(given)
     damping = float(found["damping_ratio"].to_numpy().ravel()[0])
     usual = f"{count} motion{'s' if count > 1 else ''}; damping {100.0 * damping:g} %"

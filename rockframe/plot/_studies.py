@@ -18,7 +18,7 @@ from rockframe.plot._axes import (
     key,
     label_of,
     style_of,
-    unit_of,
+    units_of,
     zero_line,
 )
 from rockframe.plot._checks import drawable, draws
@@ -27,11 +27,13 @@ from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
 from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units import ANGLE
+from rockframe.units.shown import reader_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from rockframe.plot._panels import AxesLike
+    from rockframe.units.shown import UnitsLike
 
 _MOST_AXES: Final = 2
 """Dimensions that a figure of a sweep has."""
@@ -41,7 +43,11 @@ _PANELS: Final = ("histories", "residual")
 
 @draws("critical_scale", title="the verdict")
 def critical_scale(
-    dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
 ) -> "Axes":
     """Draw the peak rotation over the scale of a motion, and where the verdict changes.
 
@@ -55,9 +61,11 @@ def critical_scale(
     matplotlib.axes.Axes
         Shaded, the scales that overturn; a line at the least of them.
     """
-    given = drawable(dataset, "critical_scale")
+    given = drawable(dataset, "critical_scale", units)
     scale, outcome = given["scale"].to_numpy(), given["outcome"].to_numpy()
-    name = "peak_relative_rotation" if "peak_relative_rotation" in given else "peak_rotation"
+    angles = units_of(units, "critical_scale").reader.chose(ANGLE) is not None
+    relative = "peak_relative_rotation" in given and not angles
+    name = "peak_relative_rotation" if relative else "peak_rotation"
     peak = given[name].to_numpy()
     on = single(ax, "critical_scale", (6.4, 3.6))
     ends = np.append(given["scale_above"].to_numpy(), scale.max())
@@ -86,6 +94,7 @@ def sweep(
     runs: xr.Dataset,
     variable: str = "peak_relative_rotation",
     *,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Axes":
@@ -114,6 +123,7 @@ def sweep(
         No dataset, no such variable, or more than two dimensions.
     """
     given = _without_single_values(checked_dataset(runs, owner="rf.plot.sweep"), variable)
+    given = reader_units(units, owner="rf.plot.sweep").of_all(given)
     values = _values(given, variable)
     fell = overturns(given) == 1 if "status" in given else None
     fell = None if fell is None or set(fell.dims) != set(values.dims) else fell
@@ -134,7 +144,8 @@ def sweep(
 def free_decay(
     dataset: xr.Dataset,
     *,
-    rotation: str = "deg",
+    rotation: str | None = None,
+    units: "UnitsLike" = None,
     ax: "AxesLike" = None,
     title: str | None = None,
 ) -> "Panels":
@@ -145,7 +156,7 @@ def free_decay(
     dataset : xarray.Dataset
         Of :func:`rockframe.fit_free_decay`.
     rotation : str, optional
-        Unit of rotations.
+        Unit of rotations; degrees unless given.
 
     Returns
     -------
@@ -160,7 +171,7 @@ def free_decay(
         A unit of another kind.
     """
     given = drawable(dataset, "free_decay")
-    unit = unit_of(rotation, ANGLE, function="free_decay", name="rotation")
+    unit = units_of(units, "free_decay").of(ANGLE, "deg", rotation=rotation)
     histories = "measured_rotation" in given
     if histories:
         names = ("measured_rotation", "fitted_rotation", "rotation_residual")
@@ -276,7 +287,7 @@ def _draw_lines(
     axes.set(xlabel=words, ylabel=label_of(values))
     grid(axes)
     if others:
-        key(axes, frameon=False)
+        key(axes)
 
 
 def _draw_map(axes: "Axes", given: xr.Dataset, values: xr.DataArray, dims: list[str]) -> None:

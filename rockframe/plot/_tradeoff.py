@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
     from rockframe.plot._panels import AxesLike
+    from rockframe.units.shown import UnitsLike
 
 _LEAST: Final = 1e-14
 """Errors of the integration below are drawn here: they are rounding."""
@@ -25,12 +26,16 @@ _SPREAD: Final = 0.4
 _MARKERS: Final = "osD^vP*h"
 _SMALL: Final = "small rotations"
 _ERROR: Final = "largest error of the rotation{}over its peak [-]"
-_LETTERS: Final = 120
-"""That a row of the legend has room for."""
 
 
 @draws("tradeoff", ax="two Axes", title="scene and motion")
-def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = None) -> "Panels":
+def tradeoff(
+    dataset: xr.Dataset,
+    *,
+    units: "UnitsLike" = None,
+    ax: "AxesLike" = None,
+    title: str | None = None,
+) -> "Panels":
     """Draw a comparison of models and accuracies.
 
     Left, the error of the integration against the time of a run, a line for each model; right,
@@ -50,7 +55,7 @@ def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     from matplotlib import colormaps
     from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
-    drawable(dataset, "tradeoff")
+    drawable(dataset, "tradeoff", units)
     models = [str(name) for name in dataset["model"].to_numpy()]
     on = sheet(
         ax, "tradeoff", ("integration", "model and integration"),
@@ -90,9 +95,7 @@ def tradeoff(dataset: xr.Dataset, *, ax: "AxesLike" = None, title: str | None = 
     )
     _mark_below(axes[1], dataset["history_error"].to_numpy())
     keys = _keys(dataset, models)
-    widths = [len(str(key.get_label())) + 6 for key in keys]
-    columns = len(keys) if sum(widths) <= _LETTERS else max(1, _LETTERS // max(widths))
-    on.legend(keys, [str(key.get_label()) for key in keys], ncols=columns)
+    on.legend(keys, [str(key.get_label()) for key in keys])
     on.entitle(f"{dataset.attrs.get('scene', '')}: {dataset.attrs.get('motion', '')}", title)
     return on.panels
 

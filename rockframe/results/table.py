@@ -12,9 +12,12 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH
 from rockframe.units import Unit
+from rockframe.units.shown import reader_units
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from rockframe.units.shown import UnitsLike
 
 _OWNER: Final = "table"
 _RUN: Final = "run"
@@ -39,6 +42,8 @@ _MISSING: Final = {
 def table(
     runs: xr.Dataset | Iterable[xr.Dataset] | Mapping[Any, xr.Dataset],
     contents: str = Contents.SCALARS,
+    *,
+    units: "UnitsLike" = None,
 ) -> "pd.DataFrame":
     """Give results as a pandas DataFrame, with units in the heads of its columns.
 
@@ -49,6 +54,9 @@ def table(
         dataset of rockframe. The keys of a mapping are the labels of its runs.
     contents : {"scalars", "histories", "events"}, optional
         One row for each run; for each of its samples; or for each of its events.
+    units : mapping of str to str, optional
+        Units by what they are of, as for figures (:mod:`rockframe.plot`), such as
+        ``{"force": "kN", "angle": "deg"}``; those of the datasets unless given.
 
     Returns
     -------
@@ -67,7 +75,9 @@ def table(
     SchemaError
         No dataset, or one that holds nothing of the kind.
     ComponentError
-        Unknown contents.
+        Unknown contents, or a unit of what is not known.
+    UnitsError
+        A unit of another kind.
 
     Examples
     --------
@@ -79,14 +89,17 @@ def table(
     0.056
     >>> rf.table(response, "events").event_kind[0]
     'uplift'
+    >>> rf.table(response, units={"angle": "deg"})["peak_rotation [°]"].round(2).item()
+    3.21
     """
     kind = one_of_words(Contents, contents, owner=_OWNER, name="contents")
+    chosen = reader_units(units, owner=_OWNER)
     if isinstance(runs, xr.Dataset):
-        return _of_one(runs, kind)
+        return _of_one(chosen.of_all(runs), kind)
     labels: pd.MultiIndex | pd.Index | None = None
     if isinstance(runs, Mapping):
         labels, runs = _keys(runs), runs.values()
-    given = [checked_dataset(run, owner=_OWNER) for run in _each(runs)]
+    given = [chosen.of_all(checked_dataset(run, owner=_OWNER)) for run in _each(runs)]
     if not given:
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)

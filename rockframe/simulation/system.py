@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from importlib import import_module
 from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, Literal, Self
 
@@ -35,6 +36,8 @@ from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, ANGLE, Quantity, QuantityLike, quantity
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rockframe.simulation.run_arguments import Certification
 
 _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
@@ -304,6 +307,30 @@ class System:
             overturning=overturning,
         )
         return run(self._assembly, plan, certification_of(certify), look_again=second_look)
+
+    def to_opensees(self, motion: GroundMotion, path: "str | Path", **options: Any) -> "Path":
+        """Write the system and a motion as a Python file that OpenSees runs.
+
+        Parameters
+        ----------
+        motion : GroundMotion
+            The motion.
+        path : str or Path
+            Of the file; its name ends in ``.py``.
+        **options
+            Of :func:`rockframe.export.to_opensees`, which this calls.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ComponentError, FileError
+            As :func:`rockframe.export.to_opensees`.
+        """
+        above: Any = import_module("rockframe.export")  # of a layer that this one does not know
+        return above.to_opensees(self, motion, path, **options)
 
     def frequencies(self) -> xr.Dataset:
         """Give the modes of small motion about rest, in full contact.

@@ -1,9 +1,10 @@
 """Units in which people read numbers, in the place of SI units."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +14,15 @@ from rockframe.units import kinds
 from rockframe.units.kinds import Measure
 from rockframe.units.reading import to_si
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 _WRITTEN: Final = {"g_0": "g", "deg": "°", "degree": "°", "degrees": "°"}
+_READ: Final = {("g", kinds.ACCELERATION): "g_0"}
+"""What is meant by a letter that is a unit of something else too."""
+_BELOW: Final = re.compile(r"\s*/\s*([^\W\d_]+)(?:\^(\d+))?")
+UnitsLike: TypeAlias = Mapping[str, str] | None
+"""Units by what they are of, such as ``{"force": "kN"}``."""
 KINDS: Final[Mapping[str, Measure]] = {
     "length": kinds.LENGTH,
     "mass": kinds.MASS,
@@ -46,8 +55,16 @@ def shown_unit(given: object, measure: Measure, *, owner: str, name: str) -> Sho
     if not isinstance(given, str):
         msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(given)}"
         raise ComponentError(msg)
-    size = to_si(f"1 {given}", measure, owner=owner, name=name)
-    return Shown(_WRITTEN.get(given, given).replace("*", " "), size)
+    read = _READ.get((given, measure), given)
+    size = to_si(f"1 {read}", measure, owner=owner, name=name)
+    return Shown(_spelled(given), size)
+
+
+def _spelled(unit: str) -> str:
+    """Write a unit as those of datasets are: ``m s^-2`` for ``m/s^2`` and ``m/s**2``."""
+    plain = unit.strip().replace("**", "^").replace("*", " ")
+    plain = _BELOW.sub(lambda part: f" {part[1]}^-{part[2] or 1}", plain)
+    return " ".join(_WRITTEN.get(part, part) for part in plain.split())
 
 
 @dataclass(frozen=True)
@@ -60,6 +77,23 @@ class ReaderUnits:
     def of(self, unit: str) -> Shown:
         """Give the unit in which values in an SI unit are shown."""
         return self.chosen.get(unit, Shown(unit, 1.0))
+
+    def chose(self, measure: Measure) -> Shown | None:
+        """Give the unit that was chosen for a kind; None where none was."""
+        return self.chosen.get(str(measure.unit))
+
+    def of_all(self, dataset: "xr.Dataset") -> "xr.Dataset":
+        """Give a dataset with its values, and its attributes of units, in these units."""
+        found: dict[str, Any] = {}
+        for name, values in dataset.variables.items():
+            unit = self.chosen.get(str(values.attrs.get("units")))
+            if unit is not None and values.dtype.kind in "fiu":
+                shown_in = dataset[name].copy(data=unit.of(values.to_numpy()))
+                found[str(name)] = shown_in.assign_attrs(units=unit.words)
+        coords = {name: found.pop(name) for name in list(found) if name in dataset.coords}
+        return dataset.assign(found).assign_coords(
+            {name: (one.dims, one.data, one.attrs) for name, one in coords.items()}
+        )
 
 
 def reader_units(given: object, *, owner: str) -> ReaderUnits:

@@ -274,6 +274,7 @@ THEMSELVES = {
     "command/convert.py": "by the method of a motion",
     "reports/page.py": "to memory",
     "accessor.py": "by the method of a player",
+    "export/_opensees_model.py": "copied into a file that runs elsewhere, beside which it writes",
     "plot/_animation.py": "to the place that the mechanism gives",
 }
 """Modules that write, and why they may."""

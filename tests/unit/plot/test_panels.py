@@ -1,12 +1,21 @@
 """Where figures are drawn, in which units, and what part of a run; several runs in one figure."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, UnitsError
+from rockframe.plot._artists import SOIL
+from rockframe.plot._axes import COLOURS, GREY
+from rockframe.plot._overturning import MAP_COLOURS
+from rockframe.plot._response import CONTACT_COLOURS, histories_of
+from rockframe.units.shown import reader_units
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.05 m"))
 SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
@@ -221,6 +230,111 @@ def test_peaks_beyond_overturning_are_drawn_alike():
         system, motions, scale=[1.0, 2.0, 4.0], free_vibration="3 s", progress=False
     )
     far = found.assign(peak_relative_rotation=3.0 * found.peak_relative_rotation)
-    drawn = [line.get_ydata() for line in rf.plot.dynamic_analysis(far)[0].get_lines()]
+    drawn = [line.get_xdata() for line in rf.plot.dynamic_analysis(far)[0].get_lines()]
     assert max(np.nanmax(np.append(one, 0.0)) for one in drawn) == 1.0
     assert float(far.peak_relative_rotation.max()) > 1.0
+
+
+def test_a_dynamic_analysis_has_the_measure_upwards_and_fractiles_of_the_motions():
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    motions = {
+        f"{k}": rf.GroundMotion.sine_pulse(f"{2.6 + 0.2 * k} m/s^2", "1 Hz") for k in range(7)
+    }
+    found = rf.incremental_dynamic_analysis(
+        system, motions, scale=[0.5, 1.0, 1.5, 2.0, 3.0], intensity="PGA", free_vibration="3 s",
+        progress=False,
+    )  # fmt: skip
+    panels = rf.plot.dynamic_analysis(found)
+    assert [axes.get_ylabel()[:24] for axes in panels] == ["peak ground acceleration", ""]
+    named = {line.get_label(): line for line in panels[0].get_lines()}
+    runs = [line for line in lines(panels[0]) if line.get_color() == GREY]
+    assert len(runs) == len(motions)
+    up = named["50 %"].get_ydata()
+    peaks = np.sort([np.interp(up, line.get_ydata(), line.get_xdata()) for line in runs], axis=0)
+    for label, place in (("16 %", 0.96), ("50 %", 3.0), ("84 %", 5.04)):
+        drawn = named[label].get_xdata()
+        below, above = peaks[int(place)], peaks[int(np.ceil(place))]
+        between = below + (place - int(place)) * (above - below)
+        np.testing.assert_allclose(drawn, np.where(above < 1.0, between, 1.0), atol=1e-12)
+    np.testing.assert_allclose(named["50 %"].get_xdata(), peaks[3], rtol=1e-12)
+    # half of the motions overturn where the line of the half turns level
+    level = up[np.argmax(named["50 %"].get_xdata() >= 1.0)]
+    capacity = np.sort(found.capacity_scale.squeeze() * found.peak_ground_acceleration.sel(scale=1))
+    assert level == pytest.approx(capacity[3], abs=2.0 * (up[1] - up[0]))
+    few = rf.plot.dynamic_analysis(found.isel(motion=slice(0, 3)))
+    named = [line.get_label() for line in lines(few[0])]
+    assert named == ["0", "1", "2"]
+
+
+def luminance(colour):
+    """Lightness of the CIE, from 0 to 100."""
+    rgb = np.array(to_rgb(colour))
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    return 116.0 * (linear @ [0.2126, 0.7152, 0.0722]) ** (1.0 / 3.0) - 16.0
+
+
+@pytest.mark.parametrize(
+    ("colours", "apart"), [(COLOURS, 7.5), (CONTACT_COLOURS.values(), 11.0), (MAP_COLOURS, 7.5)]
+)
+def test_colours_are_told_apart_without_colours(colours, apart):
+    shades = np.sort([luminance(colour) for colour in colours])
+    assert np.diff(shades).min() > apart
+    assert shades.min() > 30.0  # on black
+    assert luminance(CONTACT_COLOURS["right"]) - luminance(CONTACT_COLOURS["left"]) > 15.0
+
+
+def test_all_figures_take_their_colours_from_the_palette():
+    written = {
+        (path.name, found)
+        for path in Path(rf.plot.__file__).parent.glob("*.py")
+        for found in re.findall(r"\"(#[0-9a-f]{6})\"", path.read_text())
+        if path.name != "_axes.py"
+    }
+    known = {*CONTACT_COLOURS.values(), SOIL}
+    assert {colour for _, colour in written} == known
+
+
+@pytest.mark.parametrize("size", [(8.0, 6.0), (4.0, 5.0)])
+def test_legends_stand_off_the_curves(runs, size):
+    figure = plt.figure(figsize=size, layout="constrained")
+    rf.plot.response(runs["whole"], units={"force": "kN"}, events=True, ax=figure,
+                     panels=("rotation", "left_reaction", "contact"))  # fmt: skip
+    single, axes = plt.subplots(figsize=size)
+    rf.plot.phase(runs, ax=axes)
+    for drawn in (figure, single):
+        drawn.canvas.draw()
+        for panel in drawn.axes:
+            if panel.get_legend() is None:
+                continue
+            box = panel.get_legend().get_window_extent()
+            for line in lines(panel, 1):
+                places = panel.transData.transform(np.column_stack(line.get_data()))
+                held = line.get_transform() == panel.transData
+                assert not held or not any(box.contains(*place) for place in places)
+
+
+def test_any_history_of_a_run_has_a_panel():
+    block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+    slide = rf.System(block, rf.RigidGround(friction=0.18))
+    outputs = ("reaction", "acceleration", "base_shear", "friction_demand", "energy")
+    points = {"top": ("0 m", "4 m"), "middle": ("0 m", "2 m")}
+    run = slide.simulate(PULSE, free_vibration="1 s", outputs=outputs, points=points)
+    assert {"slip", "horizontal_reaction", "horizontal_acceleration"} <= set(run.data_vars)
+    units = {"force": "kN", "length": "mm", "acceleration": "g", "angle": "mrad"}
+    shown = rf.table(run, "histories", units=units)
+    for name in histories_of(run):
+        _, axes = plt.subplots()
+        rf.plot.response(run, panels=name, units=units, ax=axes)
+        label = " ".join(axes.get_ylabel().split())
+        assert label.startswith(name.replace("_", " ")) or name in (
+            "rotation",
+            "ground_acceleration",
+        )
+        rows = lines(axes)
+        assert len(rows) >= (2 if "point" in run[name].dims else 1)
+        unit = reader_units(units, owner="").of(run[name].attrs["units"])
+        first = run[name] if run[name].ndim == 1 else run[name][0]
+        if name != "rotation":
+            np.testing.assert_allclose(rows[0].get_ydata(), unit.of(first), rtol=1e-12)
+        plt.close(axes.figure)
+    assert "slip [mm]" in shown

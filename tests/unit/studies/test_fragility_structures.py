@@ -208,7 +208,7 @@ def test_figures_tell_structures_apart(runs):
     found = rf.fragility(runs, "PGV", limits=[0.3])
     panels = rf.plot.fragility(found)
     assert [axes.get_title() for axes in panels] == ["rotation 0.3", "overturning"]
-    names = [text.get_text() for text in panels[1].get_legend().get_texts()]
+    names = [text.get_text() for text in panels.figure.legends[0].get_texts()]
     assert names == ["width 0.4", "width 0.5", "width 0.8"]
     axes = rf.plot.fragility(found.isel(width=1))
     told = axes.figure.get_suptitle().replace("\n", " ")

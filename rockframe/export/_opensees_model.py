@@ -1,0 +1,143 @@
+"""The block in OpenSees: what a file written by :func:`rockframe.export.to_opensees` does.
+
+It needs numpy and openseespy alone, because it is copied into that file as it stands.
+"""
+
+import csv
+import ctypes
+import importlib.util
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+LIBRARIES = ("libquadmath.so.0", "libgfortran.so.4", "libblas.so.3", "liblapack.so.3")
+
+
+def opensees() -> Any:
+    """Import OpenSees, whose wheel for Linux does not say where its own libraries are."""
+    found = importlib.util.find_spec("openseespylinux")
+    if found is not None and found.origin is not None:
+        for name in LIBRARIES:
+            library = Path(found.origin).parent / "lib" / name
+            if library.is_file():
+                ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+    return importlib.import_module("openseespy.opensees")
+
+
+def build(ops: Any, given: dict[str, Any]) -> tuple[int, int, float]:
+    """Build the block on its springs; give the nodes of its axis and the height between them [m].
+
+    The block is a truss of bars that no load stretches noticeably, exact at finite rotations. Four
+    point masses give it its mass, its centre of mass and its moment of inertia: a half of what is
+    at the base in the middle, a quarter at each corner, and the rest at the top.
+    """
+    b, h, mass = given["half_width"], given["centre_height"], given["mass"]
+    square = given["inertia"] / mass
+    half = 0.5 * (h**2 + 0.5 * b**2 - square)
+    top = h + (math.sqrt(half**2 + square * h**2) - half) / h
+    base = mass * (1.0 - h / top)
+    across, stiffness, damping = given["springs_at"], given["stiffness"], given["damping"]
+    weight, count = mass * given["gravity"], len(across)
+    ops.wipe()
+    ops.model("basic", "-ndm", 2, "-ndf", 2)
+    # the two nodes that all others hang on come last, so that few equations are filled
+    nodes = list(range(1, count + 1))  # above the springs
+    left, right, middle, above = range(count + 1, count + 5)
+    places = {tag: (x, 0.0) for tag, x in zip(nodes, across, strict=True)}
+    places |= {left: (-b, 0.0), right: (b, 0.0), middle: (0.0, 0.0), above: (0.0, top)}
+    for tag, place in places.items():
+        ops.node(tag, *place)
+    ops.fix(middle, 1, 0)
+    masses = {middle: 0.5 * base, left: 0.25 * base, right: 0.25 * base, above: mass - base}
+    for tag, share in masses.items():
+        ops.mass(tag, share, share)
+    ops.uniaxialMaterial("Elastic", 1, given["bars_over_springs"] * stiffness * count)
+    bars = [(above, middle)]
+    bars += [(one, tag) for tag in places if tag not in (middle, above) for one in (middle, above)]
+    for number, (start, end) in enumerate(bars, 1):
+        length = math.dist(places[start], places[end])
+        ops.element("corotTruss", number, start, end, length, 1)
+    # springs without tension, which carry the weight from the start, with dashpots as told
+    sunk = -weight / (count * stiffness)
+    if given["dashpots"] == "let go" and damping > 0.0:
+        ops.uniaxialMaterial("ViscoelasticGap", 2, stiffness, damping, -1e-12)
+        ops.uniaxialMaterial("InitStrainMaterial", 5, 2, sunk)
+    else:
+        ops.uniaxialMaterial("ENT", 2, stiffness)
+        ops.uniaxialMaterial("InitStrainMaterial", 3, 2, sunk)
+        ops.uniaxialMaterial("Viscous", 4, max(damping, 1e-12), 1.0)
+        ops.uniaxialMaterial("Parallel", 5, 3, 4)
+    for number, tag in enumerate(nodes):
+        ground = above + 1 + number
+        ops.node(ground, *places[tag])
+        ops.fix(ground, 1, 1)
+        ops.element("zeroLength", len(bars) + 1 + number, ground, tag, "-mat", 5, "-dir", 2)
+    ops.timeSeries("Constant", 1)
+    ops.pattern("Plain", 1, 1)
+    for tag, share in masses.items():
+        ops.load(tag, 0.0, -share * given["gravity"])
+    for direction, name in enumerate(("acceleration", "vertical_acceleration"), 1):
+        if given[name] is not None:
+            values = np.append(given[name], 0.0).tolist()
+            ops.timeSeries("Path", 1 + direction, "-dt", given["time_step"], "-values", *values)
+            ops.pattern("UniformExcitation", 1 + direction, direction, "-accel", 1 + direction)
+    return middle, above, top
+
+
+def solve(ops: Any, given: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Integrate by Newmark's rule; give times [s] and rotations, clockwise, [rad]."""
+    middle, above, top = build(ops, given)
+    ops.system("ProfileSPD")
+    ops.numberer("Plain")
+    ops.constraints("Plain")
+    ops.test("NormDispIncr", given["tolerance"], 30)
+    ops.algorithm("Newton")
+    ops.integrator("Newmark", 0.5, 0.25)
+    ops.analysis("Transient")
+    step, steps = given["output_step"], given["steps_per_output"]
+    rotation = [0.0]
+    for row in range(1, given["rotation"].size):
+        if not all(advance(ops, step / steps) for _ in range(steps)):
+            print(f"OpenSees did not converge before {row * step:.4g} s")
+            break
+        sideways, up = ops.nodeDisp(above, 1), ops.nodeDisp(above, 2) - ops.nodeDisp(middle, 2)
+        rotation.append(math.atan2(sideways, top + up))
+        if abs(rotation[-1]) >= given["overturning_angle"]:
+            print(f"OpenSees: overturned after {row * step:.4g} s")
+            break
+    return step * np.arange(len(rotation)), np.array(rotation)
+
+
+def advance(ops: Any, step: float, halvings: int = 10) -> bool:
+    """Take a step, or two halves of it where Newton's iteration ends nowhere."""
+    if ops.analyze(1, step) == 0:
+        return True
+    return halvings > 0 and all(advance(ops, 0.5 * step, halvings - 1) for _ in range(2))
+
+
+def main(given: dict[str, Any], history: Path) -> dict[str, float]:
+    """Run OpenSees, write its history beside that of rockframe, and compare the peaks."""
+    ops = opensees()
+    ops.logFile(os.devnull, "-noEcho")  # it tells of each impact
+    time, found = solve(ops, given)
+    expected = given["rotation"]
+    both = min(found.size, expected.size)
+    with history.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["time [s]", "rotation in OpenSees [rad]", "rotation in rockframe [rad]"])
+        rows = zip(time[:both], found[:both], expected[:both], strict=True)
+        writer.writerows([f"{one:.9g}" for one in row] for row in rows)
+    peaks = {"OpenSees": float(np.abs(found).max()), "rockframe": given["peak"]}
+    size = max(peaks["rockframe"], 1e-6 * given["overturning_angle"])
+    apart = float(np.abs(found[:both] - expected[:both]).max()) / size
+    print(f"rockframe: {given['verdict']}")
+    for name, peak in peaks.items():
+        share = 100.0 * peak / given["overturning_angle"]
+        print(f"peak rotation in {name}: {peak:.6g} rad, {share:.4g} % of the overturning angle")
+    print(f"peaks differ by {100.0 * (peaks['OpenSees'] - peaks['rockframe']) / size:+.3g} %")
+    print(f"histories differ by {100.0 * apart:.3g} % of the peak at most")
+    print(f"history: {history}")
+    return peaks | {"largest difference": apart}

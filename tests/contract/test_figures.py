@@ -1,0 +1,235 @@
+"""Every figure takes `units`, `ax` and `title`, and obeys them; the player has no `ax`."""
+
+import inspect
+
+import numpy as np
+import pytest
+from matplotlib import pyplot as plt
+from matplotlib.ticker import FuncFormatter
+
+import rockframe as rf
+from rockframe.errors import ComponentError, UnitsError
+
+BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+RIGID = rf.System(BLOCK)
+PULSE = rf.GroundMotion.sine_pulse("2.2 m/s^2", "1 Hz")
+MOTIONS = {"slow": PULSE, "quick": rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")}
+OUTPUTS = ("energy", "base_overturning_moment", "reaction")
+COUNTS = {"intensity": ([2, 4, 8], "m/s^2"), "exceeded": [1, 6, 19], "trials": 20}
+
+
+def _run():
+    return SYSTEM.simulate(PULSE, free_vibration="1 s", outputs=OUTPUTS)
+
+
+def _spread():
+    spread = {"width": ("uniform", "0.7 m", "0.9 m")}
+    return rf.probability_of_overturning(RIGID, PULSE, spread=spread, cases=60, progress=False)
+
+
+def _decay():
+    system = rf.System(BLOCK, rf.RigidGround(restitution=0.9))
+    run = system.simulate(duration="3 s", initial=rf.InitialState(rotation="0.05 rad"))
+    return rf.fit_free_decay(system, run["rotation"])
+
+
+def _sweep():
+    runs = rf.sweep(RIGID, {"pulse": PULSE}, scale=[0.5, 1.0, 1.2], progress=False)
+    return runs.drop_vars("peak_relative_rotation").rename(
+        peak_rotation="peak_relative_rotation"  # what is drawn unless told otherwise
+    )
+
+
+METRES, DEGREES = {"length": ("m", "mm", 1e-3)}, {"angle": ("rad", "mrad", 1e-3)}
+GRAVITIES = {"acceleration": ("m/s^2", "g", 9.80665)}
+PERIODS = {"periods": ([2.0, 3.0], "s"), "slenderness": [5.0], "progress": False}
+DRAWN = {
+    # function: (what it draws, a kind of units that it shows, with two of them and their ratio)
+    "animation": (_run, DEGREES),
+    "critical_scale": (lambda: rf.critical_scale(RIGID, PULSE, largest=3, progress=False), DEGREES),
+    "dynamic_analysis": (
+        lambda: rf.incremental_dynamic_analysis(
+            RIGID, MOTIONS, scale=[0.5, 1.0, 2.0, 4.0], intensity="PGA", progress=False
+        ),
+        GRAVITIES,
+    ),
+    "energies": (_run, {"energy": ("J", "kJ", 1e3)}),
+    "ensemble": (
+        lambda: rf.ensemble_statistics(
+            rf.sweep(RIGID, MOTIONS, scale=[0.8, 1.0, 1.2], progress=False), "peak_rotation",
+            pooled=["scale"],
+        ),
+        DEGREES,
+    ),
+    "fragility": (lambda: rf.fragility(COUNTS, "PGA"), GRAVITIES),
+    "free_decay": (_decay, DEGREES),
+    "moment_rotation": (_run, {"moment": ("N*m", "kN*m", 1e3)}),
+    "motion": (lambda: PULSE, {"velocity": ("m/s", "cm/s", 0.01)}),
+    "overturning_map": (
+        lambda: rf.overturning_map(
+            RIGID, PULSE, amplitude=([2.0, 4.0, 8.0], "m/s^2"), frequency=([0.5, 1.0], "Hz"),
+            progress=False,
+        ),
+        GRAVITIES,
+    ),
+    "overturning_spectrum": (
+        lambda: rf.overturning_spectrum(RIGID, MOTIONS, scale=[1.0, 2.0, 4.0, 8.0], **PERIODS),
+        GRAVITIES,
+    ),
+    "phase": (_run, DEGREES),
+    "player": (_run, GRAVITIES),
+    "probability": (_spread, METRES),
+    "response": (_run, DEGREES),
+    "rocking_spectrum": (lambda: rf.rocking_spectrum(RIGID, MOTIONS, **PERIODS), {}),
+    "scene": (lambda: SYSTEM, METRES),
+    "selection": (
+        lambda: rf.MotionSuite(MOTIONS).scaling_to(
+            rf.TargetSpectrum.eurocode_8("0.2 g_0"), bounds=None
+        ),
+        GRAVITIES,
+    ),
+    "spectra": (lambda: PULSE, GRAVITIES),
+    "state": (_run, METRES),
+    "suite": (lambda: MOTIONS, GRAVITIES),
+    "sweep": (_sweep, DEGREES),
+    "tradeoff": (
+        lambda: rf.tradeoff(
+            SYSTEM, PULSE, models=["two pads"], accuracies=["fast", "standard"], repeats=1
+        ),
+        {},
+    ),
+    "velocity_pulse": (lambda: PULSE.velocity_pulse(), {"velocity": ("m/s", "cm/s", 0.01)}),
+}  # fmt: skip
+"""Periods, times and shares have no unit that a reader chooses."""
+
+
+@pytest.fixture(scope="module")
+def given():
+    made = {}
+    return lambda name: made.setdefault(DRAWN[name][0], DRAWN[name][0]())
+
+
+@pytest.fixture(autouse=True)
+def _closed():
+    yield
+    plt.close("all")
+
+
+def panels_of(drawn):
+    drawn = getattr(drawn, "panels", drawn)
+    return list(drawn) if isinstance(drawn, tuple) else [drawn]
+
+
+def spans(drawn, unit):
+    """Give what is read along all axes that have the unit."""
+    found = []
+    for axes in panels_of(drawn):
+        for axis, label, ends in (
+            (axes.xaxis, axes.get_xlabel(), axes.dataLim.intervalx),
+            (axes.yaxis, axes.get_ylabel(), axes.dataLim.intervaly),
+        ):
+            if label.endswith(f"[{unit}]"):
+                read = axis.get_major_formatter()
+                places = np.array(ends)
+                # a scene is drawn in metres, and its ticks tell another unit
+                told = isinstance(read, FuncFormatter) and axes.get_aspect() == 1.0
+                found.append([float(read(place)) for place in places] if told else places)
+    return np.array(found)
+
+
+def test_all_figures_are_here_and_take_the_three():
+    functions = {name for name in rf.plot.__all__ if name.islower()}
+    assert functions == set(DRAWN)
+    for name in functions:
+        taken = inspect.signature(getattr(rf.plot, name)).parameters
+        shared = {"units", "title"} if name == "player" else {"units", "ax", "title"}
+        assert shared <= set(taken)
+        assert all(taken[one].default is None for one in shared)
+        assert "mapping of str to str, optional\n    Units by what they are of" in inspect.getdoc(
+            getattr(rf.plot, name)
+        )
+
+
+@pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
+def test_units_are_those_of_the_reader(name, given):
+    draw, kinds = getattr(rf.plot, name), DRAWN[name][1]
+    for kind, (plain, other, size) in kinds.items():
+        words = {"m/s^2": "m s$^{-2}$", "m/s": "m s$^{-1}$", "cm/s": "cm s$^{-1}$"}
+        words |= {"N*m": "N m", "kN*m": "kN m"}
+        first, second = (
+            spans(draw(given(name), units={kind: unit}), words.get(unit, unit))
+            for unit in (plain, other)
+        )
+        assert first.size > 0
+        assert np.abs(first).max() > 0.0
+        np.testing.assert_allclose(first, size * second, rtol=1e-5)
+    with pytest.raises(
+        ComponentError, match=rf"plot\.{name}: units are of kinds.*'angel'.*'angle'"
+    ):
+        draw(given(name), units={"angel": "deg"})
+    with pytest.raises(UnitsError, match=rf"plot\.{name}.*force"):
+        draw(given(name), units={"force": "mm"})
+
+
+@pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
+def test_figures_are_drawn_where_they_are_told_to(name, given):
+    draw, what = getattr(rf.plot, name), given(name)
+    usual = panels_of(draw(what))
+    plt.close("all")
+    figure = plt.figure(figsize=(14.0, 6.0), layout="constrained")
+    if len(usual) == 1:
+        axes = figure.subplots()
+        drawn = panels_of(draw(what, ax=axes, title="given"))
+        assert drawn == [axes]
+        assert axes.get_title() == "given"
+        with pytest.raises(ComponentError, match="ax must be one Axes, got"):
+            draw(what, ax=figure)
+    else:
+        left, right = figure.subfigures(1, 2)
+        for place in (left, right):
+            drawn = panels_of(draw(what, ax=place, title="given"))
+            assert len(drawn) == len(usual)
+            assert all(axes.figure is place for axes in drawn)
+            assert place.get_suptitle() == "given"
+        again = panels_of(draw(what, ax=drawn))
+        assert all(one is other for one, other in zip(again, drawn, strict=True))
+    figure.canvas.draw()
+    assert plt.get_fignums() == [figure.number]
+
+
+def test_the_player_obeys_units_and_title(given):
+    units = {"acceleration": "g", "angle": "mrad"}
+    page = rf.plot.player(given("player"), units=units, title="Fall")
+    assert "ground acceleration [g]" in page.to_html()
+    assert "rotation [mrad]" in page.to_html()
+    assert "Fall" in page.to_html()
+
+
+def test_tables_obey_units(given):
+    run = given("response")
+    table = rf.table(run, "histories", units={"force": "kN", "angle": "deg"})
+    np.testing.assert_allclose(table["left_reaction [kN]"], 1e-3 * run.left_reaction, rtol=1e-12)
+    np.testing.assert_allclose(table["rotation [°]"], np.degrees(run.rotation), rtol=1e-12)
+    assert "base_overturning_moment [N m]" in table
+    with pytest.raises(ComponentError, match="table: units are of kinds"):
+        rf.table(run, units={"weight": "kN"})
+
+
+SENTENCE = (
+    "Overturned to the right after 4.345 s, at a peak ground velocity of 0.4512 m s^-1 and a peak "
+    "ground acceleration of 12.31 m s^-2, where 100 kN m were reached"
+)
+
+
+@pytest.mark.parametrize("width", [3.0, 3.4, 4.0, 4.6, 5.0, 5.6, 6.0, 7.0])
+@pytest.mark.parametrize("size", [8.0, 10.0, 14.0])
+def test_titles_never_break_inside_a_unit(given, width, size):
+    with plt.rc_context({"font.size": size}):
+        figure = plt.figure(figsize=(width, 4.0), layout="constrained")
+        rf.plot.response(given("response"), ax=figure, title=SENTENCE)
+        text = figure.get_suptitle()
+    assert "\n" in text
+    assert text.replace("\n", " ") == SENTENCE
+    for kept in ("4.345 s", "0.4512 m s^-1", "12.31 m s^-2", "100 kN m"):
+        assert kept in text
