@@ -92,12 +92,12 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
     # what cannot be counted before it has run stays a flag, also where nothing has
     rows.scalars.clear()  # what has been arranged need not be there twice
     values = {name: grid.arranged(scalars.pop(name)) for name in SCHEMA if name in scalars}
-    values |= {
-        "status": grid.arranged(rows.status),
-        "message_number": grid.arranged(rows.message),
-    }
+    values["status"] = grid.arranged(rows.status)
+    # as objects, each text is there once
+    texts = np.array(rows.texts, dtype=object)[grid.arranged(rows.message)]
+    said = xr.Variable(tuple(grid.sizes), texts, SCHEMA[MESSAGE].attributes())
     runs = build_dataset(values, {}, over=tuple(grid.sizes))
-    around: dict[str, Any] = {MESSAGE: np.array(rows.texts, dtype=object)}
+    around: dict[str, Any] = {}
     if MOTION in grid.sizes:
         around[MOTION] = np.array(labels.motions, dtype=object)
     if CASE in grid.sizes:
@@ -120,7 +120,7 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
             if name in rows.histories
         }
         dataset = dataset.assign(build_dataset(histories, {}, over=tuple(grid.sizes)).data_vars)
-    dataset = dataset.assign_coords(_coordinates(labels))
+    dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: said})
     for name in dataset.coords:
         # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
         dataset[name].encoding["_FillValue"] = None

@@ -92,8 +92,8 @@ def sweep(
     xarray.Dataset
         All scalars of a run, over ``case`` if there is a table, the axes in the order given,
         and ``motion``; histories over ``time`` too. Of a case that could not be
-        assembled or finished ``status`` tells, its ``message_number`` gives the place of the
-        reason along ``message``, and its scalars are NaN. Truth values, flags and counts are
+        assembled or finished ``status`` tells, the coordinate ``message`` says why, and its
+        scalars are NaN. Truth values, flags and counts are
         floats where that leaves gaps. Screened sweeps have ``repeated`` and ``verdict_changed``.
 
     Raises

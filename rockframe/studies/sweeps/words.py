@@ -65,19 +65,18 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
 def say_what_is_missing(dataset: xr.Dataset) -> None:
     """Warn of cases without a result, and of cautions."""
     status = dataset["status"].to_numpy().ravel()
-    number = dataset["message_number"].to_numpy().ravel()
-    texts = dataset[MESSAGE].to_numpy()
+    message = dataset[MESSAGE].to_numpy().ravel()
     lacking = np.isnan(dataset["peak_rotation"].to_numpy().ravel())
     not_run = status == RunStatus.NOT_RUN
     failed = lacking & ~not_run
     for which, kind, words in (
         (failed, SolverWarning, "have no result"),
         (not_run, SolverWarning, "have not been run"),
-        (~lacking & (texts[number] != NONE), ModelWarning, "have a result to be careful with"),
+        (~lacking & (message != NONE), ModelWarning, "have a result to be careful with"),
     ):
         if which.any():
-            first = number[which][0]
-            text, those = str(texts[first]), int((number[which] == first).sum())
+            text = str(message[which][0])
+            those = int((message[which] == text).sum())
             said = "" if text == NONE else f"; of {those} of them it is said: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
             warn(f"{OWNER}: {count} {words} (status, message){said}", kind)
