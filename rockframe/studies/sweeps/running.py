@@ -22,13 +22,16 @@ from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.claims import Claims
 from rockframe.studies.sweeps.execution import Chunk, ProgressBar, run_chunks, workers_of
 from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
+from rockframe.studies.sweeps.lazily import lazy_dataset
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study
-from rockframe.studies.sweeps.words import say_what_is_missing
+from rockframe.studies.sweeps.words import cases_verdict, say_what_is_missing
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
 
 _LARGEST_CHUNK: Final = 1_000_000
+_DAY: Final = 86_400.0
+"""A day [s]."""
 _GLIMPSE: Final = 1e-3
 """Share of a run that tells whether its law can be compiled."""
 _LOOK: Final = 1.0
@@ -51,15 +54,29 @@ def run_study(
         if chunk is None
         else whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
     )
+    _say_how_long(study, workers, as_python=as_python, kept=store is not None)
     remember(study)
     if store is None:
         dataset, whole = _in_memory(study, size, executor, bar)
     else:
         dataset, whole = _kept(study, folder_of(store), size, executor, bar)
     if not whole:
-        warn(f"{OWNER}: interrupted; {dataset.attrs['verdict']}", SolverWarning)
-    say_what_is_missing(dataset)
+        warn(f"{OWNER}: interrupted; {cases_verdict(dataset)}", SolverWarning)
+    if not study.lazy:
+        say_what_is_missing(dataset)
     return dataset
+
+
+def _say_how_long(study: Study, workers: int, *, as_python: bool, kept: bool) -> None:
+    """Warn of what takes more than a day."""
+    days = study.grid.count * study.time_of_case(as_python=as_python) / workers / _DAY
+    if days > 1.0:
+        ways = "several jobs on it share the work" if kept else "with one a kill would not lose it"
+        warn(
+            f"{OWNER}: {study.grid.count} cases take about {days:.2g} days with {workers} workers, "
+            f"by the lengths of the motions; {'the' if kept else 'there is no'} store: {ways}",
+            SolverWarning,
+        )
 
 
 def _runs_as_python(study: Study) -> bool:
@@ -121,7 +138,7 @@ def _kept(
         claims.let_all_go()
     if whole:
         claims.clear()
-    return stored_dataset(kept), whole
+    return lazy_dataset(kept) if study.lazy else stored_dataset(kept), whole
 
 
 def _free(

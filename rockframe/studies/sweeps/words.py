@@ -26,11 +26,13 @@ _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]
 def cases_verdict(dataset: xr.Dataset) -> str:
     """Say what became of the cases of a dataset: of a whole result as its attribute does."""
     said, whole = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
-    if not said or whole is None or "status" not in dataset:
+    if whole is None or "status" not in dataset:
         return said
     status = dataset["status"]
-    if status.size == whole or status.dtype.kind not in "iu":  # such as a mean
+    if status.dtype.kind not in "iu":  # such as a mean
         return said
+    if status.size == whole:  # one that is read when it is used has no verdict before
+        return said or whole_verdict(dataset)
     some = f"{status.size} of the {whole} cases of the sweep"
     return cases_sentence(dataset, f"Of {some if status.size < whole else f'{status.size} cases'}")
 
