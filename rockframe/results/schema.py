@@ -122,7 +122,7 @@ COORDINATES: Final = (
     "sequence",
     "earthquake",
 )
-"""Variables that label a dimension."""
+"""Variables that label a dimension, or a case: arithmetic and means leave them alone."""
 
 ENERGIES: Final = tuple(row.name for row in ENERGY_HISTORIES)
 """Histories that are integrated only on request."""

@@ -15,11 +15,12 @@ from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.signal import COEFFICIENTS
+from rockframe.simulation.run import NONE
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SequenceArguments
 from rockframe.studies.sweeps.sweep import sweep
@@ -210,9 +211,11 @@ def _arranged(
         if gaps and "flag_values" in attributes:
             attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
         found[str(name)] = xr.Variable(("sequence", NUMBER), values, attributes)
-    others = {"message": runs["message"]} if "message" in runs.coords else {}
+    said = np.full(shape, NONE, dtype=object)
+    said[rows, numbers] = runs[MESSAGE].to_numpy()
+    texts = xr.Variable(("sequence", NUMBER), said, runs[MESSAGE].attrs)
     attributes = {name: one for name, one in runs.attrs.items() if name != CASE_COUNT}
-    return xr.Dataset(found, coords=others, attrs=attributes)
+    return xr.Dataset(found, coords={MESSAGE: texts}, attrs=attributes)
 
 
 def _first(found: xr.Dataset) -> Array:

@@ -313,7 +313,7 @@ def overturning_spectrum(
         source="scan and bisection of event-driven runs",
     )
     narrow["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
-    found = scan.drop_dims(SCALE).drop_vars("message", errors="ignore").assign(narrow.data_vars)
+    found = scan.drop_dims(SCALE).assign(narrow.data_vars)
     return sizes.arranged(found).assign_attrs(
         title="Overturning spectrum",
         source=narrow.attrs["source"],

@@ -4,9 +4,10 @@ Usage: python tests/benchmarks/interrupted_sweeps.py [kills] [seed]
 
 Each time a process that runs a sweep of 240 cases into a new folder is killed (SIGKILL) a moment
 after it has written some number of files, both drawn, or at any time after its start; then the same
-sweep is run there again. Prints for each kill when it came, what had been kept by then, and whether
-all files and the dataset are, to the last byte, those of a sweep that was never interrupted. Exits
-with 1 if one is not.
+sweep is run there again. Every third time a second process works on the same folder, is not killed,
+and must end with the whole. Prints for each kill when it came, what had been kept by then, and
+whether all files and the dataset are, to the last byte, those of a sweep that was never
+interrupted. Exits with 1 if one is not.
 """
 
 import random
@@ -43,14 +44,17 @@ def main() -> int:
             after = rng.randrange(len(whole)) if number % 5 else -1
             delay = rng.uniform(0.0, 0.1 if number % 5 else 0.8 * took)
             running = child(folder)
+            beside = None if number % 3 else child(folder)
             while running.poll() is None and len(list(folder.glob("*.arrays"))) <= after:
                 time.sleep(0.002)
             time.sleep(delay)
             running.kill()
             running.communicate()
             kept, parts = told(folder)
+            if beside is not None and beside.communicate()[0].strip() != "done":
+                kept += ", the second process failed"
             found = as_bytes(the_sweep(folder))
-            good = files(folder) == whole and found == numbers
+            good = files(folder) == whole and found == numbers and "failed" not in kept
             same += good
             print(
                 f"{number:3d}: killed {delay:.3f} s after {after + 1} files; {kept}, "

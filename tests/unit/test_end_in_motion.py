@@ -72,7 +72,7 @@ def test_the_bound_is_that_of_the_energy(parts, share):
 def test_sweeps_say_so_of_their_cases():
     with pytest.warns(ModelWarning, match=STILL_MOVING):
         runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.2, 1.0], progress=False)
-    said = runs.message.to_numpy()[runs.message_number.to_numpy().ravel()]
+    said = runs.message.to_numpy().ravel()
     assert said[0] == "none"
     assert STILL_MOVING in said[1]
 

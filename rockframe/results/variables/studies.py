@@ -8,8 +8,9 @@ from rockframe.units import Unit
 
 CASE: Final = "case"
 MOTION: Final = "motion"
-MESSAGE: Final = "message"
 """Dimensions of sweeps, beside their axes."""
+MESSAGE: Final = "message"
+"""What is said of each case."""
 REPEATED: Final = "repeated"
 VERDICT_CHANGED: Final = "verdict_changed"
 """What is told of each case of a screened sweep."""
@@ -66,7 +67,7 @@ CRITICAL_SCALE: Final = (
 SWEEP: Final = (
     counting(CASE, "number of the row in the table of cases"),
     Variable(MOTION, (MOTION,), None, "ground motion", dtype="str"),
-    Variable(MESSAGE, (MESSAGE,), None, "what is said of cases, each text once", dtype="str"),
+    Variable(MESSAGE, (), None, "what is said of the case, none if nothing", dtype="str"),
     Variable(
         REPEATED,
         (),
@@ -75,7 +76,6 @@ SWEEP: Final = (
         dtype="bool",
     ),
     Variable(VERDICT_CHANGED, (), None, "whether the case then had another verdict", dtype="bool"),
-    count("message_number", "place along message of what is said of the case"),
 )
 """Of a sweep, beside the scalars of its runs."""
 

@@ -236,6 +236,19 @@ class Grid:
         shape = [self.sizes[name] for name in self.order]
         return int(np.ravel_multi_index([place[name] for name in self.order], shape))
 
+    def numbers(self, key: Sequence[Any]) -> Generic:
+        """Give the numbers, in the order of running, of the cases at places along all dimensions.
+
+        Of each dimension, in that of `sizes`, a place, a slice or a row of places.
+        """
+        found = np.zeros((), dtype=np.int64)
+        for (name, size), one in zip(self.sizes.items(), key, strict=True):
+            later = self.order[self.order.index(name) + 1 :]
+            step = math.prod(self.sizes[each] for each in later)
+            places = np.arange(*one.indices(size)) if isinstance(one, slice) else np.asarray(one)
+            found = np.add.outer(found, np.where(places < 0, places + size, places) * step)
+        return found
+
     def arranged(self, values: Generic) -> Generic:
         """Bring values from the order of running into that of the dimensions."""
         shape = [self.sizes[name] for name in self.order]

@@ -1,6 +1,7 @@
 """Running the chunks of a sweep, several at a time, and how far that has come."""
 
 import sys
+import time
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -13,7 +14,6 @@ from concurrent.futures import (
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
 from threading import Event
 from typing import Any, Final, Protocol, runtime_checkable
 
@@ -130,8 +130,10 @@ def _made(given: object, owner: str, unit: str) -> ProgressBar:
     return _Bar(kind, owner, unit, _DELAY if given is None else 0.0)
 
 
-IN_FLIGHT: Final = 256
-"""Most chunks that are handed out at once; their jobs have to be held meanwhile."""
+_PER_WORKER: Final = 2
+"""Chunks that are handed out at once, so that no worker waits for its next one."""
+_MANY: Final = 128
+"""Workers of an executor that does not tell how many it has."""
 _GLANCE: Final = 0.2
 """Longest wait in which an interrupt might go unheard [s]."""
 
@@ -144,13 +146,36 @@ class Chunk:
     cases: range
 
 
+_END: Final = Chunk(-1, range(0))
+"""What follows the last chunk."""
+
+
+def workers_of(executor: Executor | None) -> int:
+    """Give how many chunks an executor can run at once."""
+    if executor is None:
+        return worker_count()
+    for name in ("_max_workers", "num_workers"):  # of Python's own, of joblib and of mpi4py
+        found = getattr(executor, name, None)
+        if isinstance(found, int) and found > 0:
+            return found
+    client: Any = getattr(executor, "_client", None)
+    if hasattr(client, "nthreads"):  # dask; one that grows with the work may have none yet
+        return max(1, sum(client.nthreads().values()))
+    return _MANY
+
+
 def run_chunks(
-    chunks: Iterable[Chunk],
+    chunks: Iterable[Chunk | None],
     job_of: Callable[[Chunk], SweepJob],
     take: Callable[[Chunk, CaseResults], None],
     executor: Executor | None,
+    glance: Callable[[], None] = lambda: None,
 ) -> bool:
-    """Run chunks, and hand on what they showed as they are done."""
+    """Run chunks, and hand on what they showed as they are done.
+
+    None among the chunks says that all others are run elsewhere by now; then it is asked again.
+    `glance` is called from time to time meanwhile.
+    """
     if executor is not None and not hasattr(executor, "submit"):
         msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {shown(executor)}"
         raise ComponentError(msg)
@@ -160,13 +185,24 @@ def run_chunks(
     with _own_threads() if executor is None else _of_the_user(executor) as pool:
         run = partial(run_chunk, stopped=stop.is_set) if executor is None else run_chunk
         try:
-            while True:
-                for chunk in islice(waiting, IN_FLIGHT - len(going)):
-                    going[pool.submit(run, job_of(chunk))] = chunk
-                if not going:
-                    return True
-                done, _ = wait(going, timeout=_GLANCE, return_when=FIRST_COMPLETED)
-                _take_all(done, going, take)
+            some_left = True
+            while some_left or going:
+                most = _PER_WORKER * workers_of(executor) if some_left else 0
+                while some_left and len(going) < most:
+                    chunk = next(waiting, _END)
+                    if chunk is None:
+                        break
+                    if chunk is _END:
+                        some_left = False
+                    else:
+                        going[pool.submit(run, job_of(chunk))] = chunk
+                if going:
+                    done, _ = wait(going, timeout=_GLANCE, return_when=FIRST_COMPLETED)
+                    _take_all(done, going, take)
+                elif some_left:
+                    time.sleep(_GLANCE)
+                glance()
+            return True
         except KeyboardInterrupt:
             stop.set()
             for one in going:

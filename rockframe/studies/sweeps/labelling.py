@@ -82,37 +82,28 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
     """Label what has been found."""
     grid = labels.grid
     rows = _joined(grid.count, found)
-    always = ALWAYS + (SCREENED if labels.attributes["accuracy"] == SCREEN else ())
-    scalars = dict.fromkeys(always, np.full(grid.count, np.nan))
-    if labels.points:
-        gaps = np.full((grid.count, len(labels.points)), np.nan)
-        scalars |= {row.name: gaps for row in POINT_PEAKS}
+    gaps = np.full((grid.count, len(labels.points)), np.nan)
+    scalars = {
+        name: gaps if SCHEMA[name].dims else np.full(grid.count, np.nan)
+        for name in names_of_scalars(labels)
+    }
     driver = _driver(rows.scalars.get(DRIVER, np.empty(0)))
     scalars |= rows.scalars
     # what cannot be counted before it has run stays a flag, also where nothing has
     rows.scalars.clear()  # what has been arranged need not be there twice
     values = {name: grid.arranged(scalars.pop(name)) for name in SCHEMA if name in scalars}
-    values |= {
-        "status": grid.arranged(rows.status),
-        "message_number": grid.arranged(rows.message),
-    }
+    values["status"] = grid.arranged(rows.status)
+    # as objects, each text is there once
+    texts = np.array(rows.texts, dtype=object)[grid.arranged(rows.message)]
+    said = xr.Variable(tuple(grid.sizes), texts, SCHEMA[MESSAGE].attributes())
     runs = build_dataset(values, {}, over=tuple(grid.sizes))
-    around: dict[str, Any] = {MESSAGE: np.array(rows.texts, dtype=object)}
-    if MOTION in grid.sizes:
-        around[MOTION] = np.array(labels.motions, dtype=object)
-    if CASE in grid.sizes:
-        around[CASE] = np.arange(grid.sizes[CASE])
-    if labels.histories is not None:
-        around[TIME[0]] = labels.histories.times
-    if labels.points:
-        around |= point_labels(labels.points)
     attributes = {
         "verdict": whole_verdict(runs),
         CASE_COUNT: grid.count,
         "driver": driver,
         **labels.attributes,
     }
-    dataset = build_dataset(around, attributes, title=_TITLE).assign(runs.data_vars)
+    dataset = around_cases(labels, attributes).assign(runs.data_vars)
     if rows.histories:
         histories = {
             name: grid.arranged(rows.histories.pop(name))
@@ -120,7 +111,34 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
             if name in rows.histories
         }
         dataset = dataset.assign(build_dataset(histories, {}, over=tuple(grid.sizes)).data_vars)
-    dataset = dataset.assign_coords(_coordinates(labels))
+    return with_coordinates(dataset, labels, said)
+
+
+def names_of_scalars(labels: Labels) -> tuple[str, ...]:
+    """Give the scalars, and peaks at points, that all cases have, also before any has been run."""
+    screened = SCREENED if labels.attributes["accuracy"] == SCREEN else ()
+    peaks = tuple(row.name for row in POINT_PEAKS) if labels.points else ()
+    return ALWAYS + screened + peaks
+
+
+def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) -> xr.Dataset:
+    """Give the dataset of a sweep without its results."""
+    sizes = labels.grid.sizes
+    around: dict[str, Any] = {}
+    if MOTION in sizes:
+        around[MOTION] = np.array(labels.motions, dtype=object)
+    if CASE in sizes:
+        around[CASE] = np.arange(sizes[CASE])
+    if labels.histories is not None:
+        around[TIME[0]] = labels.histories.times
+    if labels.points:
+        around |= point_labels(labels.points)
+    return build_dataset(around, attributes, title=_TITLE)
+
+
+def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
+    """Add the axes, and what is said of the cases."""
+    dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
     for name in dataset.coords:
         # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
         dataset[name].encoding["_FillValue"] = None

@@ -53,6 +53,7 @@ _FLOAT: Final = 8.0
 """Size of a number [bytes]."""
 _COPIES: Final = 2.5
 """How often a number is there at once: of its chunk, of all, some in the order of the axes too."""
+_LAZILY: Final = "they are read from the store as they are used (rf.open_study, lazy=True)"
 _TOLD: Final = 0.5
 """Share of what there is from which on it is told what a study needs."""
 _MEMORY: Final = Path("/proc/meminfo")
@@ -180,9 +181,14 @@ def plan_study(
     cases: object,
     *,
     period: QuantityLike | None = None,
+    kept: bool | None = None,
     **asked: Any,
 ) -> Study:
-    """Check the arguments of a sweep."""
+    """Check the arguments of a sweep.
+
+    `kept` tells whether there is a store, from which a result that is larger than the memory
+    can be read lazily; None where the whole result is needed at once.
+    """
     faults: list[str] = []
 
     def tried(read: Callable[[], Read], otherwise: Read) -> Read:
@@ -229,19 +235,28 @@ def plan_study(
     if not 0 < grid.count <= MOST_CASES:
         faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
     faults += _without_length(made, given, arguments)
-    kept = tried(lambda: kept_histories(made, given, arguments, outputs), None)
-    numbers = numbers_of_case(arguments, kept, screened=screened)
-    faults += check_memory(numbers, grid.count, _remedies(arguments, kept), owner=OWNER)
+    histories = tried(lambda: kept_histories(made, given, arguments, outputs), None)
+    numbers = numbers_of_case(arguments, histories, screened=screened)
+    way_out = _LAZILY if kept else _remedies(arguments, histories, may_be_kept=kept is False)
+    too_large = check_memory(numbers, grid.count, way_out, owner=OWNER)
+    if kept and not faults:
+        for told in too_large:
+            warn(f"{OWNER}: {told}", SolverWarning)
+    else:
+        faults += too_large
     if faults:
         raise StudyError(*faults)
-    return Study(made, grid, given, arguments, seconds, kept, screened=screened)
+    return Study(
+        made, grid, given, arguments, seconds, histories, screened=screened, lazy=bool(too_large)
+    )
 
 
-def _remedies(arguments: RunRequest, kept: Histories | None) -> str:
+def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool) -> str:
     """Say what would need less memory."""
     ways = ["run fewer cases"]
+    ways += ["give a store, from which they are read as they are used"] if may_be_kept else []
     ways += ["name fewer points"] if arguments.points else []
-    if kept is not None:
+    if histories is not None:
         ways += ["name fewer outputs", "give a longer output_step", "keep none: outputs=None"]
     return f"{', '.join(ways[:-1])} or {ways[-1]}" if len(ways) > 1 else ways[0]
 

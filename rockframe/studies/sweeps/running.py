@@ -1,10 +1,13 @@
 """A planned sweep, from its chunks to the labelled dataset, in memory or in a folder."""
 
+import math
+import time
+from collections.abc import Iterator
 from concurrent.futures import Executor
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import xarray as xr
 
@@ -16,17 +19,23 @@ from rockframe.studies.sweeps.axes import OWNER, chunks_of
 from rockframe.studies.sweeps.case import remember
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
-from rockframe.studies.sweeps.execution import Chunk, ProgressBar, run_chunks
+from rockframe.studies.sweeps.claims import Claims
+from rockframe.studies.sweeps.execution import Chunk, ProgressBar, run_chunks, workers_of
 from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
+from rockframe.studies.sweeps.lazily import lazy_dataset
 from rockframe.studies.sweeps.store import Store, begin_with
-from rockframe.studies.sweeps.study import Study, worker_count
-from rockframe.studies.sweeps.words import say_what_is_missing
+from rockframe.studies.sweeps.study import Study
+from rockframe.studies.sweeps.words import cases_verdict, say_what_is_missing
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
 
 _LARGEST_CHUNK: Final = 1_000_000
+_DAY: Final = 86_400.0
+"""A day [s]."""
 _GLIMPSE: Final = 1e-3
 """Share of a run that tells whether its law can be compiled."""
+_LOOK: Final = 1.0
+"""Time between two looks at what other jobs have run [s]."""
 
 
 def run_study(
@@ -38,20 +47,36 @@ def run_study(
     chunk: int | None = None,
 ) -> xr.Dataset:
     """Run the cases of a study that are not kept yet, and label all of them."""
+    workers = workers_of(executor)
+    as_python = _runs_as_python(study) if chunk is None else not COMPILED
     size = (
-        study.chunk_size(worker_count(), as_python=_runs_as_python(study))
+        study.chunk_size(workers, as_python=as_python)
         if chunk is None
         else whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
     )
+    _say_how_long(study, workers, as_python=as_python, kept=store is not None)
     remember(study)
     if store is None:
         dataset, whole = _in_memory(study, size, executor, bar)
     else:
         dataset, whole = _kept(study, folder_of(store), size, executor, bar)
     if not whole:
-        warn(f"{OWNER}: interrupted; {dataset.attrs['verdict']}", SolverWarning)
-    say_what_is_missing(dataset)
+        warn(f"{OWNER}: interrupted; {cases_verdict(dataset)}", SolverWarning)
+    if not study.lazy:
+        say_what_is_missing(dataset)
     return dataset
+
+
+def _say_how_long(study: Study, workers: int, *, as_python: bool, kept: bool) -> None:
+    """Warn of what takes more than a day."""
+    days = study.grid.count * study.time_of_case(as_python=as_python) / workers / _DAY
+    if days > 1.0:
+        ways = "several jobs on it share the work" if kept else "with one a kill would not lose it"
+        warn(
+            f"{OWNER}: {study.grid.count} cases take about {days:.2g} days with {workers} workers, "
+            f"by the lengths of the motions; {'the' if kept else 'there is no'} store: {ways}",
+            SolverWarning,
+        )
 
 
 def _runs_as_python(study: Study) -> bool:
@@ -99,19 +124,43 @@ def _kept(
     done = study.grid.count - sum(len(one.cases) for one in missing)
     bar.expect(study.grid.count, done)
 
-    def still_missing() -> Any:
-        for one in begin_with(missing) if some else missing:
-            if kept.has(one):  # another process has run it meanwhile
-                bar.update(len(one.cases))
-            else:
-                yield one
+    claims = Claims(folder)
 
     def take(one: Chunk, rows: CaseResults) -> None:
         kept.put(one, rows)
+        claims.let_go(one.number)
         bar.update(len(one.cases))
 
-    whole = run_chunks(still_missing(), lambda one: study.job(one.cases), take, executor)
-    return stored_dataset(kept), whole
+    free = _free(begin_with(missing) if some else missing, kept, claims, bar)
+    try:
+        whole = run_chunks(free, lambda one: study.job(one.cases), take, executor, claims.live)
+    finally:
+        claims.let_all_go()
+    if whole:
+        claims.clear()
+    return lazy_dataset(kept) if study.lazy else stored_dataset(kept), whole
+
+
+def _free(
+    missing: list[Chunk], kept: Store, claims: Claims, bar: ProgressBar
+) -> Iterator[Chunk | None]:
+    """Give the chunks that no other job has, as they are claimed; None while others have them."""
+    looked = -math.inf
+    while missing:
+        if time.monotonic() - looked < _LOOK:
+            yield None
+            continue
+        looked, others = time.monotonic(), []
+        for one in missing:
+            mine = not kept.has(one) and claims.take(one.number)
+            if kept.has(one):  # another job has run it, maybe a moment ago
+                claims.let_go(one.number)
+                bar.update(len(one.cases))
+            elif mine:
+                yield one
+            else:
+                others.append(one)
+        missing = others
 
 
 def stored_dataset(kept: Store) -> xr.Dataset:

@@ -72,6 +72,18 @@ def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
     return head["described"], arrays
 
 
+def read_shapes(path: Path) -> dict[str, tuple[int, ...]]:
+    """Read which arrays a file has, and their shapes, without looking at anything else."""
+    with path.open("rb") as file:
+        file.readline()
+        try:
+            head = json.loads(file.readline())
+            return {name: tuple(shape) for name, _, shape in head["arrays"]}
+        except (ValueError, KeyError, TypeError) as problem:
+            msg = f"{path}: damaged: {problem}; remove the file, and its cases are run again"
+            raise StudyError(msg) from problem
+
+
 def write_whole(path: Path, content: bytes, *, replace: bool = True) -> bool:
     """Write a file so that others see all of it or nothing, even if this process is killed."""
     part = path.with_name(f".{path.name}.{os.getpid()}.{os.urandom(4).hex()}.part")
@@ -126,6 +138,8 @@ _LEFT_OVER: Final = 3600.0
 """Age from which on a half-written file belongs to a process that was killed [s]."""
 _COLUMN: Final = "motion of case"
 _SCALAR, _HISTORY, _MOTION = "scalar ", "history ", "motion "
+_OF_CHUNKS: Final = ("status", "message")
+"""What every chunk has beside scalars and histories."""
 _SAMPLED: Final = ("horizontal", "vertical")
 
 
@@ -175,8 +189,7 @@ class Store:
     def put(self, chunk: Chunk, rows: CaseResults) -> None:
         """Keep what a chunk showed."""
         arrays = {
-            "status": rows.status,
-            "message": rows.message,
+            **dict(zip(_OF_CHUNKS, (rows.status, rows.message), strict=True)),
             **{f"{_SCALAR}{name}": each for name, each in sorted(rows.scalars.items())},
             **{f"{_HISTORY}{name}": each for name, each in sorted(rows.histories.items())},
         }
@@ -208,7 +221,7 @@ class Store:
                 f"{chunk.cases.stop - 1}"
             )
             raise StudyError(msg)
-        status, message = arrays.pop("status"), arrays.pop("message")
+        status, message = (arrays.pop(name) for name in _OF_CHUNKS)
         scalars, histories = (
             {
                 name.removeprefix(kind): each
@@ -224,6 +237,15 @@ class Store:
         for chunk in self.chunks():
             if self.has(chunk):
                 yield chunk.cases, self.get(chunk)
+
+    def contents(self) -> tuple[dict[str, tuple[int, ...]], int]:
+        """Give the scalars and histories that are there, with shapes beside cases; count chunks."""
+        files = [*self.folder.glob("chunk-*.arrays")]
+        found: dict[str, tuple[int, ...]] = {}
+        for file in files:
+            for name, shape in read_shapes(file).items():
+                found[name.removeprefix(_SCALAR).removeprefix(_HISTORY)] = shape[1:]
+        return {name: found[name] for name in found if name not in _OF_CHUNKS}, len(files)
 
     def labels(self) -> Labels:
         """Read the labels of the study."""
@@ -385,6 +407,6 @@ def _remove_left_over(path: Path) -> None:
 
 
 def begin_with(chunks: list[Chunk]) -> list[Chunk]:
-    """Let each process begin elsewhere, so that several on one study do not run the same."""
+    """Let each process begin elsewhere, so that several on one study seldom ask for the same."""
     first = (os.getpid() * 2_654_435_761) % len(chunks) if chunks else 0
     return [*chunks[first:], *chunks[:first]]

@@ -1,7 +1,7 @@
 """A sweep that has been planned: all that its results depend on."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
 
@@ -85,6 +85,8 @@ class Study:
     histories: Histories | None = None  # what is kept beside scalars
     # whether each case is run twice, and again by tolerance where its verdict is in doubt
     screened: bool = False
+    # whether the result is larger than the memory, which is no part of what it is
+    lazy: bool = field(default=False, compare=False)
 
     def job(self, cases: range) -> SweepJob:
         """Give the job of some cases."""
@@ -146,14 +148,16 @@ class Study:
         """The sha256 of :meth:`to_dict`."""
         return digest_of(self.to_dict())
 
-    def chunk_size(self, workers: int, *, as_python: bool) -> int:
-        """Give a number of cases that takes long enough, and leaves work for all workers."""
+    def time_of_case(self, *, as_python: bool) -> float:
+        """Give about how long a case takes among others [s]."""
         one = self._time_of_case()
         if as_python:
-            one *= _SLOWER
-        elif self.patience is not None:
-            one *= IN_LANES
-        size = LONG_ENOUGH / one
+            return one * _SLOWER
+        return one if self.patience is None else one * IN_LANES
+
+    def chunk_size(self, workers: int, *, as_python: bool) -> int:
+        """Give a number of cases that takes long enough, and leaves work for all workers."""
+        size = LONG_ENOUGH / self.time_of_case(as_python=as_python)
         fair = -(-self.grid.count // (4 * workers))
         return int(max(1, min(size, fair, LARGEST_CHUNK)))
 

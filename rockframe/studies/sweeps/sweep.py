@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+from rockframe.arguments import truth
 from rockframe.errors import StudyError, shown
 from rockframe.shared_arguments import documented_by
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.studies.sweeps.execution import bar_of
+from rockframe.studies.sweeps.lazily import lazy_dataset
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.running import folder_of, run_study, stored_dataset
 from rockframe.studies.sweeps.store import Store
@@ -92,8 +94,8 @@ def sweep(
     xarray.Dataset
         All scalars of a run, over ``case`` if there is a table, the axes in the order given,
         and ``motion``; histories over ``time`` too. Of a case that could not be
-        assembled or finished ``status`` tells, its ``message_number`` gives the place of the
-        reason along ``message``, and its scalars are NaN. Truth values, flags and counts are
+        assembled or finished ``status`` tells, the coordinate ``message`` says why, and its
+        scalars are NaN. Truth values, flags and counts are
         floats where that leaves gaps. Screened sweeps have ``repeated`` and ``verdict_changed``.
 
     Raises
@@ -107,7 +109,8 @@ def sweep(
     Warns
     -----
     SolverWarning
-        Cases have no result, or have not been run after an interrupt (Ctrl-C).
+        Cases have no result, or have not been run after an interrupt (Ctrl-C). It will take more
+        than a day. The result does not fit into memory: then it is opened lazily from the store.
     ModelWarning
         Values are unusual, or runs are to be used with care.
 
@@ -150,18 +153,23 @@ def sweep(
         outputs=outputs,
         points=points,
         overturning=overturning,
+        kept=store is not None,
     )
     with bar_of(progress, owner=OWNER) as bar:
         return run_study(study, bar, store=store, executor=executor, chunk=chunk)
 
 
-def open_study(path: "str | PathLike[str]") -> xr.Dataset:
+def open_study(path: "str | PathLike[str]", *, lazy: bool = False) -> xr.Dataset:
     """Read what a sweep has kept so far, also while it runs.
 
     Parameters
     ----------
     path : str or path
         The `store` of a :func:`rockframe.sweep`.
+    lazy : bool, optional
+        Whether numbers are read from the folder when they are used, and not before: for studies
+        that are larger than the memory. Truth values, flags and counts are floats then. Where
+        dask is installed the variables are arrays of dask.
 
     Returns
     -------
@@ -173,4 +181,6 @@ def open_study(path: "str | PathLike[str]") -> xr.Dataset:
     StudyError
         There is no study, it is damaged, or another version of rockframe wrote it.
     """
-    return stored_dataset(Store.at(folder_of(path)))
+    kept = Store.at(folder_of(path))
+    later = truth(lazy, owner="open_study", name="lazy")
+    return lazy_dataset(kept) if later else stored_dataset(kept)

@@ -26,11 +26,13 @@ _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]
 def cases_verdict(dataset: xr.Dataset) -> str:
     """Say what became of the cases of a dataset: of a whole result as its attribute does."""
     said, whole = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
-    if not said or whole is None or "status" not in dataset:
+    if whole is None or "status" not in dataset:
         return said
     status = dataset["status"]
-    if status.size == whole or status.dtype.kind not in "iu":  # such as a mean
+    if status.dtype.kind not in "iu":  # such as a mean
         return said
+    if status.size == whole:  # one that is read when it is used has no verdict before
+        return said or whole_verdict(dataset)
     some = f"{status.size} of the {whole} cases of the sweep"
     return cases_sentence(dataset, f"Of {some if status.size < whole else f'{status.size} cases'}")
 
@@ -65,19 +67,18 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
 def say_what_is_missing(dataset: xr.Dataset) -> None:
     """Warn of cases without a result, and of cautions."""
     status = dataset["status"].to_numpy().ravel()
-    number = dataset["message_number"].to_numpy().ravel()
-    texts = dataset[MESSAGE].to_numpy()
+    message = dataset[MESSAGE].to_numpy().ravel()
     lacking = np.isnan(dataset["peak_rotation"].to_numpy().ravel())
     not_run = status == RunStatus.NOT_RUN
     failed = lacking & ~not_run
     for which, kind, words in (
         (failed, SolverWarning, "have no result"),
         (not_run, SolverWarning, "have not been run"),
-        (~lacking & (texts[number] != NONE), ModelWarning, "have a result to be careful with"),
+        (~lacking & (message != NONE), ModelWarning, "have a result to be careful with"),
     ):
         if which.any():
-            first = number[which][0]
-            text, those = str(texts[first]), int((number[which] == first).sum())
+            text = str(message[which][0])
+            those = int((message[which] == text).sum())
             said = "" if text == NONE else f"; of {those} of them it is said: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
             warn(f"{OWNER}: {count} {words} (status, message){said}", kind)

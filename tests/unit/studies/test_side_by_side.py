@@ -279,7 +279,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
     runs = rf.sweep(scene, MOTIONS[0], width=[0.8, 1.0], accuracy="fast")
     assert runs.status.values.ravel().tolist() == [1, 6]
-    assert not any("error in rockframe" in text for text in runs.message.values)
+    assert not any("error in rockframe" in text for text in runs.message.values.ravel())
 
 
 def test_lanes_are_compiled_where_they_save_more_than_that_takes(monkeypatch):

@@ -95,7 +95,7 @@ def test_what_a_case_gives_depends_on_nothing_else(plain, who):
 def test_cases_without_a_result_are_gaps_with_a_reason(plain):
     squat = plain.sel(height=0.3)
     assert (squat.status == RunStatus.REFUSED).all()
-    told = plain.message[plain.message_number]
+    told = plain.message
     assert told.dims == plain.status.dims
     assert all("cannot rock" in text for text in told.sel(height=0.3).values.ravel())
     assert set(told.sel(height=[3.0, 4.0]).values.ravel()) <= {"none", STILL_MOVING}
@@ -154,7 +154,7 @@ def test_runs_that_cannot_be_finished_have_their_status():
     broken = first if first.status == Status.STEP_LIMIT else second
     assert broken.status.item() == Status.STEP_LIMIT
     assert broken.peak_rotation.isnull()
-    assert "limit of steps" in runs.message[int(broken.message_number)].item()
+    assert "limit of steps" in broken.message.item()
 
 
 def test_statuses_are_those_of_runs_and_two_more():
@@ -169,7 +169,7 @@ def test_what_a_run_warns_of_is_kept_and_summed_up():
     with pytest.warns(ModelWarning, match="1 of 2 cases have a result to be careful with") as said:
         runs = rf.sweep(system, [PULSE, lifting], scale=[1.0], **FAST)
     assert len(said) == 1
-    text = runs.message[int(runs.message_number[0, 1])].item()
+    text = runs.message[0, 1].item()
     with pytest.warns(ModelWarning):
         assert system.simulate(lifting, **FAST, outputs=None).attrs["cautions"] == text
     assert runs.peak_rotation.notnull().all()
@@ -182,8 +182,8 @@ def test_what_a_scene_warns_of_is_kept_too(scene):
     with pytest.warns(ModelWarning, match="1 of 2 cases have a result to be careful with") as said:
         runs = rf.sweep(scene, PULSE, frequency_ratio=[5, 20], **FAST)
     assert len(said) == 1
-    assert "too soft to hold" in runs.message[runs.message_number].values[0, 0]
-    assert runs.message_number.values[1, 0] == 0
+    assert "too soft to hold" in runs.message.values[0, 0]
+    assert runs.message.values[1, 0] == "none"
 
 
 def test_whatever_a_function_raises_is_its_case_s_alone():
@@ -194,7 +194,7 @@ def test_whatever_a_function_raises_is_its_case_s_alone():
 
     with pytest.warns(SolverWarning, match="2 of 3"):
         runs = rf.sweep(scene, PULSE, width=["0.4 m", "0.8 m", "1.2 m"], **FAST)
-    told = runs.message[runs.message_number].values[:, 0].tolist()
+    told = runs.message.values[:, 0].tolist()
     assert "must return a System, got None" in told[0]
     assert told[1:] == ["none", "ZeroDivisionError: division by zero"]
     assert runs.status.values[:, 0].tolist() == [RunStatus.REFUSED, 0, RunStatus.REFUSED]

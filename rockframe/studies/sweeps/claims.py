@@ -1,0 +1,154 @@
+"""Which chunks of a kept study are being run, and by which job: several jobs share the work.
+
+A claim is a file that only one job can make. It says who has made it, and its time of change is set
+anew while that job lives. Claims save work, and prove nothing: a chunk appears whole, and is the
+same whoever runs it, so that a claim that is lost or damaged costs time and no result.
+"""
+
+import json
+import os
+import platform
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Final
+
+from rockframe.errors import StudyError
+
+_CLAIMS: Final = "claims"
+"""Folder of claims, in that of a study."""
+_BEAT: Final = 10.0
+"""Time after which a living job says again that it lives [s]."""
+_SILENCE: Final = 150.0
+"""Time of silence after which a job is dead; longer than shared file systems keep what they told
+before [s]."""
+_PROCESSES: Final = Path("/proc")
+
+
+class Claims:
+    """The claims on chunks of a study, as one job sees and makes them.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the study.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder / _CLAIMS
+        self._own: dict[int, Path] = {}
+        # when a claim of another job was last changed by its machine's clock, and since when this
+        # one has seen no other change, by its own clock
+        self._seen: dict[Path, tuple[int, float]] = {}
+        self._said = time.monotonic()
+
+    def take(self, number: int) -> bool:
+        """Claim a chunk, unless a living job has it; of several that try at once, one gets it."""
+        claims = [*self._folder.glob(f"{number:06d}-*")]
+        last = max(claims, key=_heir, default=None)
+        if last is not None and not self._is_dead(last):
+            return False
+        # that of a dead job stays: what is never removed cannot be removed by two
+        path = self._folder / f"{number:06d}-{0 if last is None else _heir(last) + 1:03d}"
+        try:
+            self._folder.mkdir(exist_ok=True)
+            return self._make(number, path)
+        except OSError as problem:
+            msg = f"{path} cannot be written: {problem}; the same call goes on from what is kept"
+            raise StudyError(msg) from problem
+
+    def _make(self, number: int, path: Path) -> bool:
+        try:
+            file = path.open("x", encoding="utf-8")
+        except (FileExistsError, FileNotFoundError):  # another job was faster, or has tidied up
+            return False
+        self._own[number] = path
+        with file:
+            json.dump(_this_job(), file)
+        return True
+
+    def let_go(self, number: int) -> None:
+        """Give up a chunk that has been run, or will not be."""
+        path = self._own.pop(number, None)
+        if path is not None:
+            with suppress(OSError):  # what stays is the claim of a dead job
+                path.unlink(missing_ok=True)
+
+    def let_all_go(self) -> None:
+        """Give up all chunks."""
+        for number in [*self._own]:
+            self.let_go(number)
+
+    def live(self) -> None:
+        """Say that this job lives, if it has not done so for a while."""
+        now = time.monotonic()
+        if now - self._said < _BEAT:
+            return
+        self._said = now
+        for path in self._own.values():
+            with suppress(OSError):
+                os.utime(path)
+
+    def clear(self) -> None:
+        """Remove all claims, once all chunks are there."""
+        with suppress(OSError):
+            for path in [*self._folder.glob("*")]:
+                path.unlink(missing_ok=True)
+            self._folder.rmdir()
+
+    def _is_dead(self, claim: Path) -> bool:
+        """Whether the job that made a claim is there no more."""
+        try:
+            changed, said = claim.stat().st_mtime_ns, claim.read_bytes()
+        except OSError:  # given up in this moment
+            return False
+        if _is_gone(said):
+            return True
+        now = time.monotonic()
+        before, since = self._seen.get(claim, (changed, now))
+        if before != changed:
+            since = now
+        self._seen[claim] = changed, since
+        return now - since > _SILENCE
+
+
+def _heir(claim: Path) -> int:
+    """Give how many jobs had a chunk before the one that made a claim; -1 of a foreign file."""
+    try:
+        return int(claim.name.partition("-")[2])
+    except ValueError:
+        return -1
+
+
+def _this_job() -> dict[str, Any]:
+    """Describe this process, so that others on its machine can tell whether it lives."""
+    return {"machine": _machine(), "process": os.getpid(), "begun": _begun(os.getpid())}
+
+
+def _is_gone(said: bytes) -> bool:
+    """Whether a claim is that of a process of this machine that has ended."""
+    try:
+        job = json.loads(said)
+        machine, process, begun = job["machine"], int(job["process"]), job["begun"]
+    except (ValueError, TypeError, KeyError):  # damaged, or not yet written: its age will tell
+        return False
+    return begun is not None and machine == _machine() and _begun(process) != begun
+
+
+def _machine() -> list[str]:
+    """Describe where process numbers mean the same: a machine since its start, or a container."""
+    found = [platform.node()]
+    for path in ("sys/kernel/random/boot_id", "self/ns/pid"):
+        with suppress(OSError):
+            place = _PROCESSES / path
+            found.append(os.readlink(place) if place.is_symlink() else place.read_text().strip())
+    return found
+
+
+def _begun(process: int) -> str | None:
+    """Give when a process of this machine was begun; None where there is none, or no telling."""
+    with suppress(OSError, IndexError):
+        told = (_PROCESSES / str(process) / "stat").read_text()
+        state, *rest = told.rpartition(")")[2].split()  # numbered from the third field on
+        return None if state == "Z" else rest[18]
+    return None

@@ -1,0 +1,127 @@
+"""A study that is kept, as a dataset of which only that is read from the chunks which is used."""
+
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib.util import find_spec
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+import xarray as xr
+from xarray.backends import BackendArray
+from xarray.core import indexing
+
+from rockframe.results.joining import CASE_COUNT
+from rockframe.results.outcome import Generic
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.runs import RunStatus
+from rockframe.results.variables.studies import MESSAGE
+from rockframe.simulation.run import NONE
+from rockframe.studies.sweeps.axes import Grid
+from rockframe.studies.sweeps.chunk import CaseResults
+from rockframe.studies.sweeps.execution import Chunk
+from rockframe.studies.sweeps.labelling import around_cases, names_of_scalars, with_coordinates
+from rockframe.studies.sweeps.store import Store
+
+_STATUS: Final = "status"
+_AT_HAND: Final = 8
+"""Chunks that stay in memory, as variables of the same cases are often used together."""
+_BLOCK: Final = 1_000_000
+"""Numbers of a block of dask, or those of a chunk where these are more."""
+_Key: TypeAlias = tuple[Any, ...]
+"""For each dimension a whole number, a slice, or a row of whole numbers."""
+
+
+def lazy_dataset(kept: Store) -> xr.Dataset:
+    """Give what a folder holds as a dataset that is read when it is used.
+
+    With dask its variables are dask arrays, whose blocks lie along the chunks.
+    """
+    labels = kept.labels()
+    grid, over = labels.grid, tuple(labels.grid.sizes)
+    shapes, done = kept.contents()
+    points = (len(labels.points),)
+    beside = {name: points if SCHEMA[name].dims else () for name in names_of_scalars(labels)}
+    beside |= {name: shape for name, shape in shapes.items() if name in SCHEMA}
+
+    def variable(name: str, kind: str, shape: tuple[int, ...]) -> xr.Variable:
+        row = SCHEMA[name]
+        data = indexing.LazilyIndexedArray(_Column(kept, grid, name, kind, shape))
+        # nobody knows yet whether there are gaps, so that all but texts and status may have some
+        attributes = row.attributes("float64" if kind == "f8" else None)
+        return xr.Variable((*over, *row.dims), data, attributes)
+
+    columns = {name: variable(name, "f8", beside[name]) for name in SCHEMA if name in beside}
+    attributes = {CASE_COUNT: grid.count, **labels.attributes}
+    dataset = around_cases(labels, attributes).assign(columns)
+    dataset = dataset.assign({_STATUS: variable(_STATUS, "i1", ())})
+    dataset = with_coordinates(dataset, labels, variable(MESSAGE, "O", ()))
+    dataset.attrs["history"] = kept.history
+    if find_spec("dask") is None:
+        return dataset
+    return dataset.chunk(blocks(grid, max(_BLOCK, kept.chunk)), token=f"{kept.digest} {done}")
+
+
+def blocks(grid: Grid, most: int) -> dict[str, int]:
+    """Give the lengths of blocks of cases that follow one another in the order of running."""
+    found: dict[str, int] = {}
+    for dim in reversed(grid.order):
+        found[dim] = max(1, min(grid.sizes[dim], most))
+        most = most // grid.sizes[dim]
+    return found
+
+
+class _Column(BackendArray):
+    """A variable over the cases of a study."""
+
+    def __init__(
+        self, kept: Store, grid: Grid, name: str, kind: str, beside: tuple[int, ...]
+    ) -> None:
+        self._kept, self._grid, self._name, self._beside = kept, grid, name, beside
+        self.shape = (*grid.sizes.values(), *beside)
+        self.dtype = np.dtype(kind)
+
+    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
+        """Read what is asked for."""
+        support = indexing.IndexingSupport.OUTER
+        return indexing.explicit_indexing_adapter(key, self.shape, support, self._picked)
+
+    def _picked(self, key: _Key) -> Generic:
+        dims = len(self._grid.sizes)
+        numbers = self._grid.numbers(key[:dims])
+        found = self._of_cases(numbers.ravel()).reshape((*numbers.shape, *self._beside))
+        for axis, one in reversed([*enumerate(key[dims:], start=numbers.ndim)]):
+            found = found[(*[slice(None)] * axis, one)]
+        return found
+
+    def _of_cases(self, numbers: Generic) -> Generic:
+        """Read cases by their numbers in the order of running."""
+        found = np.full((len(numbers), *self._beside), _GAPS.get(self._name, np.nan), self.dtype)
+        of_chunk = numbers // self._kept.chunk
+        order = np.argsort(of_chunk, kind="stable")
+        used, firsts = np.unique(of_chunk[order], return_index=True)
+        for number, places in zip(used.tolist(), np.split(order, firsts)[1:], strict=True):
+            first = number * self._kept.chunk
+            cases = range(first, min(first + self._kept.chunk, self._grid.count))
+            chunk = Chunk(number, cases)
+            if self._kept.has(chunk):
+                values = _values(_rows(self._kept, chunk), self._name)
+                if values is not None:
+                    found[places] = values[numbers[places] - first]
+        return found
+
+
+_GAPS: Final[Mapping[str, Any]] = {_STATUS: RunStatus.NOT_RUN, MESSAGE: NONE}
+"""What stands where nothing has been run; NaN otherwise."""
+
+
+@lru_cache(maxsize=_AT_HAND)
+def _rows(kept: Store, chunk: Chunk) -> CaseResults:
+    return kept.get(chunk)
+
+
+def _values(rows: CaseResults, name: str) -> Generic | None:
+    if name == _STATUS:
+        return rows.status
+    if name == MESSAGE:
+        return np.array(rows.texts, dtype=object)[rows.message]
+    return rows.scalars.get(name, rows.histories.get(name))

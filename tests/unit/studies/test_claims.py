@@ -1,0 +1,248 @@
+"""Several jobs on one study: what one has claimed no other runs, unless it is dead."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from kept_sweep import CASES, as_bytes, child, files, the_sweep
+
+import rockframe as rf
+from rockframe.errors import StudyError
+from rockframe.studies.sweeps import claims as module
+from rockframe.studies.sweeps.claims import Claims
+from rockframe.studies.sweeps.execution import workers_of
+
+pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+
+COUNTED = """
+from rockframe.studies.sweeps.study import Study
+plain = Study.job
+def job(self, cases):
+    with open({log!r}, "a") as log:
+        log.write(f"{{cases.start}}\\n")
+    return plain(self, cases)
+Study.job = job
+"""
+KNOWS_PROCESSES = module._begun(os.getpid()) is not None
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole") / "study"
+    return folder, the_sweep(folder)
+
+
+@pytest.fixture
+def jobs(tmp_path):
+    """Start jobs on one study, which count the cases that they run."""
+
+    def start(number):
+        return child(tmp_path / "study", COUNTED.format(log=str(tmp_path / f"log {number}")))
+
+    return start
+
+
+def run_by(tmp_path):
+    """Give how often each chunk was run, by the number of its first case."""
+    told = [path.read_text().splitlines() for path in tmp_path.glob("log *")]
+    return Counter(int(first) for each in told for first in each)
+
+
+def is_whole(folder, whole):
+    assert files(folder) == files(whole[0])
+    assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
+    assert sorted(path.name for path in folder.iterdir()) == sorted(
+        path.name for path in whole[0].iterdir()
+    )
+
+
+def test_two_jobs_run_each_case_once(whole, tmp_path, jobs):
+    both = [jobs(number) for number in range(2)]
+    for one in both:
+        out, err = one.communicate(timeout=300)
+        assert out.strip() == "done", err  # each gives the whole
+    is_whole(tmp_path / "study", whole)
+    assert run_by(tmp_path) == Counter(range(0, CASES, 3))
+    assert len([*tmp_path.glob("log *")]) == 2  # both have had a part
+
+
+@pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
+def test_the_chunks_of_a_job_that_is_killed_go_to_another(whole, tmp_path, jobs):
+    both = [jobs(number) for number in range(2)]
+    log = tmp_path / "log 0"
+    while both[0].poll() is None and not (log.exists() and len(log.read_text()) > 40):
+        time.sleep(0.005)
+    both[0].kill()
+    both[0].communicate()
+    begun = time.monotonic()
+    out, err = both[1].communicate(timeout=300)
+    assert out.strip() == "done", err
+    assert time.monotonic() - begun < 0.5 * module._SILENCE  # it does not wait for the dead
+    is_whole(tmp_path / "study", whole)
+    run = run_by(tmp_path)
+    assert set(run) == set(range(0, CASES, 3))
+    in_flight = 2 * workers_of(None)
+    assert sum(run.values()) - len(run) <= in_flight
+    assert max(run.values()) <= 2
+
+
+def test_of_many_that_try_at_once_one_has_a_chunk(tmp_path):
+    every = [Claims(tmp_path) for _ in range(8)]
+    with ThreadPoolExecutor(8) as pool:
+        for number in range(50):
+            assert sum(pool.map(Claims.take, every, [number] * 8)) == 1
+    assert len([*(tmp_path / "claims").iterdir()]) == 50
+    every[0].clear()
+    assert not [*tmp_path.iterdir()]
+
+
+def test_what_is_let_go_may_be_taken_again(tmp_path):
+    one, other = Claims(tmp_path), Claims(tmp_path)
+    assert one.take(3)
+    assert not other.take(3)
+    assert other.take(4)
+    one.let_all_go()
+    one.let_go(3)
+    assert other.take(3)
+    assert not one.take(4)
+
+
+def claim(folder, content, number=7):
+    (folder / "claims").mkdir(exist_ok=True)
+    path = folder / "claims" / f"{number:06d}-000"
+    path.write_bytes(content if isinstance(content, bytes) else json.dumps(content).encode())
+    return path
+
+
+ELSEWHERE = module._this_job() | {"machine": ["another"]}
+SILENT = {
+    "of another machine": ELSEWHERE,
+    "empty": b"",
+    "half written": json.dumps(ELSEWHERE).encode()[:20],
+    "no text": bytes(range(256)),
+    "other words": b"[1, 2]",
+    "other entries": {"machine": module._machine(), "process": "x", "begun": 1},
+}
+
+
+@pytest.mark.parametrize("content", [pytest.param(one, id=name) for name, one in SILENT.items()])
+def test_a_claim_that_is_silent_for_long_is_that_of_a_dead_job(tmp_path, monkeypatch, content):
+    path, one = claim(tmp_path, content), Claims(tmp_path)
+    now = [1000.0]
+    monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
+    os.utime(path, (0, 0))  # clocks of other machines tell nothing
+    assert not one.take(7)
+    now[0] += 0.9 * module._SILENCE
+    assert not one.take(7)
+    os.utime(path)  # it lives
+    now[0] += 0.9 * module._SILENCE
+    assert not one.take(7)
+    now[0] += 1.1 * module._SILENCE
+    other = Claims(tmp_path)
+    assert not other.take(7)  # it has not been looking for so long
+    assert one.take(7)
+    assert not other.take(7)
+
+
+def test_a_living_job_says_so(tmp_path, monkeypatch):
+    now = [1000.0]
+    monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
+    one = Claims(tmp_path)
+    assert one.take(1)
+    (path,) = (tmp_path / "claims").iterdir()
+    os.utime(path, (0, 0))
+    one.live()
+    assert path.stat().st_mtime == 0
+    now[0] += 1.1 * module._BEAT
+    one.live()
+    assert time.time() - path.stat().st_mtime < 60.0
+    assert 5.0 * module._BEAT < module._SILENCE
+
+
+@pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
+def test_a_process_that_has_ended_is_dead_at_once(tmp_path):
+    words = (
+        "import sys; from pathlib import Path; from rockframe.studies.sweeps.claims import Claims\n"
+        "assert Claims(Path(sys.argv[1])).take(7)"
+    )
+    subprocess.run([sys.executable, "-c", words, str(tmp_path)], check=True)
+    one, other = Claims(tmp_path), Claims(tmp_path)
+    assert one.take(7)
+    assert not other.take(7)
+    # a later process of the same number is another one
+    claim(tmp_path, module._this_job() | {"begun": "1"}, 8)
+    assert one.take(8)
+    claim(tmp_path, module._this_job(), 9)
+    assert not one.take(9)
+
+
+def test_damaged_claims_delay_a_study_and_change_nothing(whole, tmp_path, monkeypatch):
+    folder = tmp_path / "study"
+    folder.mkdir()
+    for number, content in enumerate(SILENT.values()):
+        claim(folder, content, 10 + number)
+    (folder / "claims" / "what is this").write_text("")
+    (folder / "claims" / "000011-more").write_text("")
+    monkeypatch.setattr(module, "_SILENCE", 0.5)
+    the_sweep(folder)
+    is_whole(folder, whole)
+
+
+def test_a_job_that_fails_gives_its_chunks_up(tmp_path):
+    class Broken(ThreadPoolExecutor):
+        def submit(self, *_, **__):
+            msg = "no more"
+            raise RuntimeError(msg)
+
+    with Broken(2) as pool, pytest.raises(RuntimeError, match="no more"):
+        the_sweep(tmp_path / "study", executor=pool)
+    assert not [*(tmp_path / "study" / "claims").iterdir()]
+    begun = time.monotonic()
+    the_sweep(tmp_path / "study")
+    assert time.monotonic() - begun < module._SILENCE
+
+
+def test_where_a_claim_cannot_be_written_it_says_so(tmp_path):
+    (tmp_path / "claims").write_text("a file")
+    with pytest.raises(StudyError, match=r"claims.* cannot be written"):
+        Claims(tmp_path).take(1)
+
+
+def test_workers_are_those_of_the_executor():
+    class Dask:
+        class _client:  # noqa: N801
+            @staticmethod
+            def nthreads():
+                return {"tcp://a": 4, "tcp://b": 8}
+
+    class Unknown:
+        pass
+
+    with ThreadPoolExecutor(5) as pool:
+        assert workers_of(pool) == 5
+    assert workers_of(Dask()) == 12
+    assert workers_of(None) >= 1
+    assert workers_of(Unknown()) > 50
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_no_more_chunks_are_handed_out_than_workers_need(workers):
+    going = []
+
+    class Counted(ThreadPoolExecutor):
+        def submit(self, *given, **named):
+            one = super().submit(*given, **named)
+            going.append(one)
+            most.append(sum(not each.done() for each in going))
+            return one
+
+    most = []
+    with Counted(workers) as pool:
+        the_sweep(executor=pool)
+    assert len(going) == CASES / 3
+    assert max(most) <= 2 * workers

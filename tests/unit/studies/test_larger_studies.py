@@ -1,0 +1,229 @@
+"""Studies that are larger than the memory: read as they are used, told of before they begin."""
+
+import tracemalloc
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from kept_sweep import as_bytes
+
+import rockframe as rf
+from rockframe.errors import ComponentError, SolverWarning, StudyError
+from rockframe.results.variables.runs import RunStatus
+from rockframe.studies.sweeps import lazily, planning, running
+from rockframe.studies.sweeps.store import Store, read_shapes
+
+pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
+
+BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+SYSTEM = rf.System(BLOCK)
+NOISE = np.random.default_rng(5).normal(size=400)
+
+
+def record(count, size):
+    return rf.GroundMotion.from_arrays((size * NOISE[:count], "m/s^2"), "0.01 s", name="noise")
+
+
+MOTIONS = {
+    "weak": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz"),
+    "10": record(400, 2.0),
+    "9": record(150, 5.0),
+    "a": rf.GroundMotion.half_sine_pulse("6 m/s^2", "0.4 s"),
+}
+TABLE = pd.DataFrame({"motion": ["a", "10", "weak", "9", "a"], "scale": [1.0, 1.2, 0.9, 2.0, 1.5]})
+
+
+def on_a_grid(**run):
+    # the flattest cannot rock, and has no result
+    return rf.sweep(
+        SYSTEM, MOTIONS, height=["2 m", "0.2 m", "1 m"], scale=[1.0, 0.5, 1.5, 0.7], chunk=7, **run
+    )
+
+
+def with_histories(**run):
+    return rf.sweep(
+        SYSTEM, MOTIONS, scale=[0.8, 0.2], height=["1 m", "2 m"], chunk=3, outputs=["rotation"],
+        output_step="0.01 s", points={"top": ("0 m", "2 m"), "a": ("0 m", "1 m")}, **run,
+    )  # fmt: skip
+
+
+def of_a_table(**run):
+    return rf.sweep(SYSTEM, MOTIONS, cases=TABLE, height=["2 m", "1 m"], chunk=3, **run)
+
+
+def screened(**run):
+    return rf.sweep(SYSTEM, MOTIONS, scale=[1.0, 0.5], **{**run, "accuracy": "screen"})
+
+
+STUDIES = [on_a_grid, with_histories, of_a_table, screened]
+
+
+@pytest.fixture(params=[True, False], ids=["with dask", "without"])
+def dask_is_there(request, monkeypatch):
+    if request.param:
+        pytest.importorskip("dask", reason="dask is not installed")
+    else:
+        monkeypatch.setattr(lazily, "find_spec", lambda _: None)
+    return request.param
+
+
+def agrees(lazy, whole):
+    """Whether both have the same, but that one has floats where the other need not."""
+    assert set(lazy.variables) == set(whole.variables)
+    for name, expected in whole.variables.items():
+        found = lazy.variables[name]
+        assert found.dims == expected.dims, name
+        assert found.attrs["long_name"] == expected.attrs["long_name"]
+        assert found.attrs.get("units") == expected.attrs.get("units")
+        if expected.dtype.kind in "OU":
+            assert found.values.tolist() == expected.values.tolist()
+        else:
+            numbers = expected.values.astype(found.dtype)
+            np.testing.assert_array_equal(found.values, numbers, err_msg=name)
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+@pytest.mark.parametrize("run", STUDIES)
+def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there):
+    whole = run(accuracy="fast", store=tmp_path / "study")
+    lazy = rf.open_study(tmp_path / "study", lazy=True)
+    assert (lazy.chunks != {}) == dask_is_there
+    agrees(lazy, whole)
+    said = {name: one for name, one in whole.attrs.items() if name not in ("verdict", "driver")}
+    assert lazy.attrs == said
+    assert lazy.rockframe.verdict == whole.rockframe.verdict == whole.verdict
+    rng = np.random.default_rng(1)
+    for _ in range(20):  # whatever is picked, along one dimension or along all
+        key = {
+            dim: [rng.integers(-size, size).item(), rng.integers(-size, size, 3),
+                  slice(*sorted(rng.integers(0, size + 1, 2).tolist())), slice(None, None, -1)]
+            [rng.integers(4)]
+            for dim, size in whole.sizes.items()
+            if rng.random() < 0.7
+        }  # fmt: skip
+        agrees(lazy.isel(key), whole.isel(key))
+    last = dict.fromkeys(lazy.status.dims, -1)
+    agrees(lazy.isel(last), whole.isel(last))
+    first = {str(lazy.status.dims[0]): 0}
+    assert lazy.isel(first).rockframe.verdict == whole.isel(first).rockframe.verdict
+    assert len(rf.table(lazy)) == len(rf.table(whole))
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+def test_only_what_is_used_is_read(tmp_path, monkeypatch, dask_is_there):
+    whole = on_a_grid(store=tmp_path / "study")
+    lazily._rows.cache_clear()
+    read, plain = [], Store.get
+    monkeypatch.setattr(Store, "get", lambda self, one: read.append(one.number) or plain(self, one))
+    lazy = rf.open_study(tmp_path / "study", lazy=True)
+    part = lazy.isel(motion=1, scale=0)
+    assert lazy.sizes["height"] == 3
+    assert not read
+    np.testing.assert_array_equal(part.peak_rotation, whole.isel(motion=1, scale=0).peak_rotation)
+    # motions change slowest, so that neighbouring cases are those of a motion
+    chunks = len(list((tmp_path / "study").glob("chunk-*")))
+    assert 1 <= len(set(read)) <= (chunks if dask_is_there else 2)
+    assert len(read) == len(set(read))
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+def test_what_is_still_to_come_is_a_gap(tmp_path, dask_is_there):
+    on_a_grid(store=tmp_path / "study")
+    (tmp_path / "study" / "chunk-000002.arrays").unlink()
+    lazily._rows.cache_clear()
+    whole, lazy = (rf.open_study(tmp_path / "study", lazy=one) for one in (False, True))
+    agrees(lazy, whole)
+    assert int((lazy.status == RunStatus.NOT_RUN).sum()) == 7
+    assert lazy.rockframe.verdict == whole.verdict
+    on_a_grid(store=tmp_path / "study")
+    assert lazily.lazy_dataset(Store.at(tmp_path / "study")).status.max() < RunStatus.NOT_RUN
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+def test_damaged_files_are_told_of_when_they_are_read(tmp_path):
+    on_a_grid(store=tmp_path / "study")
+    file = tmp_path / "study" / "chunk-000001.arrays"
+    content = bytearray(file.read_bytes())
+    content[-3] ^= 1
+    file.write_bytes(content)
+    lazily._rows.cache_clear()
+    lazy = rf.open_study(tmp_path / "study", lazy=True)
+    with pytest.raises(StudyError, match=r"chunk-000001.arrays: damaged"):
+        lazy.peak_rotation.mean().compute()
+    file.write_bytes(content[:100])
+    with pytest.raises(StudyError, match=r"chunk-000001.arrays: damaged"):
+        rf.open_study(tmp_path / "study", lazy=True)
+    with pytest.raises(StudyError, match="damaged"):
+        read_shapes(file)
+    with pytest.raises(ComponentError, match="lazy must be True or False"):
+        rf.open_study(tmp_path / "study", lazy="yes")
+
+
+def test_with_dask_statistics_stream(tmp_path, monkeypatch):
+    dask = pytest.importorskip("dask", reason="dask is not installed")
+    scales = np.linspace(0.05, 0.1, 200)
+    few = {"scale": scales, "duration": "3 s", "output_step": "1 ms", "outputs": ["rotation"]}
+    whole = rf.sweep(SYSTEM, MOTIONS, **few, chunk=10, store=tmp_path / "study")
+    size = whole.rotation.nbytes
+    assert size > 1e7
+    monkeypatch.setattr(lazily, "_BLOCK", 10)
+    lazy = rf.open_study(tmp_path / "study", lazy=True)
+    assert max(lazy.rotation.data.chunksize[:2]) == 10
+    lazily._rows.cache_clear()
+    tracemalloc.start()
+    try:
+        with dask.config.set(scheduler="synchronous"):
+            found = np.abs(lazy.rotation).max().compute().item()
+        taken = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert found == np.abs(whole.rotation).max().item()
+    assert taken < 0.5 * size
+    with dask.config.set(scheduler="synchronous"):
+        # of texts that are read as they are used xarray would have to know the longest
+        numbers = lazy.drop_vars(["rotation", "message"])
+        numbers.to_netcdf(tmp_path / "whole.nc")
+    with xr.open_dataset(tmp_path / "whole.nc") as read:
+        agrees(read, numbers)
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+def test_blocks_follow_the_order_of_running(tmp_path):
+    on_a_grid(store=tmp_path / "study", accuracy="fast", progress=False)
+    grid = Store.at(tmp_path / "study").labels().grid
+    assert grid.order == ("motion", "scale", "height")
+    for most, expected in ((1, (1, 1, 1)), (2, (1, 1, 2)), (7, (1, 2, 3)), (30, (2, 4, 3))):
+        assert tuple(lazily.blocks(grid, most).values())[::-1] == expected
+    numbers = grid.numbers((slice(None), slice(None), slice(None)))
+    assert numbers.shape == tuple(grid.sizes.values())
+    assert (grid.arranged(np.arange(grid.count)) == numbers).all()
+
+
+def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
+    scales = np.linspace(0.1, 1, 100)
+    whole = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
+    monkeypatch.setattr(planning, "available", lambda: 2e4)
+    told = r"100 cases need about 0.056 MB of memory .* 0.02 MB are available; "
+    with pytest.raises(StudyError, match=f"{told}run fewer cases or give a store, from which"):
+        rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
+    with pytest.warns(SolverWarning, match=f"{told}they are read from the store"):
+        runs = rf.sweep(
+            SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s", store=tmp_path / "study"
+        )
+    agrees(runs, whole)
+    assert "verdict" not in runs.attrs
+    assert runs.rockframe.verdict == whole.verdict
+    monkeypatch.undo()
+    again = rf.sweep(
+        SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s", store=tmp_path / "study"
+    )
+    assert as_bytes(again) == as_bytes(whole)  # the same study, whatever memory there is
+
+
+def test_what_takes_days_is_told_of_before_it_begins(monkeypatch, tmp_path):
+    monkeypatch.setattr(running, "_DAY", 1e-5)
+    for store, words in ((None, "no store: with one"), (tmp_path / "study", "jobs on it share")):
+        with pytest.warns(SolverWarning, match=rf"8 cases take about .* days with .* {words}"):
+            on = rf.sweep(SYSTEM, MOTIONS, scale=[1.0, 0.5], accuracy="fast", store=store)
+        assert on.status.size == 8
