@@ -215,8 +215,9 @@ def fixed_step(
         stage[j] = state[j] + own_half * first[i]
     for i in range(size, powers):
         stage[size + i] = state[size + i] + half * first[i]
-    middle = system.accelerate(mode, stage, in_middle)
-    put(middle, 0, last)
+    put(system.accelerate(mode, stage, in_middle), 0, last)
+    # systems of many bodies give the same array each time
+    lost, put_in = last[powers], last[powers + 1]
     for i in range(size):
         own, own_sixth = (h, sixth) if i < count else (0.0, 0.0)
         j = size + i
@@ -231,8 +232,7 @@ def fixed_step(
         z, r1, r2 = state[size + i], first[i], last[i]
         new[size + i] = z + sixth * (r1 + 4.0 * r2)
         stage[size + i] = z + half * (3.0 * r2 - r1)
-    end = system.accelerate(mode, stage, at_end)
-    put(end, 0, last)
+    put(system.accelerate(mode, stage, at_end), 0, last)
     total = 0.0
     for i in range(size):
         new[size + i] += (sixth if i < count else 0.0) * last[i]
@@ -240,8 +240,8 @@ def fixed_step(
     for i in range(size, powers):
         new[size + i] += sixth * last[i]
         total += new[size + i]
-    works[0] = sixth * (first[powers] + 4.0 * middle[powers] + end[powers])
-    works[1] = sixth * (first[powers + 1] + 4.0 * middle[powers + 1] + end[powers + 1])
+    works[0] = sixth * (first[powers] + 4.0 * lost + last[powers])
+    works[1] = sixth * (first[powers + 1] + 4.0 * put_in + last[powers + 1])
     return math.isfinite(total)
 
 

@@ -34,6 +34,23 @@ def pads(damping_ratio: float = 0.1) -> rf.TwoSpringSupport:
     return rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=damping_ratio)
 
 
+def frame() -> rf.RockingFrame:
+    return rf.RockingFrame(block(), columns=2, beam_mass="50 t")
+
+
+def tendon() -> rf.Tendon:
+    return rf.Tendon(stiffness="20 MN/m", preload="100 kN")
+
+
+def tie() -> rf.Restrainer:
+    return rf.Restrainer(on=("0 m", "9 m"), to=("-2 m", "9 m"), stiffness="1 MN/m", slack="50 mm")
+
+
+def stack() -> rf.Stack:
+    plinth = rf.Block(width="4 m", height="3 m", mass="120 t")
+    return rf.Stack(block(), plinth, interfaces=[rf.RigidGround()])
+
+
 def cap() -> rf.CushionCap:
     return rf.CushionCap(height="0.9 m", mass="36 t")
 
@@ -45,6 +62,9 @@ def soil() -> rf.WinklerSoil:
 # scene, fewest sub-steps of the series, events that must happen
 SCENES = {
     "rigid ground": (rf.System(block()), 1, {"impact", "uplift"}),
+    "tendons": (rf.System(frame(), tendon()), 1, {"impact", "uplift"}),
+    "restrainer": (rf.System(block(), tie()), 1, {"impact", "restrainer_taut"}),
+    "stack": (rf.System(stack()), 1, {"impact", "uplift"}),
     "pads": (rf.System(block(), pads()), 1, {"separation", "impact"}),
     "undamped pads": (rf.System(block(), pads(0.0)), 1, {"separation", "impact"}),
     "critically damped pads": (rf.System(block(), pads(1.0)), 2, {"separation", "impact"}),
