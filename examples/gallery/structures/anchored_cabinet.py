@@ -38,15 +38,11 @@ free = rf.sweep(rf.System(cabinet), progress=False, **run).overturned.squeeze().
 tied = rf.sweep(anchored, strength=strengths, progress=False, **run)
 falls = tied.overturned.squeeze().transpose("scale", "strength").to_numpy()
 free_stands = levels[~free].max()
-needed = strengths[
-    [not falls[np.isclose(levels, 1.0), k].any() for k in range(len(strengths))]
-].min()
-worse = strengths[(falls & ~free[:, None]).any(axis=0)]
+needed = strengths[~falls[np.isclose(levels, 1.0)].any(axis=0)].min()
+worse = ", ".join(f"{one:g}" for one in strengths[(falls & ~free[:, None]).any(axis=0)])
 print(f"Free it stands {free_stands:.1f} g; on a floor of 1 g it needs anchors.")
-print(f"There they hold from {needed:g} times its weight on: {needed * weight / 1e3:.1f} kN each.")
-print(
-    f"With {' or '.join(f'{one:g}' for one in worse)} times its weight it falls where a free one stands."
-)
+print(f"They hold from {needed:g} times its weight on, {needed * weight / 1e3:.1f} kN each.")
+print(f"With anchors of {worse} times its weight it falls where a free one stands.")
 
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 x, y = np.meshgrid(strengths, levels)

@@ -26,8 +26,8 @@ left = 1e3 * run.body_slip.isel(time=-1).to_numpy()
 away = np.cumsum(left[::-1])[::-1]  # of each drum, by its own slip and those below
 print(run.attrs["verdict"])
 print(
-    f"Joint {joints[opened.argmax()]} from the ground opens most, by {opened.max():.0f} mm; drums slip "
-    f"by up to {slipped.max():.0f} mm, and in the end are up to {abs(away).max():.0f} mm off their places."
+    f"Joint {joints[opened.argmax()]} from the ground opens most, by {opened.max():.0f} mm; drums "
+    f"slip by up to {slipped.max():.0f} mm, and are {abs(away).max():.0f} mm off in the end."
 )
 
 figure, axes = plt.subplots(1, 3, figsize=(9.0, 4.2), layout="constrained", sharey=True)
