@@ -201,3 +201,28 @@ def test_fast_is_stable(frequency_ratio, damping_ratio):
     fast = system.simulate(weak, accuracy="fast", free_vibration="20 s")
     exact = system.simulate(weak, free_vibration="20 s")
     assert float(abs(fast.rotation - exact.rotation).max()) < 0.01 * float(exact.peak_rotation)
+
+
+# under samples so coarse that the ground's slope is another one in each step
+COARSE = {
+    "rigid ground": rf.System(block()),
+    "wall": rf.System(block(), rf.RearWall(side="left", restitution=-0.5)),
+    "frame": rf.System(frame()),
+    "tendons": SCENES["tendons"][0],
+    "friction": rf.System(block(), rf.RigidGround(friction=0.26)),
+    "restrainer": SCENES["restrainer"][0],
+    "stack": SCENES["stack"][0],
+}
+
+
+@pytest.mark.parametrize("scene", COARSE)
+@pytest.mark.parametrize("peak", [3.4, 4.6])
+def test_works_are_as_exact_as_the_motion(scene, peak):
+    noise = np.convolve(np.random.default_rng(8).normal(size=80), np.hanning(7), "same")
+    motion = rf.GroundMotion.from_arrays(
+        (peak * noise / abs(noise).max(), "m/s^2"), time_step="0.04 s"
+    )
+    run = COARSE[scene].simulate(motion, accuracy="fast", second_look=False)
+    assert run.attrs["solver_substeps"] <= 2
+    assert run.event_time.size > 1
+    assert float(run.energy_residual) < 2e-4
