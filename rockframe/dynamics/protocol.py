@@ -157,6 +157,21 @@ class Equations(Protocol):
         ...
 
 
+class EquationsWithPowers(Equations, Protocol):
+    """Equations whose works are as exact as their motion in steps of fixed length.
+
+    The rates of a stage are not those of the solution, :eq:`eq-fixed-powers`, and the work of the
+    ground is linear in them. To be given where it costs little.
+    """
+
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the power dissipated and that put in by the ground.
+
+        `slope` is what :meth:`accelerate` has just given for the same place at other rates.
+        """
+        ...
+
+
 @dataclass(frozen=True)
 class Column:
     """A history that a system can be observed by.

@@ -159,6 +159,12 @@ class BlockOnRigidGround(NamedTuple):
         supplied = -self.corner(mode).radius * (ground.x * cosine + ground.y * sine) * state[1]
         return self.angular_acceleration(mode, state[0], ground), 0.0, supplied
 
+    @inlined
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the powers of :meth:`accelerate` alone."""
+        found = self.accelerate(mode, state, ground)
+        return found[1], found[2]
+
     @kernel
     def some_end_slides(self, mode: int) -> bool:
         """Give False: the ground holds the corner that bears."""

@@ -221,6 +221,12 @@ class SlideRock(NamedTuple):
         return found.slip, found.rotation, found.rise, lost, supplied
 
     @inlined
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the powers of :meth:`accelerate` alone, which the compiler merges with it."""
+        found = self.accelerate(mode, state, ground)
+        return found[SIZE], found[SIZE + 1]
+
+    @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Give the guards, :eq:`eq-slide-guards`."""
         scale, size = 1.0 / self.gravity, 1.0 / (self.left + self.right)

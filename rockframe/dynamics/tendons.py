@@ -193,6 +193,19 @@ class TiedFrame(NamedTuple):
         return out
 
     @kernel
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the powers of :meth:`accelerate` alone."""
+        rocks = mode % bare.MODES
+        if rocks == bare.RESTING:
+            return 0.0, 0.0
+        link, lost = self.stretched(mode, state, 0.0), 0.0
+        for i in range(self.link_count):
+            row = self.row_of_link(i)
+            law = self.law.with_numbers(part_of(row, NUMBERS))
+            lost += law.power(self.link_state(mode, row), link, self.of_link(i, state))
+        return self.columns * lost, self.rocking.powers(rocks, state, slope, ground)[1]
+
+    @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Give the guards of impact and uplift, then those of each tendon."""
         values, changes, rocks = self.guard_room(0), self.guard_room(1), mode % bare.MODES

@@ -23,7 +23,7 @@ from rockframe.system.statics import stored_energy
 BY_TOLERANCE: Final = 1e-3
 """Residual beyond which steps by tolerance give no solution; sound ones stay below 1e-5."""
 FIXED: Final = 0.5
-"""The same of fixed steps, whose works are less exact than their motion: sound ones reach 0.3."""
+"""The same of fixed steps, whose works on springs are less exact than their motion."""
 DOUBTFUL: Final = 1e-2
 """Residual of fixed steps beyond which it takes a run by tolerance to tell."""
 DOUBTFUL_ON_SPRINGS: Final = 0.04

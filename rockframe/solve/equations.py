@@ -19,7 +19,12 @@ from rockframe.compiled import (
 )
 from rockframe.dynamics.protocol import BODY_COLUMNS, BODY_FORCES, Energies, Equations, Ground
 from rockframe.solve.accuracy import STABLE
-from rockframe.solve.march import guards_at, march_by_tolerance, march_fixed
+from rockframe.solve.march import (
+    guards_at,
+    march_by_tolerance,
+    march_fixed,
+    march_fixed_by_rates,
+)
 from rockframe.solve.workspace import Span, Workspace, ground_in
 
 
@@ -105,9 +110,16 @@ class BoundEquations(NamedTuple):
     guard_count: int
 
 
+def gives_powers(system: Equations) -> bool:
+    """Whether equations are :class:`rockframe.dynamics.protocol.EquationsWithPowers`."""
+    return hasattr(system, "powers")
+
+
 def equations_of(system: Equations, *, fixed_steps: bool) -> BoundEquations:
     """Bind a system's equations for the integrator."""
-    march = march_fixed if fixed_steps else march_by_tolerance
+    march = march_by_tolerance
+    if fixed_steps:
+        march = march_fixed_by_rates if gives_powers(system) else march_fixed
     functions = bound(
         (switched, slope, guards_of_state, observed, march, energies, meaning), system
     )

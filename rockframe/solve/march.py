@@ -9,7 +9,12 @@ from typing import Final, NamedTuple, TypeAlias
 from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of, put
 from rockframe.dynamics.protocol import POWERS, Equations, Ground, Guards
 from rockframe.solve import layout as at
-from rockframe.solve.schemes import FixedSteps, StepsByTolerance, next_step
+from rockframe.solve.schemes import (
+    FixedSteps,
+    FixedStepsByRates,
+    StepsByTolerance,
+    next_step,
+)
 from rockframe.solve.workspace import TERMS, Span, ground_in, has_no_room, keep_row, load_interval
 
 LEFT_LIMIT: Final = 0
@@ -311,6 +316,20 @@ def march_fixed(
     return march(
         FixedSteps(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends, stages,
         works, reference, limits, ground, controls, clock, counters, kept, codes,
+    )  # fmt: skip
+
+
+@kernel
+def march_fixed_by_rates(
+    system: Equations, mode: int, count: int, flies: int, longest: float, trial: float,
+    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
+    reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
+    counters: Integers, kept: Vector, codes: Integers,
+) -> int:  # fmt: skip
+    """Make such steps, of equations that give powers at any rates; see :func:`march`."""
+    return march(
+        FixedStepsByRates(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
+        stages, works, reference, limits, ground, controls, clock, counters, kept, codes,
     )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ import math
 from typing import Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Vector, inlined, kernel, put, table
-from rockframe.dynamics.protocol import POWERS, Equations, Ground
+from rockframe.dynamics.protocol import POWERS, Equations, EquationsWithPowers, Ground
 from rockframe.solve import layout as at
 from rockframe.solve.workspace import ERRORS, Span, ground_in
 
@@ -196,8 +196,9 @@ def next_step(h: float, h_next: float, excess: float) -> float:
 
 @inlined
 def fixed_step(
-    system: Equations, mode: int, count: int, h: float, in_middle: Ground, at_end: Ground,
-    state: Vector, first: Vector, new: Vector, last: Vector, stage: Vector, works: Vector,
+    scheme: "FixedSteps", system: Equations, mode: int, count: int, h: float, in_middle: Ground,
+    at_end: Ground, state: Vector, first: Vector, new: Vector, last: Vector, stage: Vector,
+    works: Vector,
 ) -> bool:  # fmt: skip
     """Step the first `count` coordinates and all variables of first order.
 
@@ -215,8 +216,10 @@ def fixed_step(
         stage[j] = state[j] + own_half * first[i]
     for i in range(size, powers):
         stage[size + i] = state[size + i] + half * first[i]
-    middle = system.accelerate(mode, stage, in_middle)
-    put(middle, 0, last)
+    put(system.accelerate(mode, stage, in_middle), 0, last)
+    lost, put_in = scheme.powers_in_middle(
+        system, mode, count, half, state, first, stage, last, in_middle
+    )
     for i in range(size):
         own, own_sixth = (h, sixth) if i < count else (0.0, 0.0)
         j = size + i
@@ -231,8 +234,7 @@ def fixed_step(
         z, r1, r2 = state[size + i], first[i], last[i]
         new[size + i] = z + sixth * (r1 + 4.0 * r2)
         stage[size + i] = z + half * (3.0 * r2 - r1)
-    end = system.accelerate(mode, stage, at_end)
-    put(end, 0, last)
+    put(system.accelerate(mode, stage, at_end), 0, last)
     total = 0.0
     for i in range(size):
         new[size + i] += (sixth if i < count else 0.0) * last[i]
@@ -240,8 +242,9 @@ def fixed_step(
     for i in range(size, powers):
         new[size + i] += sixth * last[i]
         total += new[size + i]
-    works[0] = sixth * (first[powers] + 4.0 * middle[powers] + end[powers])
-    works[1] = sixth * (first[powers + 1] + 4.0 * middle[powers + 1] + end[powers + 1])
+    last[powers], last[powers + 1] = scheme.powers_at_end(system, mode, new, stage, last, at_end)
+    works[0] = sixth * (first[powers] + 4.0 * lost + last[powers])
+    works[1] = sixth * (first[powers + 1] + 4.0 * put_in + last[powers + 1])
     return math.isfinite(total)
 
 
@@ -261,9 +264,27 @@ def adapted(h: float, h_next: float, excess: float, controls: Vector) -> float:
 
 
 class FixedSteps(NamedTuple):
-    """Steps of a fixed length."""
+    """Steps of a fixed length, of equations that give powers at the rates of the stages alone."""
 
     longest: float  # that is stable in the mode
+
+    @inlined
+    def powers_in_middle(
+        self, system: Equations, mode: int, count: int, half: float, state: Vector, first: Vector,
+        stage: Vector, slope: Vector, ground: Ground,
+    ) -> tuple[float, float]:  # fmt: skip
+        """Give the powers dissipated and put in, as the slope of the stage has them."""
+        powers = system.coordinates() + system.variables()
+        return slope[powers], slope[powers + 1]
+
+    @inlined
+    def powers_at_end(
+        self, system: Equations, mode: int, new: Vector, stage: Vector, slope: Vector,
+        ground: Ground,
+    ) -> tuple[float, float]:  # fmt: skip
+        """Give the same at the end of the step."""
+        powers = system.coordinates() + system.variables()
+        return slope[powers], slope[powers + 1]
 
     @inlined
     def step_length(self, asked: float) -> float:
@@ -278,8 +299,9 @@ class FixedSteps(NamedTuple):
         """Make a step; give whether it has ended in numbers."""
         in_middle, at_end = ground_in(0.5, span, ground), ground_in(1.0, span, ground)
         return fixed_step(
-            system, mode, count, span.h, in_middle, at_end, state, first, new, last, stages, works
-        )
+            self, system, mode, count, span.h, in_middle, at_end, state, first, new, last, stages,
+            works,
+        )  # fmt: skip
 
     @inlined
     def excess_of(
@@ -300,6 +322,35 @@ class FixedSteps(NamedTuple):
     @inlined
     def keep_sizes(self, system: Equations, new: Vector, reference: Vector) -> None:
         """Do nothing: no error is measured."""
+
+
+class FixedStepsByRates(FixedSteps):
+    """The same, of equations that give powers at any rates."""
+
+    __slots__ = ()
+
+    @inlined
+    def powers_in_middle(
+        self, system: EquationsWithPowers, mode: int, count: int, half: float, state: Vector,
+        first: Vector, stage: Vector, slope: Vector, ground: Ground,
+    ) -> tuple[float, float]:  # fmt: skip
+        """Give the powers at the place of the stage and the rates :eq:`eq-fixed-powers`."""
+        size = system.coordinates()
+        for i in range(size):
+            own_half = half if i < count else 0.0
+            stage[size + i] = state[size + i] + 0.5 * own_half * (first[i] + slope[i])
+        return system.powers(mode, stage, slope, ground)
+
+    @inlined
+    def powers_at_end(
+        self, system: EquationsWithPowers, mode: int, new: Vector, stage: Vector, slope: Vector,
+        ground: Ground,
+    ) -> tuple[float, float]:  # fmt: skip
+        """Give the same at the place of the last stage and the rates at the end of the step."""
+        size = system.coordinates()
+        for i in range(size):
+            stage[size + i] = new[size + i]
+        return system.powers(mode, stage, slope, ground)
 
 
 class StepsByTolerance(NamedTuple):

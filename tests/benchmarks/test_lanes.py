@@ -36,11 +36,12 @@ def model_on(*parts):
 def test_all_lanes_share_their_instructions(base, fixed):
     from rockframe.compiled.calls import register_kernels
     from rockframe.compiled.jobs import Job
-    from rockframe.solve.lanes.steps import step_lanes, step_lanes_by_tolerance
+    from rockframe.solve.lanes.steps import steps_in_lanes
 
-    structure = structure_of(model_on(*BASES[base]).system)
+    system = model_on(*BASES[base]).system
+    structure = structure_of(system)
     register_kernels()
-    step = step_lanes if fixed else step_lanes_by_tolerance
+    step = steps_in_lanes(system, fixed_steps=fixed)
     code = Job(step, structure, bound=True, in_lanes=True)._compiled(keep=False)
     text = code._library.get_asm_str()
     if "xmm" not in text:

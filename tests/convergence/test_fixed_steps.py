@@ -34,6 +34,23 @@ def pads(damping_ratio: float = 0.1) -> rf.TwoSpringSupport:
     return rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=damping_ratio)
 
 
+def frame() -> rf.RockingFrame:
+    return rf.RockingFrame(block(), columns=2, beam_mass="50 t")
+
+
+def tendon() -> rf.Tendon:
+    return rf.Tendon(stiffness="20 MN/m", preload="100 kN")
+
+
+def tie() -> rf.Restrainer:
+    return rf.Restrainer(on=("0 m", "9 m"), to=("-2 m", "9 m"), stiffness="1 MN/m", slack="50 mm")
+
+
+def stack() -> rf.Stack:
+    plinth = rf.Block(width="4 m", height="3 m", mass="120 t")
+    return rf.Stack(block(), plinth, interfaces=[rf.RigidGround()])
+
+
 def cap() -> rf.CushionCap:
     return rf.CushionCap(height="0.9 m", mass="36 t")
 
@@ -45,6 +62,9 @@ def soil() -> rf.WinklerSoil:
 # scene, fewest sub-steps of the series, events that must happen
 SCENES = {
     "rigid ground": (rf.System(block()), 1, {"impact", "uplift"}),
+    "tendons": (rf.System(frame(), tendon()), 1, {"impact", "uplift"}),
+    "restrainer": (rf.System(block(), tie()), 1, {"impact", "restrainer_taut"}),
+    "stack": (rf.System(stack()), 1, {"impact", "uplift"}),
     "pads": (rf.System(block(), pads()), 1, {"separation", "impact"}),
     "undamped pads": (rf.System(block(), pads(0.0)), 1, {"separation", "impact"}),
     "critically damped pads": (rf.System(block(), pads(1.0)), 2, {"separation", "impact"}),
@@ -181,3 +201,28 @@ def test_fast_is_stable(frequency_ratio, damping_ratio):
     fast = system.simulate(weak, accuracy="fast", free_vibration="20 s")
     exact = system.simulate(weak, free_vibration="20 s")
     assert float(abs(fast.rotation - exact.rotation).max()) < 0.01 * float(exact.peak_rotation)
+
+
+# under samples so coarse that the ground's slope is another one in each step
+COARSE = {
+    "rigid ground": rf.System(block()),
+    "wall": rf.System(block(), rf.RearWall(side="left", restitution=-0.5)),
+    "frame": rf.System(frame()),
+    "tendons": SCENES["tendons"][0],
+    "friction": rf.System(block(), rf.RigidGround(friction=0.26)),
+    "restrainer": SCENES["restrainer"][0],
+    "stack": SCENES["stack"][0],
+}
+
+
+@pytest.mark.parametrize("scene", COARSE)
+@pytest.mark.parametrize("peak", [3.4, 4.6])
+def test_works_are_as_exact_as_the_motion(scene, peak):
+    noise = np.convolve(np.random.default_rng(8).normal(size=80), np.hanning(7), "same")
+    motion = rf.GroundMotion.from_arrays(
+        (peak * noise / abs(noise).max(), "m/s^2"), time_step="0.04 s"
+    )
+    run = COARSE[scene].simulate(motion, accuracy="fast", second_look=False)
+    assert run.attrs["solver_substeps"] <= 2
+    assert run.event_time.size > 1
+    assert float(run.energy_residual) < 2e-4

@@ -12,6 +12,7 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.rows import CONSTRAINT, MOST_CONSTRAINTS, PLACES, Rows
+from rockframe.dynamics.protocol import Ground
 from rockframe.dynamics.trigonometry import sine_cosine
 
 FREE: Final = 0.0
@@ -51,6 +52,25 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
         angle += body.rotation
         rate += body.angular_velocity
         below = system.number(k, at.TOP)
+
+
+@kernel
+def input_power(system: Rows, state: Vector, ground: Ground, room: Vector) -> float:
+    """Give the power of the ground at the rates of a state, of bodies that lie as in the room."""
+    count, supplied, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
+    for k in range(count - 1, -1, -1):
+        i, mass, body = k * PLACES, system.number(k, at.MASS), system.state_of(k, state)
+        sine, cosine = room[i + at.SINE], room[i + at.COSINE]
+        sway = body.horizontal_velocity
+        if room[i + at.HELD] != FREE:
+            sway = room[i + at.REACH] * body.angular_velocity
+        along = sway + room[i + at.ARM] * rate
+        normal = body.vertical_velocity - room[i + at.ACROSS] * rate
+        speed_x += along * cosine + normal * sine
+        speed_y += normal * cosine - along * sine
+        supplied -= mass * (ground.x * speed_x + ground.y * speed_y)
+        rate += body.angular_velocity
+    return supplied
 
 
 @inlined

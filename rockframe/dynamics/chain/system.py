@@ -13,6 +13,7 @@ from rockframe.dynamics.chain.motion import (
     add_constraint,
     coriolis_along,
     coriolis_normal,
+    input_power,
     load_bodies,
     place_bodies,
     press_at,
@@ -178,6 +179,12 @@ class Chain(Rows):
         powers = DEGREES * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
         return out
+
+    @kernel
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the power dissipated at the rates of the slope, and that put in at those given."""
+        dissipated = slope[DEGREES * self.body_count + self.variables()]
+        return dissipated, input_power(self, state, ground, self.places())
 
     @inlined
     def contact_with_force(self, k: int, mode: int) -> int:

@@ -17,7 +17,7 @@ from rockframe.solve.integrate import EVENT_ROOM, Begun, make_workspace, pieces_
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, BatchSizes, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of
-from rockframe.solve.lanes.steps import step_lanes, step_lanes_by_tolerance
+from rockframe.solve.lanes.steps import steps_in_lanes
 from rockframe.solve.workspace import (
     EventTable,
     Output,
@@ -122,7 +122,7 @@ class _Rows:
         self._places = there = places_of(model.system)
         fixed = first.substeps > 0
         self._equations = equations_of(model.system, fixed_steps=fixed)
-        self.steps = bound_in_lanes(step_lanes if fixed else step_lanes_by_tolerance, model.system)
+        self.steps = bound_in_lanes(steps_in_lanes(model.system, fixed_steps=fixed), model.system)
         self._count = len(self._equations.numbers)
         self._memory = len(first.memory)
         width = there.numbers + self._count + self._memory + len(first.tolerance)

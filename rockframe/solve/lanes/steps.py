@@ -6,6 +6,7 @@ does in a quiet step, in the same order, to the last bit. A step that is not qui
 taken: the lane asks for the driver of single runs.
 """
 
+import math
 from collections.abc import Callable
 
 from rockframe.compiled import (
@@ -20,6 +21,7 @@ from rockframe.compiled import (
 )
 from rockframe.dynamics.protocol import POWERS, Equations, Ground
 from rockframe.solve import layout as at
+from rockframe.solve.equations import gives_powers
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import Places, enter_intervals, evaluate_ground, places_of
 from rockframe.solve.march import SHORTEST, fit_step, may_fall, put_guards, rotation_in_step
@@ -32,6 +34,8 @@ from rockframe.solve.schemes import (
     STAGE_5,
     STAGE_6,
     STAGES,
+    FixedSteps,
+    FixedStepsByRates,
     adapted,
     begin_stages,
     end_works,
@@ -144,14 +148,14 @@ def choose_step(room: Vector, lane: int) -> None:
 
 
 @inlined
-def make_step(system: Equations, room: Vector, lane: int) -> bool:
+def make_step(scheme: FixedSteps, system: Equations, room: Vector, lane: int) -> bool:
     """Take one lane to the end of its step; give whether that ended in numbers."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
     mode = system.without_sliding(lane_of(whole, fields.COUNTERS, lane)[at.MODE])
     count = lane_of(whole, fields.OWN_WHOLE, lane)[fields.ACTIVE]
     return fixed_step(
-        system, mode, count, own[fields.STEP],
+        scheme, system, mode, count, own[fields.STEP],
         Ground(own[fields.MIDDLE_X], own[fields.MIDDLE_Y]),
         Ground(own[fields.NOW_X], own[fields.NOW_Y]),
         lane_of(room, there.state, lane), lane_of(room, there.first, lane),
@@ -176,6 +180,24 @@ def step_lanes(
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
     """Take all lanes that are at the end of an interval to the next, and make a step in all."""
+    return step_lanes_in(FixedSteps(math.inf), system_of, lanes, room, pieces_x, pieces_y)
+
+
+@inlined
+def step_lanes_by_rates(
+    system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
+    pieces_y: ReadOnlyMatrix,
+) -> int:  # fmt: skip
+    """Do so with equations that give powers at any rates."""
+    return step_lanes_in(FixedStepsByRates(math.inf), system_of, lanes, room, pieces_x, pieces_y)
+
+
+@inlined
+def step_lanes_in(
+    scheme: FixedSteps, system_of: Callable[[Vector], Equations], lanes: int, room: Vector,
+    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix,
+) -> int:  # fmt: skip
+    """Take lanes so by a scheme; their longest steps stand in their rows."""
     widest_registers()
     if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
         return fields.SOME_WAIT
@@ -186,7 +208,7 @@ def step_lanes(
     evaluate_ground(lanes, room, pieces_x, pieces_y, 1.0, fields.NOW_X, fields.NOW_Y)
     for lane in range(lanes):
         system = system_of(lane_of(room, there.numbers, lane))
-        done = make_step(system, room, lane)
+        done = make_step(scheme, system, room, lane)
         lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.REFUSED] = 0 if done else 1
     some = 0
     for lane in range(lanes):
@@ -413,3 +435,10 @@ def step_lanes_by_tolerance(
     for lane in range(lanes):
         take_step_if_quiet(system_of(lane_of(room, there.numbers, lane)), room, lane)
     return fields.SOME_ASK if some == 1 else fields.ALL_QUIET
+
+
+def steps_in_lanes(system: Equations, *, fixed_steps: bool) -> Callable[..., int]:
+    """Give the function that steps lanes of a system."""
+    if not fixed_steps:
+        return step_lanes_by_tolerance
+    return step_lanes_by_rates if gives_powers(system) else step_lanes
