@@ -1,7 +1,10 @@
 """Verdicts that are proved, and what runs say at scales beside theirs."""
 
+import json
+
 import numpy as np
 import pytest
+from pages import DOCS, table
 
 pytest.importorskip("flint")
 
@@ -213,3 +216,18 @@ def test_a_tolerance_of_restitutions_on_pads_is_carried_through_impacts():
     assert proof.overturns
     assert proof.impacts == 1
     assert 1e-9 < proof.latest - proof.earliest < 1e-4
+
+
+def test_the_page_tells_what_was_decided_of_sets():
+    measured = json.loads((DOCS / "data" / "proof_sets.json").read_text(encoding="utf-8"))
+    head = "| tolerance | decided as one set | in at most 8 parts | mean share decided |"
+    rows = table("theory/proved_verdicts.md", head)
+    for tolerance, *counts, share in rows:
+        power = tolerance.strip("$").removeprefix("10^{").removesuffix("}")
+        for parts, count in zip((1, 8), counts, strict=True):
+            if count:
+                found = measured["sets"][f"within 1e{int(power):03d}, at most {parts} parts"]
+                assert int(count) == measured["blocks"] - found["verdicts"].get("undecided", 0)
+                assert found["contradicted by reference"] == []
+                last = found["mean share decided"]
+        assert float(share) == last
