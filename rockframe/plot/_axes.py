@@ -46,7 +46,7 @@ def key(axes: "Axes", **style: Any) -> None:
     """Write a legend above what is drawn, for which the axis is made longer."""
     words = axes.get_legend_handles_labels()[1]
     title = str(style.get("title", ""))
-    width, height = axes.get_window_extent().size / axes.figure.dpi
+    width, height = np.divide(axes.get_window_extent().size, axes.figure.dpi)
     entry = _HANDLE + _LETTER * max(map(len, words))
     columns = int(np.clip((0.95 * width) // entry, 1, len(words)))
     rows = -(-len(words) // columns) + bool(title)
