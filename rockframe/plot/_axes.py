@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.studies.intensities import PERIOD_OF, measure_words
-from rockframe.units import LENGTH, Measure
+from rockframe.units import ANGLE, LENGTH, Measure
 from rockframe.units.shown import ReaderUnits, reader_units, shown_unit
 from rockframe.units.shown import Shown as Shown
 
@@ -184,9 +184,14 @@ class FigureUnits:
     def unless_relative(self, measure: Measure, **given: object) -> Shown | None:
         """Give the unit of an axis; None where values are relative to a scale of the body."""
         (unit,) = given.values()
-        if unit == RELATIVE or (unit is None and self.reader.chose(measure) is None):
+        if unit is None and self.reader.chose(measure) is None:
             return None
-        return self.of(measure, "", **given)
+        told_relative = isinstance(unit, str) and unit == RELATIVE
+        return None if told_relative else self.of(measure, "", **given)
+
+    def rotations(self, rotation: str | None) -> str | None:
+        """Give the unit of a trace of rotations: the given one, the reader's, or degrees."""
+        return "deg" if rotation is None and self.reader.chose(ANGLE) is None else rotation
 
 
 def units_of(units: object, function: str) -> FigureUnits:
