@@ -42,13 +42,13 @@ _LETTER, _LINE, _HANDLE = 0.07, 0.19, 0.55
 words [in]."""
 
 
-def key(axes: "Axes", **style: Any) -> None:
+def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> None:
     """Write a legend above what is drawn, for which the axis is made longer."""
-    words = axes.get_legend_handles_labels()[1]
+    handles, words = axes.get_legend_handles_labels() if named is None else named
     title = str(style.get("title", ""))
     width, height = np.divide(axes.get_window_extent().size, axes.figure.dpi)
     entry = _HANDLE + _LETTER * max(map(len, words))
-    columns = int(np.clip((0.95 * width) // entry, 1, len(words)))
+    columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
     rows = -(-len(words) // columns) + bool(title)
     share = min(0.6, (0.08 + _LINE * rows) / height)
     linear = axes.get_yscale() == "linear"
@@ -58,8 +58,8 @@ def key(axes: "Axes", **style: Any) -> None:
     elif high > low > 0.0:
         axes.set_ylim(low, low * (1.05 * high / low) ** (1.0 / (1.0 - share)))
     axes.legend(
-        loc="upper right", ncols=columns, fontsize="small", frameon=False, borderaxespad=0.2,
-        handlelength=1.8, columnspacing=1.2, **style,
+        handles, words, loc="upper right", ncols=columns, fontsize="small", frameon=False,
+        borderaxespad=0.2, handlelength=1.8, columnspacing=1.2, **style,
     )  # fmt: skip
 
 
