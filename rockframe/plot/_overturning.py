@@ -123,7 +123,9 @@ def dynamic_analysis(
         ordered = np.sort(np.array([0.0, *places]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
         right.step(shares, ordered, where="pre", color=colour_of(number), label=str(state))
-    right.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
+    right.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02), ylim=left.get_ylim())
+    if on.own is None:  # the axis of given panels may stand anywhere
+        right.set_ylabel(left.get_ylabel())
     for axes in on.panels:
         grid(axes)
     on.name_lines()
