@@ -1,8 +1,11 @@
 """What every dataset has as ``dataset.rockframe``: figures, tables and a summary of results."""
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import xarray as xr
+
+from rockframe.errors import RockframeError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -160,3 +163,36 @@ class RockframeAccessor:
 
     def __repr__(self) -> str:
         return self.summary
+
+    def _repr_html_(self) -> str:
+        from rockframe.notebook import card, curve
+
+        given, lines = self._dataset, self.summary.splitlines()
+        kind = str(given.attrs.get("title", ""))
+        first = self.verdict or kind or "Dataset"
+        rows = {"result": kind} if self.verdict and kind else {}
+        for line in lines[bool(kind) + bool(self.verdict) :]:
+            name, _, words = line.partition(" " if line.startswith("over ") else ": ")
+            if not words.startswith("nan"):
+                rows[name.replace("_", " ")] = words
+        for name in ("peak_rotation", "uplift_angle", "overturning_angle"):
+            if name in given and given[name].ndim == 0:
+                rows[name.replace("_", " ")] = f"{math.degrees(given[name].item()):.4g}°"
+        history = given.get("rotation")
+        trace = "" if history is None or history.ndim != 1 else curve(history.to_numpy().tolist())
+        return card(first, rows, self._drawing(), trace)
+
+    def _drawing(self) -> str:
+        """Draw the scene of a result, where it tells its system."""
+        if "system_json" not in self._dataset.attrs:
+            return ""
+        from rockframe.notebook import drawing
+        from rockframe.plot._checks import system_of_run
+        from rockframe.system.geometry import geometry_of
+        from rockframe.system.html import shapes_of
+
+        try:
+            system = system_of_run(self._dataset, "card")
+        except RockframeError:  # such as a part of somebody's own that is not registered
+            return ""
+        return drawing(shapes_of(geometry_of(system.assembly)))

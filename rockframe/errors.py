@@ -4,13 +4,15 @@ Every error derives from :class:`RockframeError`, so that a script can tell
 "rockframe refused this" from a fault of its own.
 """
 
+import sys
 import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from difflib import get_close_matches
 from inspect import currentframe
-from typing import Final, TypeVar
+from types import TracebackType
+from typing import Any, Final, TypeVar
 
 Found = TypeVar("Found")
 
@@ -20,6 +22,25 @@ LONGEST_SHOWN = 100
 
 class RockframeError(Exception):
     """Base class of every error that rockframe raises on purpose."""
+
+    def _render_traceback_(self) -> list[str]:
+        """Give what IPython and Jupyter show: the lines that led here, and none of rockframe's."""
+        console: Any = sys.modules["IPython"]
+        shown_by = console.get_ipython().InteractiveTB
+        return shown_by.structured_traceback(type(self), self, _outside(self.__traceback__))
+
+
+def _outside(trace: TracebackType | None) -> TracebackType | None:
+    """Give a traceback without the frames of rockframe."""
+    if trace is None:
+        return None
+    rest = _outside(trace.tb_next)
+    if str(trace.tb_frame.f_globals.get("__name__", "")).partition(".")[0] == _PACKAGE:
+        return rest
+    return TracebackType(rest, trace.tb_frame, trace.tb_lasti, trace.tb_lineno)
+
+
+_PACKAGE: Final = __name__.partition(".")[0]
 
 
 class UnitsError(RockframeError, ValueError):

@@ -268,7 +268,7 @@ def _file(head: str, given: dict[str, Any], arrays: dict[str, Any]) -> str:
         f'"""{head}\n"""\n{body}\n\nGIVEN: dict[str, Any] = {numbers}\n'
         f"# at every {given['time_step']:g} s, and at every {given['output_step']:g} s\n{columns}\n"
         'if __name__ == "__main__":\n'
-        '    main(GIVEN, Path(__file__).with_suffix(".csv"))\n'
+        '    compare_peaks(GIVEN, Path(__file__).with_suffix(".csv"))\n'
     )
 
 

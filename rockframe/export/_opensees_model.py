@@ -100,7 +100,7 @@ def solve(ops: Any, given: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     step, steps = given["output_step"], given["steps_per_output"]
     rotation = [0.0]
     for row in range(1, given["rotation"].size):
-        if not all(advance(ops, step / steps) for _ in range(steps)):
+        if not all(step_in_parts(ops, step / steps) for _ in range(steps)):
             print(f"OpenSees did not converge before {row * step:.4g} s")
             break
         sideways, up = ops.nodeDisp(above, 1), ops.nodeDisp(above, 2) - ops.nodeDisp(middle, 2)
@@ -111,14 +111,14 @@ def solve(ops: Any, given: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     return step * np.arange(len(rotation)), np.array(rotation)
 
 
-def advance(ops: Any, step: float, halvings: int = 10) -> bool:
+def step_in_parts(ops: Any, step: float, halvings: int = 10) -> bool:
     """Take a step, or two halves of it where Newton's iteration ends nowhere."""
     if ops.analyze(1, step) == 0:
         return True
-    return halvings > 0 and all(advance(ops, 0.5 * step, halvings - 1) for _ in range(2))
+    return halvings > 0 and all(step_in_parts(ops, 0.5 * step, halvings - 1) for _ in range(2))
 
 
-def main(given: dict[str, Any], history: Path) -> dict[str, float]:
+def compare_peaks(given: dict[str, Any], history: Path) -> dict[str, float]:
     """Run OpenSees, write its history beside that of rockframe, and compare the peaks."""
     ops = opensees()
     ops.logFile(os.devnull, "-noEcho")  # it tells of each impact

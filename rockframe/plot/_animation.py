@@ -16,7 +16,7 @@ from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import runs_of
 from rockframe.plot._scene import Moving, figure_size
-from rockframe.units import ANGLE, LENGTH
+from rockframe.units import LENGTH
 from rockframe.version import __version__
 from rockframe.writing import FileKind, checked_path, write_file
 
@@ -236,7 +236,7 @@ def animation(
     count = max(2, 1 + round(length * rate / faster))
     times = np.linspace(drawn.time[0], drawn.time[-1], count)
     chosen = units_of(units, "animation")
-    trace_in = rotation or (None if chosen.reader.chose(ANGLE) else "deg")
+    trace_in = chosen.rotations(rotation)
     moving = Moving(drawn.dataset, "animation", magnify, chosen)
     shown_at = drawn.nearest(times)
     width, height = figure_size(moving.drawer, wide=False)

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.studies.intensities import PERIOD_OF, measure_words
-from rockframe.units import LENGTH, Measure
+from rockframe.units import ANGLE, LENGTH, Measure
 from rockframe.units.shown import ReaderUnits, reader_units, shown_unit
 from rockframe.units.shown import Shown as Shown
 
@@ -42,13 +42,13 @@ _LETTER, _LINE, _HANDLE = 0.07, 0.19, 0.55
 words [in]."""
 
 
-def key(axes: "Axes", **style: Any) -> None:
+def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> None:
     """Write a legend above what is drawn, for which the axis is made longer."""
-    words = axes.get_legend_handles_labels()[1]
+    handles, words = axes.get_legend_handles_labels() if named is None else named
     title = str(style.get("title", ""))
-    width, height = axes.get_window_extent().size / axes.figure.dpi
+    width, height = np.divide(axes.get_window_extent().size, axes.figure.dpi)
     entry = _HANDLE + _LETTER * max(map(len, words))
-    columns = int(np.clip((0.95 * width) // entry, 1, len(words)))
+    columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
     rows = -(-len(words) // columns) + bool(title)
     share = min(0.6, (0.08 + _LINE * rows) / height)
     linear = axes.get_yscale() == "linear"
@@ -58,8 +58,8 @@ def key(axes: "Axes", **style: Any) -> None:
     elif high > low > 0.0:
         axes.set_ylim(low, low * (1.05 * high / low) ** (1.0 / (1.0 - share)))
     axes.legend(
-        loc="upper right", ncols=columns, fontsize="small", frameon=False, borderaxespad=0.2,
-        handlelength=1.8, columnspacing=1.2, **style,
+        handles, words, loc="upper right", ncols=columns, fontsize="small", frameon=False,
+        borderaxespad=0.2, handlelength=1.8, columnspacing=1.2, **style,
     )  # fmt: skip
 
 
@@ -186,9 +186,12 @@ class FigureUnits:
         (unit,) = given.values()
         if unit is None and self.reader.chose(measure) is None:
             return None
-        if isinstance(unit, str) and unit == RELATIVE:
-            return None
-        return self.of(measure, "", **given)
+        told_relative = isinstance(unit, str) and unit == RELATIVE
+        return None if told_relative else self.of(measure, "", **given)
+
+    def rotations(self, rotation: str | None) -> str | None:
+        """Give the unit of a trace of rotations: the given one, the reader's, or degrees."""
+        return "deg" if rotation is None and self.reader.chose(ANGLE) is None else rotation
 
 
 def units_of(units: object, function: str) -> FigureUnits:

@@ -41,6 +41,8 @@ _FRACTILES: Final = (0.16, 0.5, 0.84)
 _STYLED: Final = (1, 0, 2)
 """Dashes of each."""
 _HEIGHTS: Final = 400
+_ROOM: Final = 1.15
+"""End of the axis over the highest intensity at which a verdict changes."""
 _WAYS: Final = (VERMILLION, BLUE, SKY, PURPLE, GREEN)
 MAP_COLOURS: Final = (STANDS, *_WAYS)
 """Of what stands, and of what overturns after none, one and more impacts."""
@@ -83,11 +85,13 @@ def dynamic_analysis(
     left, right = on.panels
     several = given.sizes["motion"] >= _LEAST_FRACTILES
     last, lines = given.isel(limit_state=-1), list[tuple[Any, Any]]()
+    highest: list[float] = []
     for number in range(given.sizes["motion"]):
         one, along = given.isel(motion=number), intensity.isel(motion=number).to_numpy()
         flips = last.isel(motion=number)["scale_above"].to_numpy()
         places = _at(flips[~np.isnan(flips)], one["scale"].to_numpy(), along)
         line = _until_flips(along, one["peak_relative_rotation"].to_numpy(), places)
+        highest.append(float(places.max(initial=0.0)))
         colour = GREY if several else colour_of(number)
         words = ("motions" if number == 0 else None) if several else str(one["motion"].item())
         left.plot(line[1], line[0], color=colour, lw=0.7, label=words)
@@ -104,7 +108,10 @@ def dynamic_analysis(
         ylabel=label_of_intensity(given[name], given),
         xlim=(0.0, 1.03),
     )
-    left.set_ylim(bottom=0.0)
+    # nothing happens above where the last verdict changes, if all motions have overturned
+    changes = [place for place in highest if place > 0.0]
+    above = _ROOM * max(changes) if len(changes) == len(lines) else np.inf
+    left.set_ylim(0.0, min(left.get_ylim()[1], above))
     for number, state in enumerate(given["limit_state"].to_numpy()):
         capacity = given["capacity_scale"].isel(limit_state=number).to_numpy()
         places = [
@@ -116,7 +123,9 @@ def dynamic_analysis(
         ordered = np.sort(np.array([0.0, *places]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
         right.step(shares, ordered, where="pre", color=colour_of(number), label=str(state))
-    right.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
+    right.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02), ylim=left.get_ylim())
+    if on.own is None:  # the axis of given panels may stand anywhere
+        right.set_ylabel(left.get_ylabel())
     for axes in on.panels:
         grid(axes)
     on.name_lines()

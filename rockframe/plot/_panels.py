@@ -10,6 +10,7 @@ import numpy as np
 
 from rockframe.arguments import text
 from rockframe.errors import ComponentError, shown
+from rockframe.plot._axes import key
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,18 +104,17 @@ class Sheet:
     def legend(
         self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any
     ) -> None:
-        """Write a legend below the figure; of given panels, in the last one.
+        """Write a legend below the figure; of given panels, above what is drawn in the last one.
 
         It has as many columns as there is room for, and no more than told.
         """
-        held = self.own or self.panels.figure
-        width = _LETTERS_PER_INCH * held.bbox.width / self.panels.figure.get_dpi()
+        if self.own is None:
+            key(self.panels[-1], (handles, labels))
+            return
+        width = _LETTERS_PER_INCH * self.own.bbox.width / self.panels.figure.get_dpi()
         fitting = int(width // (_LETTERS_OF_HANDLE + max(map(len, labels))))
         style |= {"ncols": max(1, min(len(labels), columns, fitting))}
-        if self.own is not None:
-            self.own.legend(handles, labels, loc="outside lower center", frameon=False, **style)
-        else:
-            self.panels[-1].legend(handles, labels, **{"fontsize": "small", **style})
+        self.own.legend(handles, labels, loc="outside lower center", frameon=False, **style)
 
     def name_lines(self) -> None:
         """Write one legend of what is named in all panels."""

@@ -2,6 +2,9 @@
 
 import copy
 import pickle
+import subprocess
+import sys
+import traceback
 
 import numpy as np
 import pytest
@@ -77,3 +80,56 @@ def test_errors_come_back_whole_from_other_processes_and_from_copies(kind, again
     assert str(other) == str(made)
     assert other.args == made.args
     assert vars(other) == vars(made)
+
+
+class Console:
+    """Stands for IPython, which asks an error for its traceback, and draws it."""
+
+    InteractiveTB = None
+
+    def get_ipython(self):
+        return self
+
+    def structured_traceback(self, kind, error, trace):
+        return [kind.__name__, *(name for _, _, name, _ in traceback.extract_tb(trace))]
+
+
+@pytest.mark.parametrize(
+    "misuse",
+    [
+        lambda: rf.Block(width="0.8 m", height="4", mass="2 t"),
+        lambda: rf.System(rf.RigidGround()),
+        lambda: rf.plot.response(3),
+        lambda: rf.GroundMotion.read("nowhere.AT2"),
+    ],
+    ids=["units", "assembly", "figure", "file"],
+)
+def test_notebooks_show_the_line_that_was_wrong_and_no_other(misuse, monkeypatch):
+    console = Console()
+    console.InteractiveTB = console
+    monkeypatch.setitem(sys.modules, "IPython", console)
+    with pytest.raises(RockframeError) as caught:
+        misuse()
+    here = "test_notebooks_show_the_line_that_was_wrong_and_no_other"
+    name, *frames = caught.value._render_traceback_()
+    assert name == caught.type.__name__
+    assert frames == [here, "<lambda>"]
+    whole = [one.name for one in caught.traceback]
+    assert len(whole) > 2  # for those who look for it
+
+
+def test_ipython_shows_the_line_that_was_wrong_and_no_other():
+    pytest.importorskip("IPython", reason="IPython is not installed")
+    code = """
+from IPython.core.interactiveshell import InteractiveShell
+shell = InteractiveShell.instance(colors="nocolor")
+shell.run_cell("import rockframe as rf")
+shell.run_cell("rf.Block(width='0.8 m', height='4', mass='2 t')")
+"""
+    ran = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+    )
+    assert "needs a length" in ran.stdout
+    assert "rf.Block(width" in ran.stdout
+    assert "reading.py" not in ran.stdout
+    assert ran.stdout.count("Cell") + ran.stdout.count("<ipython-input") == 1

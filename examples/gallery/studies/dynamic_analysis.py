@@ -2,8 +2,8 @@
 Incremental dynamic analysis
 ============================
 
-Eight motions at growing scales. Full dots: the cabinet first falls; hollow ones: it stands again,
-or falls again (:doc:`/guide/analyses`).
+Eight motions at growing scales, in grey, with the fractiles of their peaks. Full dots: the cabinet
+first falls; hollow ones: it stands again, or falls again (:doc:`/guide/analyses`).
 """
 
 import numpy as np

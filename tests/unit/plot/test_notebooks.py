@@ -179,3 +179,24 @@ def test_a_fitted_test_is_drawn_beside_its_measurement():
     np.testing.assert_array_equal(fitted.get_ydata(), found.fitted_rotation)
     np.testing.assert_array_equal(below.get_lines()[0].get_ydata(), found.rotation_residual)
     assert "restitution" in above.figure.get_suptitle()
+
+
+def test_a_run_is_a_card_with_its_verdict_on_top():
+    run = rf.System(BLOCK, PADS).simulate(PULSE, free_vibration="1 s")
+    text, html = shown(run.rockframe)
+    assert run.attrs["verdict"] in " ".join(text.split())
+    assert html.index(run.attrs["verdict"][:30]) < html.index("<table")
+    assert f"{np.degrees(run.peak_rotation.item()):.4g}°" in text
+    assert html.count("<polyline") == 1
+    assert "nan" not in text
+    assert html.count("<polygon") == 4  # ground, two pads, block
+    bare = rf.System(BLOCK, PADS).simulate(PULSE, outputs=None)
+    assert "<polyline" not in shown(bare.rockframe)[1]
+    alone = run.copy()
+    del alone.attrs["system_json"]
+    assert "<polygon" not in shown(alone.rockframe)[1]
+    runs = rf.sweep(rf.System(BLOCK), {"p": PULSE}, scale=[0.5, 1.0], progress=False)
+    assert runs.attrs["verdict"][:20] in shown(runs.rockframe)[0]
+    assert shown(xr.Dataset().rockframe)[0].split()[0] == "Dataset"
+    named = rf.System(BLOCK).simulate(NASTY)
+    assert "<b>&" not in shown(named.rockframe)[1]

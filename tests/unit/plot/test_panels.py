@@ -301,7 +301,9 @@ def test_legends_stand_off_the_curves(runs, size):
                      panels=("rotation", "left_reaction", "contact"))  # fmt: skip
     single, axes = plt.subplots(figsize=size)
     rf.plot.phase(runs, ax=axes)
-    for drawn in (figure, single):
+    third, (_, axes) = plt.subplots(1, 2, figsize=size)
+    rf.plot.energies(runs["whole"], ax=axes)
+    for drawn in (figure, single, third):
         drawn.canvas.draw()
         for panel in drawn.axes:
             if panel.get_legend() is None:

@@ -98,6 +98,8 @@ def test_a_dynamic_analysis_agrees_with_the_critical_scale(analysis):
 
 
 def test_the_period_of_a_spectral_intensity_is_kept_and_told():
+    from matplotlib import pyplot
+
     measure = "pseudo_spectral_acceleration"
     asked = {"intensity": measure, "period": "1.7 s"}
     suite = motions()
@@ -114,15 +116,15 @@ def test_the_period_of_a_spectral_intensity_is_kept_and_told():
     assert f"peak ground acceleration and {words}" in pair.verdict
     axes = [
         rf.plot.fragility(found).get_xlabel(),
-        rf.plot.dynamic_analysis(analysis)[0].get_xlabel(),
-        rf.plot.dynamic_analysis(analysis)[1].get_xlabel(),
+        rf.plot.dynamic_analysis(analysis)[0].get_ylabel(),
+        rf.plot.dynamic_analysis(analysis, ax=pyplot.subplots(1, 2)[1])[1].get_ylabel(),
         rf.plot.overturning_spectrum(spectrum)[0].get_ylabel(),
         rf.plot.fragility(pair)[0].get_ylabel(),
     ]
     assert axes == [f"{words} [m s$^{{-2}}$]"] * 5
     plain = rf.incremental_dynamic_analysis(SYSTEM, suite, intensity="PGA", **some)
     assert "intensity_period" not in plain.attrs
-    assert rf.plot.dynamic_analysis(plain)[0].get_xlabel().startswith("peak ground acceleration [")
+    assert rf.plot.dynamic_analysis(plain)[0].get_ylabel().startswith("peak ground acceleration [")
 
 
 def test_a_scan_that_starts_too_high_says_that_capacities_lie_below(analysis):
