@@ -2,10 +2,11 @@
 
 import json
 import math
+import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.command.streams import STREAM
+from rockframe.command.streams import STREAM, is_terminal
 from rockframe.errors import FileError
 from rockframe.version import __version__
 
@@ -70,6 +71,9 @@ class Answer:
         if self.as_json or self.data is not None:
             other = "the answer in JSON" if self.as_json else "another file"
             words = f"{other} goes to the standard output already; name a file instead of '-'"
+            raise FileError(STREAM, [(None, words)])
+        if is_terminal(sys.stdout) and b"\0" in data:
+            words = "the standard output is a terminal, which shows no such file; name one"
             raise FileError(STREAM, [(None, words)])
         self.data = data
 

@@ -59,7 +59,7 @@ def opened(path: str, what: str) -> "str | IO[bytes]":
 def shows_colours(stream: object) -> bool:
     """Tell whether a stream is a terminal on which colours are wanted (https://no-color.org)."""
     plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
-    return not plain and _is_terminal(stream)
+    return not plain and is_terminal(stream)
 
 
 def coloured(words: str, kind: str, stream: object) -> str:
@@ -72,7 +72,8 @@ def tell(who: str, words: str, kind: str = "error") -> None:
     print(f"{coloured(f'{who}:', kind, sys.stderr)} {words}", file=sys.stderr)
 
 
-def _is_terminal(stream: object) -> bool:
+def is_terminal(stream: object) -> bool:
+    """Tell whether somebody looks at a stream."""
     try:
         return bool(stream.isatty())  # type: ignore[attr-defined]
     except (AttributeError, ValueError):  # there is none, or it is closed
@@ -83,7 +84,7 @@ class Bar:
     """How far it is, in one line of the standard error, where that is a terminal."""
 
     def __init__(self, what: str, *, wanted: bool) -> None:
-        self._shown = wanted and _is_terminal(sys.stderr) and os.environ.get("TERM") != "dumb"
+        self._shown = wanted and is_terminal(sys.stderr) and os.environ.get("TERM") != "dumb"
         self._what, self._part = what, ""
         self._total = self._done = 0
         self._begun, self._last = monotonic(), 0.0

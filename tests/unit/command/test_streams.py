@@ -160,6 +160,12 @@ def test_an_interrupted_analysis_tells_what_it_has(name, typed, monkeypatch):
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
+def test_a_terminal_is_spared_what_it_cannot_show(typed, monkeypatch):
+    monkeypatch.setattr(sys, "stdout", Terminal())
+    code, _, err = typed("run", "scene.toml", "-o", "-")
+    assert (code, "the standard output is a terminal" in err) == (2, True)
+
+
 def test_nothing_is_lost_where_nobody_reads_on(folder):
     for command in ("run scene.toml -o out.nc", "critical scene.toml --runs 20 -o out.nc --json"):
         Path("out.nc").unlink(missing_ok=True)
