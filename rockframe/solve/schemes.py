@@ -5,10 +5,10 @@ A step of fixed length takes two evaluations, :eq:`eq-fixed-stages` and :eq:`eq-
 """
 
 import math
-from typing import Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Vector, inlined, kernel, put, table
-from rockframe.dynamics.protocol import POWERS, Equations, EquationsWithPowers, Ground
+from rockframe.dynamics.protocol import POWERS, Equations, Ground
 from rockframe.solve import layout as at
 from rockframe.solve.workspace import ERRORS, Span, ground_in
 
@@ -325,13 +325,13 @@ class FixedSteps(NamedTuple):
 
 
 class FixedStepsByRates(FixedSteps):
-    """The same, of equations that give powers at any rates."""
+    """The same, of :class:`rockframe.dynamics.protocol.EquationsWithPowers`."""
 
     __slots__ = ()
 
     @inlined
     def powers_in_middle(
-        self, system: EquationsWithPowers, mode: int, count: int, half: float, state: Vector,
+        self, system: Any, mode: int, count: int, half: float, state: Vector,
         first: Vector, stage: Vector, slope: Vector, ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
         """Give the powers at the place of the stage and the rates :eq:`eq-fixed-powers`."""
@@ -343,7 +343,7 @@ class FixedStepsByRates(FixedSteps):
 
     @inlined
     def powers_at_end(
-        self, system: EquationsWithPowers, mode: int, new: Vector, stage: Vector, slope: Vector,
+        self, system: Any, mode: int, new: Vector, stage: Vector, slope: Vector,
         ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
         """Give the same at the place of the last stage and the rates at the end of the step."""

@@ -120,7 +120,7 @@ def test_fast_on_coarse_records():
             off = abs(fast.rotation - exact.rotation).max() / exact.peak_rotation
             assert float(off) == pytest.approx(error, rel=DIGITS), (every, system)
     residual, history = said(
-        PAGE, "record at 40 ms the residual is #, though the history is right to #. It"
+        PAGE, "record at 40 ms the residual is # and the history right to #. It"
     )
     assert float(fast.energy_residual) == pytest.approx(residual, rel=DIGITS)
     assert float(off) == pytest.approx(history, rel=DIGITS)
