@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,9 @@ from rockframe.results.outcome import Values
 from rockframe.results.schema import COORDINATES, SCHEMA_VERSION, schema_row
 from rockframe.version import __version__
 
+SOURCE: Final = "event-driven integration"
+"""Where the numbers of runs are from, beside the version."""
+
 
 def build_dataset(
     values: Values,
@@ -21,7 +24,7 @@ def build_dataset(
     *,
     over: tuple[str, ...] = (),
     title: str = "Rocking response",
-    source: str = "event-driven integration",
+    source: str = SOURCE,
 ) -> xr.Dataset:
     """Label values by the schema and add the provenance every result carries."""
     variables: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}

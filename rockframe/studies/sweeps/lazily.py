@@ -55,7 +55,7 @@ def lazy_dataset(kept: Store) -> xr.Dataset:
     dataset = around_cases(labels, attributes).assign(columns)
     dataset = dataset.assign({_STATUS: variable(_STATUS, "i1", ())})
     dataset = with_coordinates(dataset, labels, variable(MESSAGE, "O", ()))
-    dataset.attrs["history"] = kept.history
+    dataset.attrs |= kept.provenance()
     if find_spec("dask") is None:
         return dataset
     return dataset.chunk(blocks(grid, max(_BLOCK, kept.chunk)), token=f"{kept.digest} {done}")

@@ -166,8 +166,7 @@ def _free(
 def stored_dataset(kept: Store) -> xr.Dataset:
     """Give what a folder holds as a dataset."""
     dataset = sweep_dataset(kept.labels(), kept.found())
-    dataset.attrs["history"] = kept.history
-    return dataset
+    return dataset.assign_attrs(kept.provenance())
 
 
 def folder_of(path: object) -> Path:

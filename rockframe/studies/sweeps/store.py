@@ -19,7 +19,7 @@ import numpy as np
 
 from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import dated
+from rockframe.results.dataset import SOURCE, dated
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint
 from rockframe.studies.sweeps.axes import Axis, Grid, chunks_of
@@ -152,6 +152,7 @@ class Store:
     cases: int  # number of cases
     chunk: int  # cases of a chunk
     history: str  # when the study was begun, for the history of its dataset
+    version: str  # of rockframe, whose numbers these are
 
     @classmethod
     def of_study(cls, path: Path, study: Study, chunk: int) -> "Store":
@@ -163,6 +164,13 @@ class Store:
         except OSError as problem:
             raise _cannot_be_kept(path, problem) from problem
         kept = _read_head(path)
+        if kept["rockframe_version"] != __version__:
+            msg = (
+                f"{path}: found a study of rockframe {kept['rockframe_version']}, whose numbers "
+                f"may be others than those of this one, {__version__}; it can be read "
+                "(rf.open_study) and not gone on with: run the study again, in another folder"
+            )
+            raise StudyError(msg)
         if kept["study_sha256"] != study.digest:
             raise StudyError(_difference(path, kept["study"], study.to_dict()))
         return cls._of_head(path, kept)
@@ -175,8 +183,17 @@ class Store:
     @classmethod
     def _of_head(cls, path: Path, kept: Mapping[str, Any]) -> "Store":
         return cls(
-            path, kept["study_sha256"], kept["cases"], kept["cases_of_a_chunk"], kept["history"]
-        )
+            path, kept["study_sha256"], kept["cases"], kept["cases_of_a_chunk"], kept["history"],
+            kept["rockframe_version"],
+        )  # fmt: skip
+
+    def provenance(self) -> dict[str, str]:
+        """Give the attributes that tell where the numbers are from."""
+        return {
+            "history": self.history,
+            "source": f"rockframe {self.version}, {SOURCE}",
+            "rockframe_version": self.version,
+        }
 
     def chunks(self) -> list[Chunk]:
         """Give all chunks."""
@@ -375,8 +392,8 @@ def _read_head(path: Path) -> dict[str, Any]:
     except (ValueError, KeyError, TypeError) as problem:
         msg = f"{file}: damaged: {problem}"
         raise StudyError(msg) from problem
-    if form != FORMAT or version != __version__:
-        why = "whose numbers may be others"
+    if form != FORMAT:
+        why = "which this version cannot read"
         if form in _WITHOUT_ORDER:
             why = "which does not tell for certain whose results it holds"
         msg = (

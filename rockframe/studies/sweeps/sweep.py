@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from rockframe.arguments import truth
-from rockframe.errors import StudyError, shown
+from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.shared_arguments import documented_by
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
@@ -19,6 +19,7 @@ from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.running import folder_of, run_study, stored_dataset
 from rockframe.studies.sweeps.store import Store
 from rockframe.system.options import Overturning
+from rockframe.version import __version__
 
 if TYPE_CHECKING:
     from rockframe.components import InitialState
@@ -179,8 +180,19 @@ def open_study(path: "str | PathLike[str]", *, lazy: bool = False) -> xr.Dataset
     Raises
     ------
     StudyError
-        There is no study, it is damaged, or another version of rockframe wrote it.
+        There is no study, it is damaged, or of a format that cannot be read.
+
+    Warns
+    -----
+    ModelWarning
+        Another version of rockframe has run it, whose numbers may be others.
     """
     kept = Store.at(folder_of(path))
+    if kept.version != __version__:
+        warn(
+            f"open_study: {kept.folder} was run by rockframe {kept.version}, whose numbers may be "
+            f"others than those of this one, {__version__}",
+            ModelWarning,
+        )
     later = truth(lazy, owner="open_study", name="lazy")
     return lazy_dataset(kept) if later else stored_dataset(kept)

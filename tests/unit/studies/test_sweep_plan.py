@@ -86,7 +86,7 @@ def test_options_of_the_system_are_axes_too():
         restraint=["centre", "contact-state"], gravity=(["1 g_0", "3.7 m/s^2"]), **FAST,
     )  # fmt: skip
     assert dict(runs.sizes) == {
-        "message": 1, "System.rotation": 2, "restraint": 2, "gravity": 2, "motion": 1,
+        "System.rotation": 2, "restraint": 2, "gravity": 2, "motion": 1,
     }  # fmt: skip
     told = runs.peak_rotation.sel({"System.rotation": "small", "restraint": "centre"}).isel(
         gravity=1

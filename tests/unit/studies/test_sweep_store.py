@@ -8,10 +8,11 @@ import pytest
 from kept_sweep import BLOCK, PULSE, RECORD, SCALES, as_bytes, files, the_sweep
 
 import rockframe as rf
-from rockframe.errors import SolverWarning, StudyError
+from rockframe.errors import ModelWarning, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies.sweeps import case as of_cases
 from rockframe.studies.sweeps.store import read_arrays, write_arrays, write_whole
+from rockframe.version import __version__
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 
@@ -124,10 +125,9 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
     keep, plain = head.read_text(), chunk.read_bytes()
     for kept, words in (
         (
-            keep.replace('"rockframe_version": "', '"rockframe_version": "9.'),
-            "found a study of rockframe 9",
+            keep.replace('"format": 3', '"format": 4'),
+            r"\(format 4\), which this version cannot read",
         ),
-        (keep.replace('"format": 3', '"format": 4'), r"\(format 4\)"),
         (keep[:300], "study.json: damaged"),
         (keep.replace('"cases":', '"kases":'), "entries are missing"),
         ("", "study.json: damaged"),
@@ -159,6 +159,28 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
     (copied / "labels.arrays").unlink()
     with pytest.raises(StudyError, match=r"labels.arrays cannot be read"):
         rf.open_study(copied)
+
+
+def test_a_study_of_another_version_is_read_and_not_gone_on_with(copied, whole):
+    head, last = copied / "study.json", copied / "chunk-000079.arrays"
+    head.write_text(
+        head.read_text().replace(
+            f'"rockframe_version": "{__version__}', '"rockframe_version": "0.0.9'
+        )
+    )
+    last.unlink()
+    with pytest.raises(StudyError, match=r"of rockframe 0.0.9, whose .* may be others .* not gone"):
+        the_sweep(copied)
+    assert not last.exists()
+    for lazy in (False, True):
+        with pytest.warns(ModelWarning, match=r"was run by rockframe 0\.0\.9"):
+            found = rf.open_study(copied, lazy=lazy)
+        assert found.attrs["rockframe_version"] == "0.0.9"
+        assert found.attrs["source"].startswith("rockframe 0.0.9, ")
+        there = found.status != RunStatus.NOT_RUN
+        assert int((~there).sum()) == 3
+        expected = whole[1].peak_rotation.where(there)
+        np.testing.assert_array_equal(found.peak_rotation, expected)
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path):
