@@ -93,7 +93,7 @@ def combined_mass(masses: Sequence[Placed]) -> PlaneMass:
 
 
 Place: TypeAlias = tuple[QuantityLike, QuantityLike]
-Points: TypeAlias = Iterable[Place] | Quantity | tuple[Any, str]
+Points: TypeAlias = Iterable[Place] | Iterable[tuple[float, float]] | Quantity | tuple[Any, str]
 
 MASS_WAYS: Final = OneOf("mass", ("density", "depth"))
 

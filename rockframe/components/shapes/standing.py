@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
+from rockframe.components.base import Component
 from rockframe.components.shapes.reading import PlaneMass
 from rockframe.errors import ComponentError, ModelWarning, collected_warnings, warn
 from rockframe.units import INERTIA, LENGTH, MASS
@@ -14,7 +15,7 @@ ROUNDING: Final = 1e-9
 CENTRED: Final = 1e-12
 """Relative to the base: a centre of mass that is less beside its middle is above it."""
 
-Made = TypeVar("Made")
+Made = TypeVar("Made", bound=Component)
 
 
 @dataclass(frozen=True)
