@@ -171,6 +171,10 @@ EVENT_ROOM = 256
 STEP_ROOM = 1024
 STEPS_PER_INTERVAL = 3.0
 """Room for steps, more than most runs need: memory that is not written to costs nothing."""
+MOST_STEPS_KEPT = 2_000_000
+"""Rows of steps, some hundred megabytes, beyond which none are kept."""
+STEPS_UNHEARD = 2_000_000
+"""Steps of machine code, a second or less, after which an interruption is heard."""
 STEPS_AT_ONCE = 500
 """Steps in plain Python, after which it is seen whether there is machine code by now."""
 STILL_INTERVAL = 0.01
@@ -210,7 +214,7 @@ def integrate(
     with_work : bool
         Whether dashpot and input work are stored at the output times.
     keep_steps : bool
-        Whether both ends of all steps are kept.
+        Whether both ends of all steps are kept, of runs up to `MOST_STEPS_KEPT` of them.
 
     Returns
     -------
@@ -249,10 +253,9 @@ def integrate(
     as_python = 0.0  # time that it took in plain Python
     while True:
         began = perf_counter()
-        counters[at.PAUSE_AT] = counters[at.MAX_STEPS]
-        if not has_machine_code(equations):
-            tried = counters[at.STEPS] + counters[at.REJECTED]
-            counters[at.PAUSE_AT] = min(tried + STEPS_AT_ONCE, counters[at.MAX_STEPS])
+        at_once = STEPS_UNHEARD if has_machine_code(equations) else STEPS_AT_ONCE
+        tried = counters[at.STEPS] + counters[at.REJECTED]
+        counters[at.PAUSE_AT] = min(tried + at_once, counters[at.MAX_STEPS])
         result = advance(
             equations,
             run.tolerance,
@@ -270,7 +273,8 @@ def integrate(
         if counters[at.EVENTS] >= len(events.codes):
             events = EventTable(*_longer(*events))
         if has_no_room(steps.codes, counters):
-            steps = StepTable(*_longer(*steps))
+            keep_steps = counters[at.STEPS_KEPT] < MOST_STEPS_KEPT
+            steps = StepTable(*_longer(*steps)) if keep_steps else no_steps()
 
     if not COMPILED or not runs_as_python(equations):  # of which more has been said
         say_slow(as_python)
