@@ -225,10 +225,10 @@ class Grid:
         first = [MOTION] if MOTION in self.sizes else []
         return (*first, *scales, *last)
 
-    def places(self, first: int, last: int) -> dict[str, Generic]:
-        """Give the places along all dimensions of the cases from `first` to before `last`."""
+    def places(self, cases: range | Generic) -> dict[str, Generic]:
+        """Give the places along all dimensions of cases, by their numbers in order of running."""
         shape = [self.sizes[name] for name in self.order]
-        found = np.unravel_index(np.arange(first, last), shape)
+        found = np.unravel_index(np.asarray(cases, dtype=np.int64), shape)
         return dict(zip(self.order, found, strict=True))
 
     def number_of(self, place: Mapping[str, int]) -> int:
@@ -257,16 +257,16 @@ class Grid:
         rest = range(len(shape), apart.ndim)
         return np.ascontiguousarray(apart.transpose([*moved, *rest]))
 
-    def of_cases(self, first: int, last: int) -> tuple[tuple[Axis, Generic], ...]:
-        """Give for each axis its values in the cases from `first` to before `last`."""
-        places = self.places(first, last)
+    def of_cases(self, cases: range | Generic) -> tuple[tuple[Axis, Generic], ...]:
+        """Give for each axis its values in some cases."""
+        places = self.places(cases)
         own = [(axis, axis.values[places[axis.name]]) for axis in self.axes]
         rows = [(axis, axis.values[places[CASE]]) for axis in self.columns]
         return (*own, *rows)
 
-    def motions_of(self, first: int, last: int) -> Generic:
-        """Give the numbers of the motions of the cases from `first` to before `last`."""
-        places = self.places(first, last)
+    def motions_of(self, cases: range | Generic) -> Generic:
+        """Give the numbers of the motions of some cases."""
+        places = self.places(cases)
         if self.motion_column is not None:
             return self.motion_column[places[CASE]]
         return places[MOTION]

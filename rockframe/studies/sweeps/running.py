@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from os import PathLike
@@ -21,6 +21,7 @@ from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.claims import Claims
 from rockframe.studies.sweeps.execution import Chunk, ProgressBar, run_chunks, workers_of
+from rockframe.studies.sweeps.known import KnownCases
 from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
 from rockframe.studies.sweeps.lazily import lazy_dataset
 from rockframe.studies.sweeps.store import Store, begin_with
@@ -45,6 +46,7 @@ def run_study(
     store: "str | PathLike[str] | None" = None,
     executor: Executor | None = None,
     chunk: int | None = None,
+    known: "Sequence[str | PathLike[str]]" = (),
 ) -> xr.Dataset:
     """Run the cases of a study that are not kept yet, and label all of them."""
     workers = workers_of(executor)
@@ -56,10 +58,14 @@ def run_study(
     )
     _say_how_long(study, workers, as_python=as_python, kept=store is not None)
     remember(study)
+    if store is None and known:
+        msg = "known cases are copied into the store of the sweep; give store='a folder'"
+        raise StudyError(msg)
+    others = KnownCases(study, map(folder_of, known))
     if store is None:
         dataset, whole = _in_memory(study, size, executor, bar)
     else:
-        dataset, whole = _kept(study, folder_of(store), size, executor, bar)
+        dataset, whole = _kept(study, folder_of(store), size, executor, bar, others)
     if not whole:
         warn(f"{OWNER}: interrupted; {cases_verdict(dataset)}", SolverWarning)
     if not study.lazy:
@@ -110,7 +116,12 @@ def _in_memory(
 
 
 def _kept(
-    study: Study, folder: Path, size: int, executor: Executor | None, bar: ProgressBar
+    study: Study,
+    folder: Path,
+    size: int,
+    executor: Executor | None,
+    bar: ProgressBar,
+    others: KnownCases,
 ) -> tuple[xr.Dataset, bool]:
     kept = Store.of_study(folder, study, size)
     every = kept.chunks()
@@ -127,13 +138,15 @@ def _kept(
     claims = Claims(folder)
 
     def take(one: Chunk, rows: CaseResults) -> None:
-        kept.put(one, rows)
+        kept.put(one, others.filled(one, rows))
         claims.let_go(one.number)
         bar.update(len(one.cases))
 
-    free = _free(begin_with(missing) if some else missing, kept, claims, bar)
+    free = _free(begin_with(missing) if some else missing, kept, others, claims, bar)
     try:
-        whole = run_chunks(free, lambda one: study.job(one.cases), take, executor, claims.live)
+        whole = run_chunks(
+            free, lambda one: study.job(others.lacking(one)), take, executor, claims.live
+        )
     finally:
         claims.let_all_go()
     if whole:
@@ -142,16 +155,21 @@ def _kept(
 
 
 def _free(
-    missing: list[Chunk], kept: Store, claims: Claims, bar: ProgressBar
+    missing: list[Chunk], kept: Store, others: KnownCases, claims: Claims, bar: ProgressBar
 ) -> Iterator[Chunk | None]:
-    """Give the chunks that no other job has, as they are claimed; None while others have them."""
+    """Give the chunks that no other job has, as they are claimed; None while others have them.
+
+    Chunks of which all is known from other studies are kept here, and given to nobody.
+    """
     looked = -math.inf
     while missing:
         if time.monotonic() - looked < _LOOK:
             yield None
             continue
-        looked, others = time.monotonic(), []
+        looked, later = time.monotonic(), list[Chunk]()
         for one in missing:
+            if not kept.has(one) and not len(others.lacking(one)):
+                kept.put(one, others.filled(one, None))
             mine = not kept.has(one) and claims.take(one.number)
             if kept.has(one):  # another job has run it, maybe a moment ago
                 claims.let_go(one.number)
@@ -159,8 +177,8 @@ def _free(
             elif mine:
                 yield one
             else:
-                others.append(one)
-        missing = others
+                later.append(one)
+        missing = later
 
 
 def stored_dataset(kept: Store) -> xr.Dataset:

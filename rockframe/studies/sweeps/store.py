@@ -195,6 +195,10 @@ class Store:
             "rockframe_version": self.version,
         }
 
+    def described(self) -> dict[str, Any]:
+        """Give what the study is made of, as it was described when it was begun."""
+        return _read_head(self.folder)["study"]
+
     def chunks(self) -> list[Chunk]:
         """Give all chunks."""
         return [Chunk(k, cases) for k, cases in enumerate(chunks_of(self.cases, self.chunk))]

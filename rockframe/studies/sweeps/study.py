@@ -88,14 +88,14 @@ class Study:
     # whether the result is larger than the memory, which is no part of what it is
     lazy: bool = field(default=False, compare=False)
 
-    def job(self, cases: range) -> SweepJob:
+    def job(self, cases: range | Generic) -> SweepJob:
         """Give the job of some cases."""
-        number = self.grid.motions_of(cases.start, cases.stop)
+        number = self.grid.motions_of(cases)
         used, place = np.unique(number, return_inverse=True)
         every = list(self.motions.values())
         return SweepJob(
             self.scene,
-            self.grid.of_cases(cases.start, cases.stop),
+            self.grid.of_cases(cases),
             tuple(every[k] for k in used),
             place,
             self.arguments,
@@ -134,7 +134,7 @@ class Study:
         spread = [int((k * _GOLDEN) % 1.0 * count) for k in range(_SCENES_TOLD)]
         found: list[str] = []
         for case in sorted({*spread, count - 1}):
-            axes = self.grid.of_cases(case, case + 1)
+            axes = self.grid.of_cases(range(case, case + 1))
             values = {axis: each.item() for axis, each in axes if axis.changes in OF_SCENES}
             try:
                 with collected_warnings():

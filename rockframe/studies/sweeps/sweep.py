@@ -49,6 +49,7 @@ def sweep(
     executor: Executor | None = None,
     chunk: int | None = None,
     progress: bool | None = None,
+    known: "str | PathLike[str] | Sequence[str | PathLike[str]]" = (),
     **more_axes: Any,
 ) -> xr.Dataset:
     """Run a scene at all combinations of values, or at all rows of a table.
@@ -82,6 +83,9 @@ def sweep(
     overturning : {"stop", "continue"}, optional
         Whether a run ends when the rotation reaches the overturning angle, or goes on until
         the block lies flat.
+    known : str or path, or sequence of them, optional
+        Stores of other sweeps, which differ in motions and in values of the axes alone: cases that
+        they have are copied into `store`, and not run again.
     **more_axes : values
         Axes, by the name of a parameter of one part (``frequency_ratio``) or of an option of
         the system (``gravity``), by an argument of the function, by where runs start
@@ -157,7 +161,8 @@ def sweep(
         kept=store is not None,
     )
     with bar_of(progress, owner=OWNER) as bar:
-        return run_study(study, bar, store=store, executor=executor, chunk=chunk)
+        several = [known] if isinstance(known, str | PathLike) else known
+        return run_study(study, bar, store=store, executor=executor, chunk=chunk, known=several)
 
 
 def open_study(path: "str | PathLike[str]", *, lazy: bool = False) -> xr.Dataset:

@@ -24,7 +24,7 @@ from rockframe.studies.sweeps.study import Study
 plain = Study.job
 def job(self, cases):
     with open({log!r}, "a") as log:
-        log.write(f"{{cases.start}}\\n")
+        log.write(f"{{cases[0]}}\\n")
     return plain(self, cases)
 Study.job = job
 """

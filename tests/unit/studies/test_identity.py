@@ -104,7 +104,8 @@ def arguments_of(name):
 
 
 def test_every_argument_is_changed_in_turn():
-    assert set(SWEEP_CHANGES) | set(KEPT) == arguments_of("sweep")
+    # what others know are the same numbers, tests/unit/studies/test_known_cases.py
+    assert set(SWEEP_CHANGES) | set(KEPT) | {"known"} == arguments_of("sweep")
     for name, (_, changes) in ANALYSES.items():
         assert set(changes) | set(KEPT) == arguments_of(name), name
 

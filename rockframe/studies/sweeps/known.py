@@ -1,0 +1,170 @@
+"""Cases that other studies have run: how a study is extended, and how several are combined."""
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from rockframe.errors import StudyError
+from rockframe.results.outcome import Generic
+from rockframe.results.variables.runs import RunStatus
+from rockframe.results.variables.studies import MOTION
+from rockframe.simulation.run import NONE
+from rockframe.studies.sweeps.axes import Grid
+from rockframe.studies.sweeps.chunk import CaseResults
+from rockframe.studies.sweeps.execution import Chunk
+from rockframe.studies.sweeps.identity import difference
+from rockframe.studies.sweeps.scenes import SystemScene
+from rockframe.studies.sweeps.store import Store
+from rockframe.studies.sweeps.study import Study
+
+_OWN: Final = ("grid", "motions")
+"""In what studies may differ of which one takes cases of the other."""
+_NOBODY: Final = -1
+
+
+class KnownCases:
+    """The cases of a study that others have run.
+
+    Parameters
+    ----------
+    study : Study
+        The study that takes them.
+    folders : iterable of Path
+        Stores of the others; of a case that several have, the first one counts.
+    """
+
+    def __init__(self, study: Study, folders: Iterable[Path]) -> None:
+        self._grid = study.grid
+        self._sources = [_Source(study, folder) for folder in folders]
+
+    def lacking(self, chunk: Chunk) -> Generic:
+        """Give the numbers of the cases of a chunk that nobody has run."""
+        if not self._sources:
+            return np.asarray(chunk.cases)
+        source, _ = self._found(chunk)
+        return np.asarray(chunk.cases)[source == _NOBODY]
+
+    def filled(self, chunk: Chunk, run: CaseResults | None) -> CaseResults:
+        """Give what a chunk shows: what was run of it, and what others know."""
+        if run is not None and len(run.status) == len(chunk.cases):
+            return run
+        source, number = self._found(chunk)
+        whole = _Rows(len(chunk.cases))
+        if run is not None:
+            whole.put(source == _NOBODY, run, slice(None))
+        for k, one in enumerate(self._sources):
+            of_chunk = number // one.kept.chunk
+            for old in np.unique(of_chunk[source == k]).tolist():
+                here = (source == k) & (of_chunk == old)
+                rows = one.kept.get(one.chunk(old))
+                whole.put(here, rows, number[here] - old * one.kept.chunk)
+        return whole.results()
+
+    def _found(self, chunk: Chunk) -> tuple[Generic, Generic]:
+        """Give who has each case of a chunk, and its number there."""
+        places = self._grid.places(chunk.cases)
+        source = np.full(len(chunk.cases), _NOBODY)
+        number = np.zeros(len(chunk.cases), dtype=np.int64)
+        for k, one in reversed([*enumerate(self._sources)]):
+            there = one.numbers(places)
+            source[there != _NOBODY] = k
+            number[there != _NOBODY] = there[there != _NOBODY]
+        return source, number
+
+
+class _Source:
+    """A study that has cases, and where they are in it."""
+
+    def __init__(self, study: Study, folder: Path) -> None:
+        self.kept = Store.at(folder)
+        told = self.kept.described()
+        own = json.loads(json.dumps(study.to_dict()))
+        differs = difference(*({k: v for k, v in d.items() if k not in _OWN} for d in (told, own)))
+        if differs:
+            msg = (
+                f"known: {folder} holds a study that differs in {', '.join(differs)}; expected one "
+                "that differs in motions and in values along its axes alone"
+            )
+            raise StudyError(msg)
+        self._grid = self.kept.labels().grid
+        for grid in (self._grid, study.grid):
+            _check_grid(grid, study, folder)
+        kinds = [{axis.name: axis.to_dict() for axis in grid.axes}
+                 for grid in (self._grid, study.grid)]  # fmt: skip
+        if kinds[0] != kinds[1]:
+            msg = (
+                f"known: {folder} holds a study over {', '.join(kinds[0])}; expected the axes "
+                f"{', '.join(kinds[1])}"
+            )
+            raise StudyError(msg)
+        digests = [[digest for _, digest in each["motions"]] for each in (told, own)]
+        self._places = {MOTION: _places(digests[1], digests[0])}
+        there = {axis.name: axis.values.tolist() for axis in self._grid.axes}
+        for axis in study.grid.axes:
+            self._places[axis.name] = _places(axis.values.tolist(), there[axis.name])
+
+    def numbers(self, places: Mapping[str, Generic]) -> Generic:
+        """Give the numbers that cases have here, by their places in the other study."""
+        each = [self._places[dim][places[dim]] for dim in self._grid.order]
+        shape = [self._grid.sizes[dim] for dim in self._grid.order]
+        found = np.ravel_multi_index([np.maximum(one, 0) for one in each], shape)
+        found[np.any(np.array(each) == _NOBODY, axis=0)] = _NOBODY
+        for old in np.unique(found[found != _NOBODY] // self.kept.chunk).tolist():
+            if not self.kept.has(self.chunk(old)):  # not yet run
+                found[found // self.kept.chunk == old] = _NOBODY
+        return found
+
+    def chunk(self, number: int) -> Chunk:
+        """Give a chunk by its number."""
+        first = number * self.kept.chunk
+        return Chunk(number, range(first, min(first + self.kept.chunk, self.kept.cases)))
+
+
+def _check_grid(grid: Grid, study: Study, folder: Path) -> None:
+    if not isinstance(study.scene, SystemScene) or grid.columns or grid.motion_column is not None:
+        msg = (
+            f"known: from {folder} cases can be taken where both studies are grids of one system: "
+            "of a function or a table nothing tells which cases are the same"
+        )
+        raise StudyError(msg)
+
+
+def _places(wanted: list[Any], there: list[Any]) -> Generic:
+    """Give where values are among others."""
+    place = {one: k for k, one in enumerate(there)}
+    return np.array([place.get(one, _NOBODY) for one in wanted])
+
+
+class _Rows:
+    """What the cases of a chunk show, from several places."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
+        self._message = np.zeros(count, dtype=np.int32)
+        self._texts: dict[str, int] = {NONE: 0}
+        self._scalars: dict[str, Generic] = {}
+        self._histories: dict[str, Generic] = {}
+
+    def put(self, here: Generic, rows: CaseResults, which: Any) -> None:
+        """Put some rows of a chunk into their places."""
+        self._status[here] = rows.status[which]
+        self._message[here] = [
+            self._texts.setdefault(rows.texts[k], len(self._texts)) for k in rows.message[which]
+        ]
+        for kept, given in (
+            (self._scalars, rows.scalars), (self._histories, rows.histories)
+        ):  # fmt: skip
+            for name, values in given.items():
+                if name not in kept:
+                    kept[name] = np.full((self._count, *values.shape[1:]), np.nan)
+                kept[name][here] = values[which]
+
+    def results(self) -> CaseResults:
+        """Give them all."""
+        return CaseResults(
+            self._status, self._scalars, self._histories, self._message, tuple(self._texts)
+        )

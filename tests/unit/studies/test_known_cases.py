@@ -1,0 +1,110 @@
+"""Studies that are extended by motions and values, or combined: what others have run is not run."""
+
+import numpy as np
+import pytest
+from kept_sweep import alike
+
+import rockframe as rf
+from rockframe.errors import StudyError
+from rockframe.studies.sweeps.study import Study
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"),
+    pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning"),
+]
+
+SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+NOISE = np.random.default_rng(5).normal(size=400)
+
+
+def record(count, size):
+    return rf.GroundMotion.from_arrays((size * NOISE[:count], "m/s^2"), "0.01 s", name="noise")
+
+
+MOTIONS = {
+    "weak": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz"),
+    "10": record(400, 2.0),
+    "9": record(150, 5.0),
+    "a": rf.GroundMotion.half_sine_pulse("6 m/s^2", "0.4 s"),
+}
+SCALES = [1.0, 0.5, 2.0, 0.7, 1.5]
+HEIGHTS = ["2 m", "0.2 m", "1 m"]  # the second cannot rock
+
+
+@pytest.fixture
+def ran(monkeypatch):
+    """Count the cases that are run."""
+    count, plain = [], Study.job
+
+    def job(self, cases):
+        count.extend(np.asarray(cases).tolist())
+        return plain(self, cases)
+
+    monkeypatch.setattr(Study, "job", job)
+    return count
+
+
+def swept(motions=tuple(MOTIONS), scales=SCALES, heights=HEIGHTS, **run):
+    return rf.sweep(
+        SYSTEM, {name: MOTIONS[name] for name in motions}, height=heights, scale=scales,
+        **{"accuracy": "fast", "chunk": 4, **run},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("chunk", [1, 4, 7, 1000])
+def test_a_study_is_extended_by_motions_and_values(tmp_path, ran, chunk):
+    whole = swept()
+    swept(("10", "weak"), [0.5, 1.0], HEIGHTS[::-1], store=tmp_path / "first")
+    ran.clear()
+    more = swept(store=tmp_path / "more", known=tmp_path / "first", chunk=chunk)
+    alike(more, whole)
+    assert len(ran) == len(set(ran)) == 60 - 2 * 2 * 3
+    ran.clear()
+    alike(swept(store=tmp_path / "more", known=str(tmp_path / "first")), whole)
+    alike(swept(store=tmp_path / "more"), whole)  # it needs the other no longer
+    assert not ran
+
+
+def test_studies_are_combined(tmp_path, ran):
+    whole = swept()
+    swept(("a", "9"), store=tmp_path / "some")
+    swept(("weak", "9", "10"), store=tmp_path / "others")
+    ran.clear()
+    parts = [tmp_path / "others", tmp_path / "some"]
+    alike(swept(store=tmp_path / "all", known=parts), whole)
+    assert not ran
+    alike(swept(("9",), [2.0], store=tmp_path / "one", known=parts), swept(("9",), [2.0]))
+
+
+def test_what_another_study_lacks_is_run(tmp_path, ran):
+    kept = {"outputs": ["rotation"], "output_step": "0.02 s", "duration": "3 s",
+            "points": {"top": ("0 m", "2 m")}, "accuracy": "standard"}  # fmt: skip
+    heights = ["2 m", "3 m"]
+    whole = swept(heights=heights, **kept)
+    swept(("weak", "9"), heights=heights, store=tmp_path / "first", **kept)
+    (tmp_path / "first" / "chunk-000001.arrays").unlink()
+    ran.clear()
+    more = swept(heights=heights, store=tmp_path / "more", known=tmp_path / "first", **kept)
+    alike(more, whole)
+    assert len(ran) == 20 + 4
+
+
+def test_what_may_be_another_case_is_refused(tmp_path):
+    swept(store=tmp_path / "first")
+    known = {"store": tmp_path / "more", "known": tmp_path / "first"}
+    with pytest.raises(StudyError, match=r"known: .* differs in arguments \(accuracy"):
+        swept(accuracy="standard", **known)
+    other = rf.System(rf.Block(width="0.6 m", height="2 m", mass="400 kg"))
+    with pytest.raises(StudyError, match=r"known: .* differs in scene"):
+        rf.sweep(other, MOTIONS, height=HEIGHTS, scale=SCALES, accuracy="fast", **known)
+    with pytest.raises(StudyError, match=r"holds a study over height, scale; expected the axes h"):
+        rf.sweep(SYSTEM, MOTIONS, height=HEIGHTS, accuracy="fast", **known)
+    with pytest.raises(StudyError, match="grids of one system"):
+        rf.sweep(
+            SYSTEM, MOTIONS, cases={"width": ["0.5 m"]}, height=HEIGHTS, scale=SCALES,
+            accuracy="fast", **known,
+        )  # fmt: skip
+    with pytest.raises(StudyError, match="give store='a folder'"):
+        swept(known=tmp_path / "first")
+    with pytest.raises(StudyError, match="found no study"):
+        swept(store=tmp_path / "more", known=tmp_path / "nothing")
