@@ -7,7 +7,7 @@ import numpy as np
 from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, LINK_BREAKS, SILENT
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
-from rockframe.errors import SolverError, or_missing
+from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.dataset import fitting
@@ -40,7 +40,6 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
 from rockframe.simulation.friction import SlidingCheck, sliding_scalars, slidings
 from rockframe.simulation.plan import Plan
-from rockframe.solve.integrate import MOST_STEPS_KEPT
 from rockframe.solve.observe import memory_at_outputs, observe_states, observe_steps
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
@@ -86,6 +85,11 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     values["time"] = run.time
     events = _events_in(shown_at, run, setting)
     along, upright = _along(system, plan, run), events
+    if not along.steps.complete:
+        missing.append(
+            f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
+            "made more steps than are kept"
+        )
     if run.overturning_time <= run.end_time:  # how a block falls is another matter
         upright = events.until(run.overturning_time)
     found = slidings(system, along)
@@ -210,8 +214,8 @@ def _shown(
 def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
     """Give what the model shows along the steps, up to overturning."""
     if run.steps is None:
-        msg = f"the run made more steps than are kept, {MOST_STEPS_KEPT:,}"
-        raise SolverError(msg)
+        msg = "no steps were kept"
+        raise ValueError(msg)
     slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
     until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
     steps = run.steps.until(until)

@@ -1,7 +1,7 @@
 """From a model, a start and a ground motion to a trajectory."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Final
 
@@ -27,7 +27,7 @@ from rockframe.solve.driver import FIXED_STEPS, advance
 from rockframe.solve.equations import BoundEquations, equations_of, has_machine_code, runs_as_python
 from rockframe.solve.layout import Status
 from rockframe.solve.schemes import STAGES
-from rockframe.solve.trajectory import Events, Trajectory, run_counts, steps_of
+from rockframe.solve.trajectory import Events, Steps, Trajectory, run_counts, steps_of
 from rockframe.solve.workspace import (
     BESIDE,
     CODES,
@@ -172,7 +172,7 @@ STEP_ROOM = 1024
 STEPS_PER_INTERVAL = 3.0
 """Room for steps, more than most runs need: memory that is not written to costs nothing."""
 MOST_STEPS_KEPT = 2_000_000
-"""Rows of steps, some hundred megabytes, beyond which none are kept."""
+"""Rows of steps, some hundred megabytes, of which the first are kept where there are more."""
 STEPS_UNHEARD = 2_000_000
 """Steps of machine code, a second or less, after which an interruption is heard."""
 STEPS_AT_ONCE = 500
@@ -214,7 +214,7 @@ def integrate(
     with_work : bool
         Whether dashpot and input work are stored at the output times.
     keep_steps : bool
-        Whether both ends of all steps are kept, of runs up to `MOST_STEPS_KEPT` of them.
+        Whether both ends of all steps are kept, or of the first of very many.
 
     Returns
     -------
@@ -237,6 +237,12 @@ def integrate(
         counters[at.OUTPUTS] = 1
 
     progress = Progress(run.controls, clock, counters)
+    first_steps: Steps | None = None
+
+    def steps_in(table: StepTable) -> Steps:
+        kept = int(counters[at.STEPS_KEPT])
+        return steps_of(table, kept, width, exact=accuracy.rtol is not None)
+
     steps = no_steps()
     if keep_steps:
         intervals = duration / run.controls[at.TIME_STEP]
@@ -273,8 +279,10 @@ def integrate(
         if counters[at.EVENTS] >= len(events.codes):
             events = EventTable(*_longer(*events))
         if has_no_room(steps.codes, counters):
-            keep_steps = counters[at.STEPS_KEPT] < MOST_STEPS_KEPT
-            steps = StepTable(*_longer(*steps)) if keep_steps else no_steps()
+            if counters[at.STEPS_KEPT] < MOST_STEPS_KEPT:
+                steps = StepTable(*_longer(*steps))
+            else:
+                first_steps, steps = replace(steps_in(steps), complete=False), no_steps()
 
     if not COMPILED or not runs_as_python(equations):  # of which more has been said
         say_slow(as_python)
@@ -305,9 +313,7 @@ def integrate(
         ending=Ending(int(counters[at.MODE]), workspace.state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),
         as_python=runs_as_python(equations),
-        steps=steps_of(steps, int(counters[at.STEPS_KEPT]), width, exact=accuracy.rtol is not None)
-        if keep_steps
-        else None,
+        steps=(first_steps or steps_in(steps)) if keep_steps else None,
     )
 
 

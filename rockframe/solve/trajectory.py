@@ -31,6 +31,7 @@ class Steps:
     width: int  # numbers in a state
     # whether slopes are those of the equations at the states; of fixed steps they are near
     exact: bool
+    complete: bool = True  # whether they go on to the end of the run
 
     @property
     def time(self) -> Vector:

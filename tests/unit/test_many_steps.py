@@ -1,0 +1,35 @@
+"""Runs of so many steps that not all of them are kept."""
+
+import pytest
+
+import rockframe as rf
+from rockframe.errors import SolverWarning
+from rockframe.solve import integrate
+
+pytestmark = pytest.mark.unit
+
+
+def test_the_first_steps_are_kept_and_the_run_says_so(monkeypatch):
+    block = rf.Block(width="1 m", height="3 m", mass="1 t")
+    pads = rf.TwoSpringSupport(frequency_ratio=4000, damping_ratio=0.1)
+    system, pulse = rf.System(block, pads), rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz")
+    whole = system.simulate(pulse, duration="0.5 s", outputs=["base_shear"])
+    monkeypatch.setattr(integrate, "MOST_STEPS_KEPT", 50)
+    with pytest.warns(SolverWarning, match="until 0.09"):
+        run = system.simulate(pulse, duration="0.5 s", outputs=["base_shear"])
+    for name in ("rotation", "base_shear", "event_time"):
+        assert run[name].identical(whole[name])
+    assert run.attrs["verdict"].split(". ")[0] == whole.attrs["verdict"].split(". ")[0]
+    monkeypatch.undo()
+    early = system.simulate(pulse, duration="0.09 s", outputs=["base_shear"])
+    assert float(run.peak_base_shear) >= float(early.peak_base_shear)
+    assert float(run.peak_base_shear) < float(whole.peak_base_shear)
+
+
+def test_a_run_that_pauses_goes_on_to_the_last_bit(monkeypatch):
+    motion = rf.GroundMotion.harmonic("3 m/s^2", "2 Hz", duration="3 s")
+    block = rf.Block(width="1 m", height="3 m", mass="1 t")
+    system = rf.System(block, rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1))
+    whole = system.simulate(motion)
+    monkeypatch.setattr(integrate, "STEPS_UNHEARD", 40)
+    assert system.simulate(motion).drop_attrs().identical(whole.drop_attrs())
