@@ -267,6 +267,7 @@ WRITES = {"write_text", "write_bytes", "to_netcdf", "to_csv", "savefig", "savetx
 THEMSELVES = {
     "writing.py": "the mechanism",
     "studies/sweeps/store.py": "the folder of a study, whole or not at all by itself",
+    "studies/sweeps/claims.py": "claims in that folder, which one job alone can make",
     "compiled/store.py": "machine code, in a folder of its own",
     "command/shared.py": "to the place that the mechanism gives",
     "command/plot.py": "to memory",

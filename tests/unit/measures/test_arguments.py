@@ -124,7 +124,7 @@ def test_default_periods():
     ("argument", "given", "error"),
     [
         ("threshold", 0.05, UnitsError),
-        ("threshold", "0.05 g", UnitsError),
+        ("threshold", "0.05 kg", UnitsError),
         ("threshold", "0 m/s^2", ComponentError),
         ("gravity", 9.81, UnitsError),
         ("gravity", "-9.81 m/s^2", ComponentError),

@@ -114,7 +114,7 @@ def test_the_median_of_motions():
             ComponentError,
             "must be 2",
         ),
-        (lambda: rf.TargetSpectrum.eurocode_8("0.2 g"), UnitsError, "gram"),
+        (lambda: rf.TargetSpectrum.eurocode_8("0.2 kg"), UnitsError, "needs an acceleration"),
         (lambda: rf.TargetSpectrum.eurocode_8("0.2 g_0", "F"), ComponentError, "'A' or 'B'"),
         (
             lambda: rf.TargetSpectrum.eurocode_8("0.2 g_0", corner_periods=["1 s", "0.5 s", "2 s"]),
