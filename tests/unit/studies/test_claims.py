@@ -56,9 +56,9 @@ def run_by(tmp_path):
 def is_whole(folder, whole):
     assert files(folder) == files(whole[0])
     assert as_bytes(rf.open_study(folder)) == as_bytes(whole[1])
-    assert sorted(path.name for path in folder.iterdir()) == sorted(
-        path.name for path in whole[0].iterdir()
-    )
+    # a job that is killed while it writes leaves its part of a file, hidden, which nobody reads
+    left = {path.name for path in folder.iterdir() if not path.match(".*.part")}
+    assert left == {path.name for path in whole[0].iterdir()}
 
 
 def test_two_jobs_run_each_case_once(whole, tmp_path, jobs):
