@@ -4,7 +4,7 @@ Where excursions are smaller than a set of states, its members strike one after 
 of their impacts can be enclosed alone. Their speeds and heights can: :eq:`eq-proof-bounces`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 from rockframe.proof.balls import UNIT, ZERO, Ball, Row, ball, hull, upper
@@ -14,8 +14,9 @@ from rockframe.proof.problem import (
     Undecided,
     acceleration,
     stiffness,
+    strongest,
 )
-from rockframe.proof.standing import lifts, lifts_about_sample
+from rockframe.proof.standing import lifts_in
 
 _WINDOWS: Final = 200
 """Windows, of the length of an interval at most, over which bounces are followed."""
@@ -87,7 +88,7 @@ def settle(
             return None
         left = problem.length(instant.number) - instant.after
         ground = problem.ground(instant.number).at(instant.after)
-        lift = _lift(problem, instant, ground, left)
+        lift = lifts_in(problem, instant.number, ground, left)
         longest = left if lift is None else ZERO.max(lift[0].lower())
         window = longest
         for _ in range(_GUESSES):
@@ -102,8 +103,11 @@ def settle(
         else:
             return instant.later(problem, found)
         whole = window is longest
-        ends = whole and lift is None
-        instant = Instant(instant.number + 1, ZERO) if ends else instant.later(problem, window)
+        if whole and lift is None:
+            bounds = bounds.jumped(instant.number)
+            instant = Instant(instant.number + 1, ZERO)
+        else:
+            instant = instant.later(problem, window)
         if whole and lift is not None:
             waited = lift[0].upper() - lift[0].lower()
             return _lifted(problem, instant, lift[1], ball(waited), bounds)
@@ -127,6 +131,19 @@ class _Bounds:
     def speed(self) -> Ball:
         """Bound of the speed, and of that with which a member strikes next."""
         return upper(self.left / self.restitution)
+
+    def jumped(self, number: int) -> "_Bounds":
+        """Give the bounds after an interval, at whose end the ground may jump."""
+        if self.problem.joins(number):
+            return self
+        before = self.problem.ground(number).at(self.problem.length(number))
+        after = self.problem.ground(number + 1)
+        change = GroundPiece(
+            [after.along[0] - before.along[0]], [after.weight[0] - before.weight[0]]
+        )
+        corners = self.problem.right, self.problem.left
+        most = hull([strongest(corner, change) for corner in corners])
+        return replace(self, left=upper(self.left + (2 * self.height * upper(most)).sqrt()))
 
     def over(self, ground: GroundPiece, window: Ball) -> "_Bounds | Ball | None":
         """Go on over a window, :eq:`eq-proof-bounces`.
@@ -163,18 +180,6 @@ class _Bounds:
         return _Bounds(self.problem, reach, left)
 
 
-def _lift(
-    problem: Problem, instant: Instant, ground: GroundPiece, left: Ball
-) -> tuple[Ball, int] | None:
-    """Give when the ground lifts a block that stands, None if not in this interval."""
-    try:
-        return lifts(problem, ground, left)
-    except Undecided:
-        following, length = (of(instant.number + 1) for of in (problem.ground, problem.length))
-        found = lifts_about_sample(problem, ground, left, following, length)
-        return None if found is None or found[0] > left else found
-
-
 def _lifted(
     problem: Problem, instant: Instant, sign: int, waited: Ball, bounds: _Bounds
 ) -> Lifted | None:
@@ -203,9 +208,12 @@ def _lifted(
             return None
         needed = waited + _LIFTING * last
         if needed < span:
+            end = instant.later(problem, span)
+            if not all(problem.joins(number) for number in range(instant.number, end.number)):
+                return None
             after = span - waited
             slow = slowest * (after * after - last * last) / 2
             rates = ball(slow.lower()).union(up)
-            return Lifted(instant.later(problem, span), sign, [sign * UNIT * reach, sign * rates])
+            return Lifted(end, sign, [sign * UNIT * reach, sign * rates])
         span = (needed * 5 / 4).mid()
     return None

@@ -12,7 +12,7 @@ from rockframe.proof.flow import Sweep, advance, flow, jerk, sweep
 from rockframe.proof.impacts import Struck, struck
 from rockframe.proof.problem import CornerNumbers, Deviations, GroundPiece, Problem, Undecided
 from rockframe.proof.sets import proved
-from rockframe.proof.standing import lifts, lifts_about_sample
+from rockframe.proof.standing import lifts_in
 from rockframe.proof.states import SetOfStates
 from rockframe.proof.verdict import EXACT, OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances, outwards
 from rockframe.signals import Motion
@@ -93,7 +93,7 @@ class Course:
         """Stand to the end of an interval, or lift, :eq:`eq-proof-uplift`; tell if it stays."""
         problem = self.problem
         ground, left = problem.ground(self.number).at(self.after), self._left()
-        lift = self._lifts(ground, left)
+        lift = lifts_in(problem, self.number, ground, left)
         if lift is None:
             if self.number >= problem.count:
                 return False
@@ -129,19 +129,6 @@ class Course:
     def _left(self) -> Ball:
         """Give the time to the end of the interval."""
         return self.problem.length(self.number) - self.after
-
-    def _lifts(self, ground: GroundPiece, left: Ball) -> tuple[Ball, int] | None:
-        """Give when the members lift, and to which side; None if none does in this interval."""
-        try:
-            return lifts(self.problem, ground, left)
-        except Undecided:
-            if not self.uncertain:
-                raise
-        following, length = (
-            of(self.number + 1) for of in (self.problem.ground, self.problem.length)
-        )
-        lift = lifts_about_sample(self.problem, ground, left, following, length)
-        return None if lift is None or lift[0] > left else lift
 
     def _lifted(self, during: GroundPiece, waited: Ball) -> SetOfStates:
         """Enclose all members when the last of them lifts, :eq:`eq-proof-lifted`."""

@@ -165,6 +165,13 @@ class Shaking:
         moving, still = min(number, self.count), max(0, number - self.count)
         return moving * ball(self.motion.time_step) + still * ball(self.still_step) + after
 
+    def joins(self, number: int) -> bool:
+        """Whether it is sure that the ground does not jump at the end of an interval."""
+        components = [one for one in (self.motion.horizontal, self.motion.vertical) if one]
+        lines = all(one.polynomials is None for one in components)
+        ends = number == self.count - 1 and any(one.samples[-1] != 0.0 for one in components)
+        return number >= self.count or (lines and not ends)
+
     def ground(self, number: int) -> GroundPiece:
         """Give the ground in an interval, by the time since its start, :eq:`eq-incline-ground`."""
         number = min(number, self.count)

@@ -10,19 +10,30 @@ _NEWTON_STEPS = 12
 _VERGE = "a ground that comes to the verge of uplift"
 
 
-def lifts(problem: Problem, ground: GroundPiece, left: Ball) -> tuple[Ball, int] | None:
-    """Give when it lifts within a time, and the sign of its rotation; None if it stands."""
+def lifts_in(
+    problem: Problem, number: int, ground: GroundPiece, left: Ball
+) -> tuple[Ball, int] | None:
+    """Give when it lifts in the rest of an interval, and the sign of its rotation; None if not.
+
+    Of a set some may lift before the sample at the end and some after it: the time goes beyond.
+    """
+    try:
+        return _lifts(problem, ground, left)
+    except Undecided:
+        if not problem.joins(number):
+            raise
+        following, length = (of(number + 1) for of in (problem.ground, problem.length))
+        found = _lifts_about_sample(problem, ground, left, following, length)
+        return None if found is None or found[0] > left else found
+
+
+def _lifts(problem: Problem, ground: GroundPiece, left: Ball) -> tuple[Ball, int] | None:
     return _earlier({side: first_zero(guard_of(problem, ground, side), left) for side in (1, -1)})
 
 
-def lifts_about_sample(
+def _lifts_about_sample(
     problem: Problem, ground: GroundPiece, left: Ball, following: GroundPiece, length: Ball
 ) -> tuple[Ball, int] | None:
-    """Give the same of a set, some of which lift before a sample and some after it.
-
-    The time may be up to that sample, or beyond it by up to the length of the interval that
-    follows.
-    """
     found = dict[int, Ball | None]()
     for side in (1, -1):
         here, there = (guard_of(problem, each, side) for each in (ground, following))

@@ -94,3 +94,33 @@ def test_bounces_that_lose_more_than_they_do_are_caught(monkeypatch):
     system, instant = settled(block, motion)
     until = instant.number * STEP + float(instant.after)
     assert any(state != (0.0, 0.0) for state in members(system, motion, until))
+
+
+def test_a_ground_that_may_jump_is_known_and_pays_for_it():
+    block = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2").assembly
+    lines = GROUNDS["strong to one side"]
+    jumping = rf.GroundMotion.sine_pulse("1 m/s^2", "2 Hz")
+
+    def problem(motion):
+        return Problem.of(
+            block.model.system, motion.si, block.options.slope,
+            block.setting.overturning_angles, 1.0, Deviations(), 0.1,
+        )  # fmt: skip
+
+    with working_precision(106):
+        straight, closed = problem(lines), problem(jumping)
+        last = straight.count - 1
+        assert [straight.joins(k) for k in (0, last - 1, last, last + 1)] == [
+            True,
+            True,
+            False,
+            True,
+        ]
+        assert not closed.joins(0)
+        bounds = bounces._Bounds(straight, ball(HEIGHT), ball(SPEED))
+        assert bounds.jumped(0) is bounds
+        after = bounds.jumped(last).left - ball(SPEED)
+        # 0.5 m/s^2 are gone at once: the speed that falling through the height may then add
+        corner = straight.right
+        assert after**2 >= 2 * HEIGHT * corner.ratio * 0.5
+        assert after**2 < 4 * HEIGHT * corner.ratio * 0.5
