@@ -13,8 +13,8 @@ from rockframe.errors import ComponentError, FileError, shown
 _MARKED_WITHIN: Final = 65536
 """Part of a file, from either end, in which its mark stands [bytes]."""
 
-PathLike: TypeAlias = "str | os.PathLike[str]"
-Content: TypeAlias = "bytes | Callable[[Path], object]"
+PathLike: TypeAlias = str | os.PathLike[str]
+Content: TypeAlias = bytes | Callable[[Path], object]
 """All bytes of a file, or what writes it to a path."""
 
 

@@ -5,7 +5,7 @@ import time
 import warnings
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Final, TypeAlias, Unpack
+from typing import Final, TypeAlias, Unpack
 
 import numpy as np
 import xarray as xr
@@ -13,6 +13,7 @@ import xarray as xr
 from rockframe.arguments import whole_number
 from rockframe.comparison.models import check_system, model_ladder
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, shown
+from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import verdict_of
 from rockframe.shared_arguments import takes
@@ -22,10 +23,7 @@ from rockframe.simulation.run import outcome, run
 from rockframe.simulation.run_arguments import ComparedArguments
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
-
-if TYPE_CHECKING:
-    from rockframe.motion import GroundMotion
-    from rockframe.system.options import AccuracyLike
+from rockframe.system.options import AccuracyLike
 
 
 def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:
@@ -90,10 +88,10 @@ _MOST_REPEATS: Final = 1000
 @takes(ComparedArguments)
 def tradeoff(
     system: System,
-    motion: "GroundMotion | None" = None,
+    motion: GroundMotion | None = None,
     *,
     models: Sequence[str] | str | None = None,
-    accuracies: "Sequence[AccuracyLike] | AccuracyLike" = tuple(AccuracyLevel),
+    accuracies: Sequence[AccuracyLike] | AccuracyLike = tuple(AccuracyLevel),
     repeats: int = 5,
     **asked: Unpack[ComparedArguments],
 ) -> xr.Dataset:
@@ -225,7 +223,7 @@ def _chosen(known: dict[str, System], models: Sequence[str] | None) -> dict[str,
     return {name: known[name] for name in models}
 
 
-def _label(given: "AccuracyLike") -> str:
+def _label(given: AccuracyLike) -> str:
     if isinstance(given, float):
         return f"rtol {float(given)!r}"
     if isinstance(given, Accuracy):

@@ -6,8 +6,9 @@ import xml.etree.ElementTree as Tree
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
+import pandas as pd
 import xarray as xr
 
 from rockframe.arguments import checked_dataset
@@ -17,9 +18,6 @@ from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.intensities import PERIOD_OF, SHORT
 from rockframe.version import __version__
 from rockframe.writing import FileKind, write_file
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _PELICUN: Final = "to_pelicun"
 _OPENQUAKE: Final = "to_openquake"
@@ -51,7 +49,7 @@ def to_pelicun(
     demand: str | None = None,
     offset: int = 0,
     directional: bool = True,
-) -> "pd.DataFrame":
+) -> pd.DataFrame:
     """Give the row of a component in pelicun's library of damage models.
 
     Parameters
@@ -122,7 +120,7 @@ def to_pelicun(
 
 def to_openquake(
     fragilities: Mapping[str, xr.Dataset],
-    path: "str | PathLike[str]",
+    path: str | PathLike[str],
     *,
     name: str = "rockframe",
     description: str = "Rocking blocks, computed by rockframe",

@@ -6,7 +6,7 @@ from enum import StrEnum
 from os import PathLike
 from pathlib import Path
 from textwrap import fill, indent
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
+from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
@@ -22,11 +22,9 @@ from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.system.options import Restraint, Rotation
+from rockframe.units import QuantityLike
 from rockframe.version import __version__
 from rockframe.writing import FileKind, checked_path, write_file
-
-if TYPE_CHECKING:
-    from rockframe.units import QuantityLike
 
 _OWNER: Final = "to_opensees"
 _MARK: Final = "Written by rockframe "
@@ -60,9 +58,9 @@ class SpringsOfBase(NamedTuple):
 def to_opensees(
     system: System,
     motion: GroundMotion,
-    path: "str | PathLike[str]",
+    path: str | PathLike[str],
     *,
-    free_vibration: "QuantityLike | None" = None,
+    free_vibration: QuantityLike | None = None,
     springs: int = 40,
     dashpots: str = Dashpots.LET_GO,
     overwrite: bool = False,
@@ -272,7 +270,7 @@ def _file(head: str, given: dict[str, Any], arrays: dict[str, Any]) -> str:
     )
 
 
-def _array(values: "np.ndarray | None", digits: int) -> str:
+def _array(values: np.ndarray | None, digits: int) -> str:
     if values is None:
         return "None"
     words = [f"{value:.{digits}g}" for value in values]

@@ -1,7 +1,7 @@
 """A free-decay test: the parameters of a system, from how it came to rest."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import xarray as xr
 
@@ -21,12 +21,9 @@ from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
+from rockframe.system.options import AccuracyLike
 from rockframe.system.words import angle_words
-from rockframe.units import Condition, to_ratio
-
-if TYPE_CHECKING:
-    from rockframe.system.options import AccuracyLike
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import Condition, QuantityLike, RatioLike, to_ratio
 
 _OWNER: Final = "fit_free_decay"
 _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
@@ -34,13 +31,13 @@ _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value 
 
 def fit_free_decay(
     system: System,
-    measured: "xr.DataArray | tuple[object, object] | None" = None,
+    measured: xr.DataArray | tuple[object, object] | None = None,
     parameters: Sequence[str] | str = ("restitution",),
     *,
-    peaks: "tuple[object, object] | QuantityLike | None" = None,
+    peaks: tuple[object, object] | QuantityLike | None = None,
     circumstances: Sequence[str] | str | None = None,
-    confidence: "RatioLike" = 0.95,
-    accuracy: "AccuracyLike" = AccuracyLevel.STANDARD,
+    confidence: RatioLike = 0.95,
+    accuracy: AccuracyLike = AccuracyLevel.STANDARD,
 ) -> xr.Dataset:
     """Find parameters of a system from a test in which it was tilted and let go.
 

@@ -1,7 +1,7 @@
 """Average spectral acceleration."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final, cast
+from collections.abc import Iterable, Mapping
+from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
@@ -9,16 +9,11 @@ import xarray as xr
 from rockframe.errors import ComponentError
 from rockframe.measures.directions import rotated_spectrum
 from rockframe.measures.response import checked_periods, response_spectrum
+from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
+from rockframe.motion.quantities import ArrayLike
 from rockframe.results.dataset import build_dataset
-from rockframe.units import PERIOD
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rockframe.motion import GroundMotion
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import PERIOD, QuantityLike, RatioLike
 
 _OWNER: Final = "average_spectral_acceleration"
 _REFERENCES: Final = "Eads et al. (2015), Earthquake Engng. Struct. Dyn. 44, 2057-2073"
@@ -29,9 +24,9 @@ _OF_PAIRS: Final = {
 
 
 def average_spectral_acceleration(
-    motion: "GroundMotion | HorizontalPair | Mapping[str, GroundMotion | HorizontalPair]",
-    periods: "ArrayLike | Iterable[QuantityLike]",
-    damping_ratio: "RatioLike" = 0.05,
+    motion: GroundMotion | HorizontalPair | Mapping[str, GroundMotion | HorizontalPair],
+    periods: ArrayLike | Iterable[QuantityLike],
+    damping_ratio: RatioLike = 0.05,
     *,
     component: str = "horizontal",
 ) -> xr.Dataset:

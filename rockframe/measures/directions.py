@@ -1,6 +1,6 @@
 """Measures of two horizontal components: spectra in all directions, ratios, principal axes."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
@@ -17,6 +17,7 @@ from rockframe.measures.response import (
 )
 from rockframe.motion.pair import HorizontalPair, axis_and_intensities
 from rockframe.motion.processing.samples import say_coarse
+from rockframe.motion.quantities import ArrayLike
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import (
@@ -27,13 +28,10 @@ from rockframe.signals.spectra import (
     spectral_peaks,
     unit_vectors,
 )
+from rockframe.units import QuantityLike, RatioLike
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rockframe.motion.quantities import ArrayLike
     from rockframe.signals import Signal
-    from rockframe.units import QuantityLike, RatioLike
 
 _SPECTRUM: Final = "rotated_spectrum"
 _AXES: Final = "principal_axes"
@@ -46,8 +44,8 @@ _MOST_DIRECTIONS: Final = 3600
 
 def rotated_spectrum(
     pair: HorizontalPair | Mapping[str, HorizontalPair],
-    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
-    damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
+    periods: ArrayLike | Iterable[QuantityLike] | None = None,
+    damping_ratios: Iterable[RatioLike] | RatioLike = (0.05,),
     *,
     directions: int = 180,
 ) -> xr.Dataset:

@@ -1,6 +1,6 @@
 """Velocity and displacement of the ground along time, and its Fourier spectrum."""
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import xarray as xr
@@ -12,22 +12,16 @@ from rockframe.measures.common import (
     component_of,
     signal_of,
 )
+from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.integrals import ground_path, transform_of
 from rockframe.signals.polynomials import knots_of
-from rockframe.units import FREQUENCY, POSITIVE, to_si
-
-if TYPE_CHECKING:
-    from rockframe.motion import GroundMotion
-    from rockframe.units import QuantityLike
-
+from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 _PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}
 
 
-def velocity_and_displacement(
-    motion: "GroundMotion", *, component: str = "horizontal"
-) -> xr.Dataset:
+def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizontal") -> xr.Dataset:
     """Integrate a motion to velocity and displacement of the ground.
 
     Parameters
@@ -88,9 +82,9 @@ _OWNER: Final = "fourier_spectrum"
 
 
 def fourier_spectrum(
-    motion: "GroundMotion",
+    motion: GroundMotion,
     *,
-    resolution: "QuantityLike | None" = None,
+    resolution: QuantityLike | None = None,
     component: str = "horizontal",
 ) -> xr.Dataset:
     """Compute the Fourier spectrum of a motion's acceleration.

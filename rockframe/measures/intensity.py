@@ -1,7 +1,8 @@
 """Intensity measures of a motion, and what it is to a given block."""
 
 import math
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
 import xarray as xr
@@ -10,6 +11,7 @@ from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import GroundComponent, component_of, read_inputs
+from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.integrals import (
@@ -27,26 +29,20 @@ from rockframe.signals.integrals import (
 )
 from rockframe.signals.polynomials import greatest
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost
-from rockframe.units import ACCELERATION, POSITIVE, to_ratio, to_si
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rockframe.motion import GroundMotion
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, RatioLike, to_ratio, to_si
 
 _OWNER: Final = "intensity_measures"
 _STANDARDIZED_THRESHOLD: Final = 0.025  # g, EPRI (1991)
 
 
 def intensity_measures(
-    motion: "GroundMotion | Mapping[str, GroundMotion]",
+    motion: GroundMotion | Mapping[str, GroundMotion],
     *,
     block: Block | None = None,
     component: str = "horizontal",
-    threshold: "QuantityLike" = "0.05 g_0",
-    damping_ratio: "RatioLike" = 0.05,
-    gravity: "QuantityLike | None" = None,
+    threshold: QuantityLike = "0.05 g_0",
+    damping_ratio: RatioLike = 0.05,
+    gravity: QuantityLike | None = None,
 ) -> xr.Dataset:
     """Compute the intensity measures of a motion.
 

@@ -1,8 +1,9 @@
 """Response spectra of linear oscillators."""
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -10,19 +11,14 @@ import xarray as xr
 from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, read_inputs
+from rockframe.motion import GroundMotion
 from rockframe.motion.operations.timing import Interpolation
 from rockframe.motion.processing.samples import band_limited, say_coarse
+from rockframe.motion.quantities import ArrayLike
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks
-from rockframe.units import PERIOD, to_ratio, to_si_values
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from rockframe.motion import GroundMotion
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import PERIOD, QuantityLike, RatioLike, to_ratio, to_si_values
 
 SAMPLES_PER_PERIOD: Final = 25
 """Samples of the shortest period of a band-limited motion: lines between them lower it by 0.5 %."""
@@ -33,9 +29,9 @@ _REMEDY: Final = "interpolation='band-limited' refines records"
 
 
 def response_spectrum(
-    motion: "GroundMotion | Mapping[str, GroundMotion]",
-    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
-    damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
+    motion: GroundMotion | Mapping[str, GroundMotion],
+    periods: ArrayLike | Iterable[QuantityLike] | None = None,
+    damping_ratios: Iterable[RatioLike] | RatioLike = (0.05,),
     *,
     component: str = "horizontal",
     interpolation: str = "linear",

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.constants import CONVENTIONS
+from rockframe.motion.value import Made, MotionValue
 from rockframe.records import LONG_NAMES, stored_motion
 from rockframe.units import Unit
-
-if TYPE_CHECKING:
-    from rockframe.motion.value import Made, MotionValue
 
 _PIECES_DIMS: Final = ("interval", "power")
 

@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import SchemaError, shown
 from rockframe.motion.constructors.analytic import PULSES
+from rockframe.motion.value import Made, MotionValue
 from rockframe.notebook import card, curve
 from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import VERTICAL
-
-if TYPE_CHECKING:
-    from rockframe.motion.value import Made, MotionValue
 
 _SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
 

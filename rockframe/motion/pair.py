@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,15 +17,11 @@ from rockframe.motion.operations.pulses import LONGEST, SHORTEST, searched, velo
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
-from rockframe.records import Reading, read_components, read_source, same_start
+from rockframe.motion.velocity_pulse import VelocityPulse
+from rockframe.records import Reading, RecordLike, read_components, read_source, same_start
+from rockframe.signals import Signal
 from rockframe.signals.integrals import arias_history
-from rockframe.units import ANGLE
-
-if TYPE_CHECKING:
-    from rockframe.motion.velocity_pulse import VelocityPulse
-    from rockframe.records import RecordLike
-    from rockframe.signals import Signal
-    from rockframe.units import Quantity, QuantityLike
+from rockframe.units import ANGLE, Quantity, QuantityLike
 
 _RIGHT_ANGLE: Final = 90.0
 _TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole ones

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
+import numpy.typing as npt
 import pint
 import xarray as xr
 
@@ -13,13 +15,9 @@ from rockframe.records import acceleration_unit
 from rockframe.units import ACCELERATION, TIME, Measure, Quantity, foreign_quantity, to_si
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import numpy.typing as npt
-
     from rockframe.signals.arrays import Array
 
-ArrayLike: TypeAlias = "Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]"
+ArrayLike: TypeAlias = Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]
 
 _TIME_AXES: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _EXAMPLE: Final = "(values, 'm/s^2')"

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import Any, Final, TypeVar
 
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.quantities import with_quantity
+from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import knots_of
-from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rockframe.signals import Motion
-    from rockframe.units import Quantity
+from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
 
 UNNAMED: Final = "unnamed motion"
 

@@ -1,5 +1,6 @@
 """Scenes that move, with the trace of the rotation below."""
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -11,24 +12,19 @@ from rockframe.errors import ComponentError, FileError, shown
 from rockframe.plot._artists import CONTACT, SceneArtist
 from rockframe.plot._axes import BLUE, GREY, units_of
 from rockframe.plot._checks import check_run, draws
-from rockframe.plot._panels import Panels, sheet
+from rockframe.plot._panels import AxesLike, Figure, Panels, sheet
 from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
-from rockframe.plot._runs import runs_of
+from rockframe.plot._runs import Window, runs_of
 from rockframe.plot._scene import Moving, figure_size
 from rockframe.units import LENGTH
+from rockframe.units.shown import UnitsLike
 from rockframe.version import __version__
 from rockframe.writing import FileKind, checked_path, write_file
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from matplotlib.animation import FuncAnimation
-    from matplotlib.figure import Figure
 
-    from rockframe.plot._panels import AxesLike
-    from rockframe.plot._runs import Window
-    from rockframe.units.shown import UnitsLike
 
 _USUAL_FRAMES: Final = 200
 """That an animation has at most unless its speed is given."""
@@ -65,10 +61,10 @@ class Animation:
     def __init__(
         self,
         panels: Panels,
-        draw: "Callable[[int], object]",
+        draw: Callable[[int], object],
         rate: float,
         times: np.ndarray,
-        player: "Callable[[], Player]",
+        player: Callable[[], Player],
     ) -> None:
         self._draw, self._rate, self._player = draw, rate, player
         self._playing: FuncAnimation | None = None
@@ -76,11 +72,11 @@ class Animation:
         self.times = times
 
     @property
-    def figure(self) -> "Figure":
+    def figure(self) -> Figure:
         """The figure that moves."""
         return self.panels.figure
 
-    def save(self, path: "str | Path", *, dpi: float = 100.0, overwrite: bool = False) -> Path:
+    def save(self, path: str | Path, *, dpi: float = 100.0, overwrite: bool = False) -> Path:
         """Write the animation into a file.
 
         Parameters
@@ -177,13 +173,13 @@ class Animation:
 def animation(
     run: xr.Dataset,
     *,
-    window: "Window" = None,
+    window: Window = None,
     speed: float | None = None,
     frames_per_second: float = 20.0,
     magnify: float = 1.0,
     rotation: str | None = None,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
 ) -> Animation:
     """Animate a run: the scene to scale and where it touches, above the trace of the rotation.

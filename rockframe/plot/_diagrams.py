@@ -1,6 +1,6 @@
 """Diagrams of runs without time along the axis, and energies: phases, moments, balances."""
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -19,20 +19,14 @@ from rockframe.plot._axes import (
     zero_line,
 )
 from rockframe.plot._checks import draws, overturning_angles, refuse, system_of_run
-from rockframe.plot._panels import single
+from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.plot._response import of_rotation, relative
-from rockframe.plot._runs import Run, runs_of, runs_title
+from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.results.schema import ENERGIES, SCHEMA
+from rockframe.simulation.system import System
 from rockframe.units import ANGLE
 from rockframe.units.kinds import ENERGY, MOMENT
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from rockframe.plot._panels import AxesLike
-    from rockframe.plot._runs import RunsLike, Window
-    from rockframe.simulation.system import System
-    from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike
 
 _STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
 _ANGLES: Final = 401
@@ -41,14 +35,14 @@ _ANGLES: Final = 401
 
 @draws(title="the verdict")
 def phase(
-    runs: "RunsLike",
+    runs: RunsLike,
     *,
-    window: "Window" = None,
+    window: Window = None,
     rotation: str | None = None,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw the rate of the rotation over the rotation.
 
     Parameters
@@ -102,16 +96,16 @@ def phase(
 
 @draws(title="the verdict of a run")
 def moment_rotation(
-    given: "System | RunsLike",
+    given: System | RunsLike,
     *,
     largest: float = 1.2,
-    window: "Window" = None,
+    window: Window = None,
     rotation: str | None = None,
     moment: str | None = None,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw the moment of the base over the rotation: held, and in runs.
 
     Parameters
@@ -187,12 +181,12 @@ def moment_rotation(
 def energies(
     run: xr.Dataset,
     *,
-    window: "Window" = None,
+    window: Window = None,
     energy: str | None = None,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw where the energy of a run is, and where it went.
 
     Parameters
@@ -267,13 +261,13 @@ def _rate(run: Run, unit: Shown | None) -> Any:
     return rate / np.where(run.dataset["rotation"].to_numpy() < 0.0, left, right)
 
 
-def _held(system: "System", largest: float) -> xr.Dataset:
+def _held(system: System, largest: float) -> xr.Dataset:
     left, right = system.setting.overturning_angles
     angles = np.linspace(-largest * left, largest * right, _ANGLES)
     return system.moment_rotation((angles, str(ANGLE.unit)))
 
 
-def _draw_held(axes: "Axes", held: xr.Dataset, angle: Shown, size: Shown) -> None:
+def _draw_held(axes: Axes, held: xr.Dataset, angle: Shown, size: Shown) -> None:
     for number, (name, words) in enumerate(
         (("base_moment", "of the base"), ("restoring_moment", "that holds the body"))
     ):
@@ -285,7 +279,7 @@ def _draw_held(axes: "Axes", held: xr.Dataset, angle: Shown, size: Shown) -> Non
     key(axes, title="moment", title_fontsize="small")
 
 
-def _draw_beneath(axes: "Axes", run: Run, angle: Shown, size: Shown) -> None:
+def _draw_beneath(axes: Axes, run: Run, angle: Shown, size: Shown) -> None:
     """Draw the moment in equilibrium beneath that of a run, as far as it rotates."""
     system = system_of_run(run.dataset, "moment_rotation")
     rotation = run.dataset["rotation"].to_numpy()
@@ -310,7 +304,7 @@ def _need(runs: list[Run], names: tuple[str, ...], function: str) -> None:
             raise SchemaError(msg)
 
 
-def _about_zero(axes: "Axes") -> None:
+def _about_zero(axes: Axes) -> None:
     grid(axes)
     zero_line(axes)
     axes.axvline(0.0, color=GREY, alpha=0.6, linewidth=0.5, zorder=0)

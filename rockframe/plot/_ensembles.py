@@ -1,6 +1,6 @@
 """Empirical distributions, what overturning depends on, and fragilities."""
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import xarray as xr
@@ -8,27 +8,22 @@ import xarray as xr
 from rockframe.errors import SchemaError
 from rockframe.plot._axes import COLOURS, colour_of, grid, label_of, label_of_intensity, style_of
 from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Panels, Sheet, sheet, single
+from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.fragility.words import measures_of, sentences
 from rockframe.studies.sweeps.words import cases_verdict
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from rockframe.plot._panels import AxesLike
-    from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike
 
 
 @draws("ensemble")
 def ensemble(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw an empirical distribution with its bands.
 
     Dark, the bounds that hold at each value; light, those that hold everywhere at once.
@@ -65,10 +60,10 @@ def ensemble(
 def probability(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw what the verdict depends on, and how the share that overturns goes with it.
 
     Left, first-order indices; right, for the parameter that matters most, the shares that
@@ -126,10 +121,10 @@ _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 def fragility(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes | Panels":
+) -> Axes | Panels:
     """Draw the probability that limit states are exceeded.
 
     Over one measure, a curve for each limit state with its band, where it has bounds, and the
@@ -193,7 +188,7 @@ def _check_structures(one: xr.Dataset, structures: list[str], most: int) -> None
         raise SchemaError(msg)
 
 
-def _sheet(ax: "AxesLike", states: list[xr.Dataset]) -> Sheet:
+def _sheet(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
     """Take a panel for each limit state."""
     return sheet(
         ax, "fragility", [_name(one) for one in states], (0.8 + 3.6 * len(states), 3.8),
@@ -217,7 +212,7 @@ def _each(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]
     return found
 
 
-def _curves(axes: "Axes", named: list[tuple[str, xr.Dataset]], measure: str) -> None:
+def _curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> None:
     for number, (name, one) in enumerate(named):
         colour, dashes = colour_of(number), style_of(number // len(COLOURS))
         along = one[measure].to_numpy()
@@ -244,7 +239,7 @@ def _curves(axes: "Axes", named: list[tuple[str, xr.Dataset]], measure: str) -> 
     grid(axes)
 
 
-def _contours(axes: "Axes", one: xr.Dataset, measures: list[str]) -> None:
+def _contours(axes: Axes, one: xr.Dataset, measures: list[str]) -> None:
     across, up = measures
     surface = one[_NAME].transpose(up, across)
     axes.contourf(

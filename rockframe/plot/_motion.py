@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, shown
+from rockframe.motion import GroundMotion, VelocityPulse
 from rockframe.motion.description import shown_name
 from rockframe.plot._axes import (
     BLUE,
@@ -25,27 +26,23 @@ from rockframe.plot._axes import (
     zero_line,
 )
 from rockframe.plot._checks import check_motion, draws
-from rockframe.plot._panels import Panels, sheet
-from rockframe.plot._runs import window_of
+from rockframe.plot._panels import AxesLike, Panels, sheet
+from rockframe.plot._runs import Window, window_of
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
+from rockframe.units.shown import UnitsLike
 
 if TYPE_CHECKING:
-    from rockframe.motion import GroundMotion
-
-    MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, GroundMotion]
     from matplotlib.axes import Axes
 
-    from rockframe.motion import GroundMotion, VelocityPulse
-    from rockframe.plot._panels import AxesLike
-    from rockframe.plot._runs import Window
-    from rockframe.units.shown import UnitsLike
+
+MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, GroundMotion]
 
 
 @dataclass(frozen=True)
 class Drawn:
     """A motion with its label, colour and dashes; without a label where there is but one."""
 
-    motion: "GroundMotion"
+    motion: GroundMotion
     label: str | None
     colour: str
     style: Any
@@ -91,16 +88,16 @@ _ROWS: Final = ("acceleration", "velocity", "displacement")
 
 @draws(ax="three Axes", title="the motion's name")
 def motion(
-    motion: "MotionsLike",
+    motion: MotionsLike,
     *,
-    window: "Window" = None,
+    window: Window = None,
     acceleration: str | None = None,
     velocity: str | None = None,
     displacement: str | None = None,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw acceleration, velocity and displacement of the ground along time.
 
     Parameters
@@ -202,10 +199,10 @@ def _mark_peak(axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, colour
 
 @draws(ax="two Axes", title="name of the motion, period and verdict")
 def velocity_pulse(
-    pulse: "VelocityPulse[GroundMotion]",
+    pulse: VelocityPulse[GroundMotion],
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
 ) -> Panels:
     """Draw the velocity of a motion with its pulse, and the residual velocity below.

@@ -1,6 +1,6 @@
 """Dynamic analyses, maps of overturning, and spectra over the size of the block."""
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -23,16 +23,11 @@ from rockframe.plot._axes import (
     units_of,
 )
 from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Panels, Sheet, sheet, single
+from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units import ACCELERATION
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from rockframe.plot._panels import AxesLike
-    from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike
 
 _MOST_NAMED: Final = 8
 """Motions with a line in the legend."""
@@ -54,10 +49,10 @@ _CAPPED: Final = 1.0
 def dynamic_analysis(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw the intensity over the peak rotation that it brings, and the share that overturned.
 
     Left, a line in grey for each motion, up to where it first overturns, with a mark there; hollow
@@ -160,10 +155,10 @@ def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]
 def overturning_map(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw which pulses overturn, after how many impacts, and the boundaries between.
 
     Parameters
@@ -222,10 +217,10 @@ def overturning_map(
 def rocking_spectrum(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw peak rotations over the size of the block, a panel for each slenderness.
 
     Parameters
@@ -255,10 +250,10 @@ def rocking_spectrum(
 def overturning_spectrum(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw the least intensity that overturns over the size of the block, on logarithmic axes.
 
     Parameters
@@ -296,7 +291,7 @@ def _after(count: int, told: int) -> str:
     return f"overturns {words}{' or more' if count == told else ''}"
 
 
-def _sheet(ax: "AxesLike", function: str, given: xr.Dataset) -> Sheet:
+def _sheet(ax: AxesLike, function: str, given: xr.Dataset) -> Sheet:
     names = [f"H/B = {float(value):.3g}" for value in given["slenderness"]]
     return sheet(
         ax, function, names, (1.2 + 3.2 * len(names), 3.9),
@@ -304,7 +299,7 @@ def _sheet(ax: "AxesLike", function: str, given: xr.Dataset) -> Sheet:
     )  # fmt: skip
 
 
-def _lines(axes: "Axes", values: xr.DataArray) -> None:
+def _lines(axes: Axes, values: xr.DataArray) -> None:
     for number, colour in enumerate(colour_steps(values["motion"])):
         one = values.isel(motion=number)
         label = str(one["motion"].item())

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
 
     AxesLike: TypeAlias = Axes | Figure | SubFigure | Iterable[Any] | None
+else:  # matplotlib is loaded when something is drawn, not when hints are read
+    Axes = AxesLike = Figure = Any
 
 
 _LETTERS_PER_INCH: Final = 12.0
@@ -131,7 +133,7 @@ def sheet(
     function: str,
     names: Sequence[str],
     size: tuple[float, float],
-    make: "Callable[[Any], Any]",
+    make: Callable[[Any], Any],
 ) -> Sheet:
     """Take the panels that are given, or make new ones in the figure that is given or in a new one.
 

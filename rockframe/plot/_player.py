@@ -7,7 +7,7 @@ import zlib
 from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
+from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 import xarray as xr
@@ -16,16 +16,13 @@ from rockframe.plot._artists import CONTACT, SOIL, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_of
 from rockframe.plot._checks import check_run, draws
 from rockframe.plot._response import CONTACT_COLOURS, contact_names_of, of_rotation, strips_of
-from rockframe.plot._runs import runs_of
+from rockframe.plot._runs import Window, runs_of
 from rockframe.plot._scene import Moving
 from rockframe.signals.arrays import Array
 from rockframe.units import ACCELERATION, ANGLE
+from rockframe.units.shown import UnitsLike
 from rockframe.version import __version__
 from rockframe.writing import FileKind, generator, write_file
-
-if TYPE_CHECKING:
-    from rockframe.plot._runs import Window
-    from rockframe.units.shown import UnitsLike
 
 _FRAMES_PER_SECOND: Final = 25.0
 _MOST_FRAMES: Final = 900
@@ -70,7 +67,7 @@ class Player:
     def __init__(self, html: str, length: float) -> None:
         self._html, self._length = html, length
 
-    def save(self, path: "str | Path", *, overwrite: bool = False) -> Path:
+    def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
         """Write the page into a file.
 
         Parameters
@@ -112,10 +109,10 @@ class Player:
 def player(
     run: xr.Dataset,
     *,
-    window: "Window" = None,
+    window: Window = None,
     magnify: float = 1.0,
     rotation: str | None = None,
-    units: "UnitsLike" = None,
+    units: UnitsLike = None,
     title: str | None = None,
 ) -> Player:
     """Make a page that plays a run: the scene to scale above the traces of rotation and ground.

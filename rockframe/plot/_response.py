@@ -29,18 +29,14 @@ from rockframe.plot._axes import (
     zero_line,
 )
 from rockframe.plot._checks import draws, overturning_angles
-from rockframe.plot._panels import Panels, sheet
-from rockframe.plot._runs import Run, runs_of, runs_title
+from rockframe.plot._panels import AxesLike, Panels, sheet
+from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, UnitsLike
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from rockframe.plot._panels import AxesLike
-    from rockframe.plot._runs import RunsLike, Window
-    from rockframe.units.shown import UnitsLike
 
 
 CONTACT_COLOURS: Final = {
@@ -128,7 +124,7 @@ MARKS: Final = {
 horizontal restraint are not drawn: they come with a separation or a contact."""
 
 
-def draw_events(axes: "Axes", runs: list[Run], unit: "Shown | None") -> None:
+def draw_events(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
     """Mark events where they happened on the rotation, and name them in the legend."""
     named: set[str] = set()
     for run in runs:
@@ -153,7 +149,7 @@ def draw_events(axes: "Axes", runs: list[Run], unit: "Shown | None") -> None:
         key(axes)
 
 
-def events_by_kind(run: Run) -> "dict[str, np.ndarray]":
+def events_by_kind(run: Run) -> dict[str, np.ndarray]:
     """Give which events of a run are of each kind that is drawn."""
     kinds = run.dataset["event_kind"]
     values = kinds.to_numpy()
@@ -175,18 +171,18 @@ _STACKED: Final = "rotation_on_cap"
 
 @draws(ax="sequence of Axes, one for each panel", title="the verdict")
 def response(
-    runs: "RunsLike",
+    runs: RunsLike,
     *,
-    panels: "str | tuple[str, ...]" = tuple(_HEIGHTS),
-    window: "Window" = None,
+    panels: str | tuple[str, ...] = tuple(_HEIGHTS),
+    window: Window = None,
     rotation: str | None = None,
     vertical: str | None = None,
     acceleration: str | None = None,
     events: bool = False,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw rotation, vertical displacement and contact states along time.
 
     Parameters

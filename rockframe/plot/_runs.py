@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import xarray as xr
@@ -12,9 +12,8 @@ from rockframe.plot._axes import colour_of, style_of
 from rockframe.plot._checks import check_run
 from rockframe.units import TIME, QuantityLike, to_si
 
-if TYPE_CHECKING:
-    Window: TypeAlias = tuple[QuantityLike | None, QuantityLike | None] | None
-    RunsLike: TypeAlias = xr.Dataset | Sequence[xr.Dataset] | Mapping[Any, xr.Dataset]
+Window: TypeAlias = tuple[QuantityLike | None, QuantityLike | None] | None
+RunsLike: TypeAlias = xr.Dataset | Sequence[xr.Dataset] | Mapping[Any, xr.Dataset]
 
 
 @dataclass(frozen=True)
@@ -38,7 +37,7 @@ class Run:
         return np.where(times - self.time[before] <= self.time[after] - times, before, after)
 
 
-def runs_of(given: object, function: str, window: "Window") -> list[Run]:
+def runs_of(given: object, function: str, window: Window) -> list[Run]:
     """Read one or several runs, and take the part of them that is drawn."""
     cut = window_of(window, function)
     labelled = _labelled(given)

@@ -1,6 +1,7 @@
 """Scenes to scale: as they stand, and at an instant of a run."""
 
-from typing import TYPE_CHECKING, Final, cast
+from collections.abc import Mapping
+from typing import Final, cast
 
 import numpy as np
 import xarray as xr
@@ -10,21 +11,14 @@ from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
 from rockframe.plot._checks import check_run, draws, require_system, system_of_run
-from rockframe.plot._panels import single
+from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.signals.arrays import Array
 from rockframe.simulation.plan import points_of
+from rockframe.simulation.system import System
 from rockframe.system.geometry import Geometry, geometry_of
 from rockframe.units import ANGLE, LENGTH, TIME, QuantityLike, to_si
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from matplotlib.axes import Axes
-
-    from rockframe.plot._panels import AxesLike
-    from rockframe.simulation.system import System
-    from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike
 
 _FOLLOWED: Final = (
     "rotation",
@@ -45,14 +39,14 @@ _OF_BODIES: Final = (
 
 @draws()
 def scene(
-    system: "System",
+    system: System,
     *,
-    points: "Mapping[str, tuple[QuantityLike, QuantityLike]] | None" = None,
+    points: Mapping[str, tuple[QuantityLike, QuantityLike]] | None = None,
     legend: bool = True,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw a scene to scale, upright and at rest.
 
     Parameters
@@ -111,13 +105,13 @@ def scene(
 @draws(title="time and rotation")
 def state(
     run: xr.Dataset,
-    time: "QuantityLike | None" = None,
+    time: QuantityLike | None = None,
     *,
     magnify: float = 1.0,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw a scene to scale at an instant of a run, and where it touches.
 
     Parameters
@@ -201,7 +195,7 @@ class Moving:
         return Placement(self.geometry, UPRIGHT, self.system.restraint)
 
     @property
-    def points(self) -> "dict[str, tuple[float, ...]]":
+    def points(self) -> dict[str, tuple[float, ...]]:
         """Points that the run was asked for, by their names [m]."""
         if "point" not in self.run.dims:
             return {}
@@ -214,7 +208,7 @@ class Moving:
         values = {name: float(column[place]) for name, column in self._columns.items()}
         return Placement(self.geometry, values, self.system.restraint, self._bodies_at(place))
 
-    def _bodies_at(self, place: int) -> "Array | None":
+    def _bodies_at(self, place: int) -> Array | None:
         """Give rotation and displacements of all bodies of a stack at a sample."""
         if not self.geometry.lower:
             return None

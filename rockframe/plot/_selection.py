@@ -1,17 +1,14 @@
 """Spectra of a set of motions beside the target that they are to fit."""
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import xarray as xr
 
 from rockframe.plot._axes import BLUE, GREY, VERMILLION, axis_label, grid, key, plain_ticks
 from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Panels, sheet
-
-if TYPE_CHECKING:
-    from rockframe.plot._panels import AxesLike
-    from rockframe.units.shown import UnitsLike
+from rockframe.plot._panels import AxesLike, Panels, sheet
+from rockframe.units.shown import UnitsLike
 
 _SET: Final = BLUE
 _TARGET: Final = VERMILLION
@@ -23,10 +20,10 @@ _LETTERS: Final = 34
 def selection(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw the scaled spectra of a set, their median and spread, and the target.
 
     Left the accelerations; right the misfit of each motion, in the order of the set.

@@ -1,10 +1,12 @@
 """Spectra of motions, laid out as in Fig. 21 of the paper, and of sets of motions."""
 
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Iterable
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
+from rockframe.motion.quantities import ArrayLike
 from rockframe.plot._axes import (
     BLUE,
     GREY,
@@ -21,24 +23,12 @@ from rockframe.plot._axes import (
     zero_line,
 )
 from rockframe.plot._checks import draws
-from rockframe.plot._motion import Drawn, drawn_motions, motions_title
-from rockframe.plot._panels import Panels, sheet, single
-from rockframe.plot._runs import window_of
-from rockframe.units import ACCELERATION, VELOCITY
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from matplotlib.axes import Axes
-
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.plot._motion import MotionsLike
-    from rockframe.plot._panels import AxesLike
-    from rockframe.plot._runs import Window
-    from rockframe.suites import TargetSpectrum
-    from rockframe.units import QuantityLike, RatioLike
-    from rockframe.units.shown import UnitsLike
-
+from rockframe.plot._motion import Drawn, MotionsLike, drawn_motions, motions_title
+from rockframe.plot._panels import Axes, AxesLike, Panels, sheet, single
+from rockframe.plot._runs import Window, window_of
+from rockframe.suites import TargetSpectrum
+from rockframe.units import ACCELERATION, VELOCITY, QuantityLike, RatioLike
+from rockframe.units.shown import UnitsLike
 
 _RESOLUTION: Final = "0.05 Hz"  # of short pulses; that of long records is finer
 _PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}
@@ -47,17 +37,17 @@ _PANELS: Final = ("history", "response", "fourier")
 
 @draws(ax="three Axes", title="the motion's name")
 def spectra(
-    motion: "MotionsLike",
-    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
-    damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
+    motion: MotionsLike,
+    periods: ArrayLike | Iterable[QuantityLike] | None = None,
+    damping_ratios: Iterable[RatioLike] | RatioLike = (0.05,),
     *,
     component: str = "horizontal",
-    window: "Window" = None,
+    window: Window = None,
     acceleration: str | None = None,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw a motion along time, its response spectra and its Fourier spectrum.
 
     Parameters
@@ -123,13 +113,13 @@ def spectra(
     return on.panels
 
 
-def _history(axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, one: Drawn) -> None:
+def _history(axes: Axes, dataset: xr.Dataset, name: str, unit: Shown, one: Drawn) -> None:
     colour = ink() if one.label is None else one.colour
     axes.plot(dataset["time"], unit.of(dataset[name]), color=colour, linewidth=0.8, label=one.label)
     zero_line(axes)
 
 
-def _response(axes: "Axes", dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
+def _response(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
     drawn = dataset.isel(period=np.flatnonzero(dataset["period"].to_numpy() > 0.0))
     ratios = dataset["damping_ratio"].to_numpy().tolist()
     for place, ratio in enumerate(ratios):
@@ -147,7 +137,7 @@ def _response(axes: "Axes", dataset: xr.Dataset, unit: Shown, one: Drawn) -> Non
         )
 
 
-def _fourier(axes: "Axes", dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
+def _fourier(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
     drawn = dataset.isel(frequency=slice(1, None))
     colour = ink() if one.label is None else one.colour
     values = unit.of(drawn["fourier_amplitude"])
@@ -186,17 +176,17 @@ _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), "s")
 
 @draws()
 def suite(
-    motions: "MotionsLike",
-    periods: "ArrayLike | Iterable[QuantityLike]" = _PERIODS,
-    damping_ratio: "RatioLike" = 0.05,
+    motions: MotionsLike,
+    periods: ArrayLike | Iterable[QuantityLike] = _PERIODS,
+    damping_ratio: RatioLike = 0.05,
     *,
     component: str = "horizontal",
-    target: "TargetSpectrum | None" = None,
+    target: TargetSpectrum | None = None,
     acceleration: str | None = None,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw the response spectra of a set of motions, with their median and spread.
 
     Parameters
@@ -268,7 +258,7 @@ def suite(
     return on.axes
 
 
-def _draw_spread(axes: "Axes", period: Any, values: Any) -> None:
+def _draw_spread(axes: Axes, period: Any, values: Any) -> None:
     logarithms = np.log(values)
     median, spread = np.exp(logarithms.mean(axis=0)), logarithms.std(axis=0, ddof=1)
     low, high = median * np.exp(-spread), median * np.exp(spread)

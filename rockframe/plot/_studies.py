@@ -1,6 +1,6 @@
 """Results of studies along one axis or two: sweeps, critical scales, sequences, fitted tests."""
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -22,18 +22,12 @@ from rockframe.plot._axes import (
     zero_line,
 )
 from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Panels, sheet, single
+from rockframe.plot._panels import Axes, AxesLike, Panels, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
 from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units import ANGLE
-from rockframe.units.shown import reader_units
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from rockframe.plot._panels import AxesLike
-    from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, reader_units
 
 _MOST_AXES: Final = 2
 """Dimensions that a figure of a sweep has."""
@@ -45,10 +39,10 @@ _PANELS: Final = ("histories", "residual")
 def critical_scale(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw the peak rotation over the scale of a motion, and where the verdict changes.
 
     Parameters
@@ -94,10 +88,10 @@ def sweep(
     runs: xr.Dataset,
     variable: str = "peak_relative_rotation",
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Axes":
+) -> Axes:
     """Draw a scalar of many runs over one or two of their axes.
 
     Over one axis, a line; over an axis and motions or a second axis that is short, a line for each;
@@ -145,10 +139,10 @@ def free_decay(
     dataset: xr.Dataset,
     *,
     rotation: str | None = None,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw a test of free decay beside the system that was fitted to it, and what is left.
 
     Parameters
@@ -260,7 +254,7 @@ def _along(given: xr.Dataset, dim: str) -> tuple[Any, str]:
 
 
 def _draw_lines(
-    axes: "Axes", given: xr.Dataset, values: xr.DataArray, fell: Any, along: str,
+    axes: Axes, given: xr.Dataset, values: xr.DataArray, fell: Any, along: str,
     others: list[str],
 ) -> None:  # fmt: skip
     places, words = _along(given, along)
@@ -290,7 +284,7 @@ def _draw_lines(
         key(axes)
 
 
-def _draw_map(axes: "Axes", given: xr.Dataset, values: xr.DataArray, dims: list[str]) -> None:
+def _draw_map(axes: Axes, given: xr.Dataset, values: xr.DataArray, dims: list[str]) -> None:
     (up, up_words), (across, across_words) = (_along(given, dim) for dim in dims)
     mesh = axes.pcolormesh(
         across, up, values.to_numpy().astype(np.float64), cmap="viridis", shading="nearest"

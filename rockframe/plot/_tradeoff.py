@@ -7,14 +7,13 @@ import xarray as xr
 
 from rockframe.plot._axes import GREY, grid, ink
 from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import Panels, sheet
+from rockframe.plot._panels import AxesLike, Panels, sheet
+from rockframe.units.shown import UnitsLike
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from rockframe.plot._panels import AxesLike
-    from rockframe.units.shown import UnitsLike
 
 _LEAST: Final = 1e-14
 """Errors of the integration below are drawn here: they are rounding."""
@@ -32,10 +31,10 @@ _ERROR: Final = "largest error of the rotation{}over its peak [-]"
 def tradeoff(
     dataset: xr.Dataset,
     *,
-    units: "UnitsLike" = None,
-    ax: "AxesLike" = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
     title: str | None = None,
-) -> "Panels":
+) -> Panels:
     """Draw a comparison of models and accuracies.
 
     Left, the error of the integration against the time of a run, a line for each model; right,

@@ -21,8 +21,8 @@ from rockframe.records.archives import (
 )
 from rockframe.records.reader import Source, source_of
 
-PathLike: TypeAlias = "str | os.PathLike[str]"
-RecordLike: TypeAlias = "PathLike | bytes | IO[bytes] | IO[str]"
+PathLike: TypeAlias = str | os.PathLike[str]
+RecordLike: TypeAlias = PathLike | bytes | IO[bytes] | IO[str]
 """A file by its path, its bytes, or an open file."""
 
 IN_MEMORY: Final = "bytes"

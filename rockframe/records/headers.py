@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 
-Keys: TypeAlias = "dict[str, tuple[str, int]]"
+Keys: TypeAlias = dict[str, tuple[str, int]]
 """Value and line, from 1, of each key."""
 
 NOTHING: Final = ("", 0)

@@ -165,7 +165,7 @@ def _description(source: Source, index: int) -> Metadata:
 
 PEER_AT2: Final = Format("peer-at2", "PEER acceleration file (AT2)", (_SUFFIX,), _recognises, _read)
 
-Known: TypeAlias = "dict[str, str | float | int]"
+Known: TypeAlias = dict[str, str | float | int]
 
 _MARK: Final = b"PEER Ground Motion Database"
 _START: Final = 4096

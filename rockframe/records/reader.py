@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rockframe.signals import Motion
     from rockframe.signals.arrays import Array
 
-Metadata: TypeAlias = "dict[str, str | float | int]"
+Metadata: TypeAlias = dict[str, str | float | int]
 
 # What bounds time and memory beside MAXIMUM_BYTES: no file may cost more than about a second
 # or 200 MB, whatever stands in it.

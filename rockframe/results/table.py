@@ -2,8 +2,9 @@
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
+import pandas as pd
 import xarray as xr
 
 from rockframe.arguments import checked_dataset, one_of_words
@@ -12,12 +13,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH
 from rockframe.units import Unit
-from rockframe.units.shown import reader_units
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, reader_units
 
 _OWNER: Final = "table"
 _RUN: Final = "run"
@@ -43,8 +39,8 @@ def table(
     runs: xr.Dataset | Iterable[xr.Dataset] | Mapping[Any, xr.Dataset],
     contents: str = Contents.SCALARS,
     *,
-    units: "UnitsLike" = None,
-) -> "pd.DataFrame":
+    units: UnitsLike = None,
+) -> pd.DataFrame:
     """Give results as a pandas DataFrame, with units in the heads of its columns.
 
     Parameters
@@ -111,15 +107,15 @@ def _each(runs: object) -> Iterable[Any]:
     return cast("Iterable[Any]", runs) if several else [runs]
 
 
-def _of_one(run: xr.Dataset, kind: Contents) -> "pd.DataFrame":
+def _of_one(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
     if kind is Contents.SCALARS and not _dimensions(run, _names(run, kind)):
         return _below_one_another([run], kind, _labels([run]))
     return _rows(run, kind)
 
 
 def _below_one_another(
-    runs: Sequence[xr.Dataset], kind: Contents, labels: "pd.Index"
-) -> "pd.DataFrame":
+    runs: Sequence[xr.Dataset], kind: Contents, labels: pd.Index
+) -> pd.DataFrame:
     import pandas as pd
 
     frames = [_rows(run, kind) for run in runs]
@@ -135,7 +131,7 @@ def _below_one_another(
     return pd.concat(frames, keys=labels, names=names)
 
 
-def _keys(runs: Mapping[Any, xr.Dataset]) -> "pd.Index":
+def _keys(runs: Mapping[Any, xr.Dataset]) -> pd.Index:
     import pandas as pd
 
     keys = list(runs)
@@ -144,7 +140,7 @@ def _keys(runs: Mapping[Any, xr.Dataset]) -> "pd.Index":
     return pd.Index(keys, name=_RUN)
 
 
-def _labels(runs: Sequence[xr.Dataset]) -> "pd.Index":
+def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
     """Tell runs apart by motions and scalar coordinates, or else by their number too."""
     import pandas as pd
 
@@ -163,7 +159,7 @@ def _labels(runs: Sequence[xr.Dataset]) -> "pd.Index":
     return pd.MultiIndex.from_arrays(list(levels.values()), names=list(levels))
 
 
-def _rows(run: xr.Dataset, kind: Contents) -> "pd.DataFrame":
+def _rows(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
     """Give a dataset's own rows, without the labels that all of them share."""
     import pandas as pd
 
@@ -190,8 +186,8 @@ def _rows(run: xr.Dataset, kind: Contents) -> "pd.DataFrame":
 
 
 def _headed(
-    frame: "pd.DataFrame", variables: Mapping[Any, xr.Variable], names: Sequence[str]
-) -> "pd.DataFrame":
+    frame: pd.DataFrame, variables: Mapping[Any, xr.Variable], names: Sequence[str]
+) -> pd.DataFrame:
     """Give columns their units, and words for flags."""
     import pandas as pd
 
@@ -241,7 +237,7 @@ def _with_unit(name: str, unit: object) -> str:
     return name if unit == str(Unit.ONE) else f"{name} [{unit}]"
 
 
-def _in_words(column: Any, values: xr.Variable) -> "pd.Series":
+def _in_words(column: Any, values: xr.Variable) -> pd.Series:
     """Give flags as words, and truth values that were joined with gaps as such."""
     meanings = str(values.attrs.get("flag_meanings", "")).split()
     if values.dtype == bool or not meanings:

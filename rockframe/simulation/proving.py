@@ -2,26 +2,22 @@
 
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.arguments import whole_number
+from rockframe.components import InitialState
 from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import LEADING_CORNER
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ending
 from rockframe.dynamics.rigid_ground import BlockOnRigidGround
 from rockframe.errors import ComponentError, shown
-from rockframe.proof.verdict import EXACT, Tolerances
+from rockframe.motion import GroundMotion
+from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.simulation.plan import Plan, plan_run, start_of
+from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly
-from rockframe.units import ANGLE, POSITIVE, Condition, to_ratio, to_si
-
-if TYPE_CHECKING:
-    from rockframe.components import InitialState
-    from rockframe.motion import GroundMotion
-    from rockframe.proof.verdict import Proof
-    from rockframe.simulation.system import System
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import ANGLE, POSITIVE, Condition, QuantityLike, RatioLike, to_ratio, to_si
 
 _OWNER: Final = "prove"
 _CRITICAL: Final = "prove_critical_scale"
@@ -34,16 +30,16 @@ _TOLERANCE: Final = Condition("from 0 to 0.1", lambda value: 0.0 <= value <= 0.1
 
 
 def prove(
-    system: "System",
-    motion: "GroundMotion | None" = None,
+    system: System,
+    motion: GroundMotion | None = None,
     *,
-    scale: "RatioLike" = 1.0,
-    restitution_tolerance: "RatioLike" = 0.0,
-    scale_tolerance: "RatioLike" = 0.0,
-    angle_tolerance: "QuantityLike" = "0 rad",
+    scale: RatioLike = 1.0,
+    restitution_tolerance: RatioLike = 0.0,
+    scale_tolerance: RatioLike = 0.0,
+    angle_tolerance: QuantityLike = "0 rad",
     parts: int = 64,
-    initial: "InitialState | None" = None,
-) -> "Proof":
+    initial: InitialState | None = None,
+) -> Proof:
     """Prove whether a block on rigid ground or on pads overturns under a record.
 
     Parameters
@@ -149,12 +145,12 @@ class ProvedBracket:
 
 
 def prove_critical_scale(
-    system: "System",
-    motion: "GroundMotion | None" = None,
+    system: System,
+    motion: GroundMotion | None = None,
     *,
-    width: "RatioLike" = 1e-9,
-    start: "RatioLike" = 1.0,
-    initial: "InitialState | None" = None,
+    width: RatioLike = 1e-9,
+    start: RatioLike = 1.0,
+    initial: InitialState | None = None,
 ) -> ProvedBracket:
     """Enclose a scale of a record at which a block begins to overturn, proved on both sides.
 
@@ -239,7 +235,7 @@ def proof_of(
     scale: float = 1.0,
     within: Tolerances = EXACT,
     owner: str = _OWNER,
-) -> "Proof":
+) -> Proof:
     """Prove the verdict of a run as it was planned, by its motion and its start."""
     model, motion = system.model, plan.motion
     faults = _faults(system)

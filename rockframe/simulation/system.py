@@ -4,7 +4,8 @@ import json
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from inspect import signature
-from typing import TYPE_CHECKING, Any, Final, Literal, Self
+from pathlib import Path
+from typing import Any, Final, Literal, Self
 
 import xarray as xr
 
@@ -13,6 +14,7 @@ from rockframe.components import InitialState, component_from_dict
 from rockframe.errors import ModelWarning, SchemaError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.simulation.provenance import motion_from_dataset
+from rockframe.simulation.run_arguments import Certification
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.system.assembly import Assembly, assemble
 from rockframe.system.options import (
@@ -34,11 +36,6 @@ from rockframe.system.parts import Parts
 from rockframe.system.scenes import Scene
 from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, ANGLE, Quantity, QuantityLike, quantity
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from rockframe.simulation.run_arguments import Certification
 
 _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
 """What is raised where a description is not what was written."""
@@ -223,7 +220,7 @@ class System:
         *,
         duration: QuantityLike | None = None,
         free_vibration: QuantityLike | None = None,
-        initial: "InitialState | xr.Dataset | None" = None,
+        initial: InitialState | xr.Dataset | None = None,
         accuracy: AccuracyLike = AccuracyLevel.STANDARD,
         output_step: QuantityLike | None = None,
         outputs: Sequence[str] | None = (),
@@ -308,7 +305,7 @@ class System:
         )
         return run(self._assembly, plan, certification_of(certify), look_again=second_look)
 
-    def to_opensees(self, motion: GroundMotion, path: "str | Path", **options: Any) -> "Path":
+    def to_opensees(self, motion: GroundMotion, path: str | Path, **options: Any) -> Path:
         """Write the system and a motion as a Python file that OpenSees runs.
 
         Parameters

@@ -4,7 +4,7 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, Unpack
+from typing import Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -13,6 +13,7 @@ from rockframe.arguments import whole_number
 from rockframe.comparison.models import check_system
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
+from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
@@ -24,6 +25,7 @@ from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import run, summary_of
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.soundness import STILL_MOVING
+from rockframe.simulation.system import System
 from rockframe.studies.flips import (
     Followed,
     Look,
@@ -36,12 +38,7 @@ from rockframe.studies.intensities import ScaledIntensity, of_study
 from rockframe.studies.lines import read_resolution, read_width
 from rockframe.studies.sweeps.execution import ProgressBar, bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.units import POSITIVE, to_ratio
-
-if TYPE_CHECKING:
-    from rockframe.motion import GroundMotion
-    from rockframe.simulation.system import System
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import POSITIVE, QuantityLike, RatioLike, to_ratio
 
 _OWNER: Final = "critical_scale"
 MOST_RUNS: Final = 1_000_000
@@ -52,17 +49,17 @@ _OUTCOMES: Final = {
 
 @takes(ScaleArguments)
 def critical_scale(
-    system: "System",
-    motion: "GroundMotion | None" = None,
+    system: System,
+    motion: GroundMotion | None = None,
     *,
-    largest: "RatioLike" = 4.0,
+    largest: RatioLike = 4.0,
     scales: int = 80,
     runs: int = 400,
-    resolution: "RatioLike" = 0.01,
-    bracket_width: "RatioLike" = 1e-3,
+    resolution: RatioLike = 0.01,
+    bracket_width: RatioLike = 1e-3,
     intensity: str | None = None,
-    period: "QuantityLike | None" = None,
-    damping_ratio: "RatioLike" = 0.05,
+    period: QuantityLike | None = None,
+    damping_ratio: RatioLike = 0.05,
     progress: bool | None = None,
     **asked: Unpack[ScaleArguments],
 ) -> xr.Dataset:
@@ -238,7 +235,7 @@ def _counted(look: Look, bar: ProgressBar, first: int) -> Look:
     return counted
 
 
-def _uplift_scale(system: "System", plan: Plan) -> float:
+def _uplift_scale(system: System, plan: Plan) -> float:
     """Give the scale up to which a block at rest on rigid ground stays so; NaN otherwise."""
     setting, motion = system.setting, plan.motion
     if not isinstance(setting, RigidGroundSetting) or plan.initial != InitialState():
@@ -255,7 +252,7 @@ def _uplift_scale(system: "System", plan: Plan) -> float:
 
 
 def _cautions(
-    system: "System", plan_at: Callable[[float], Plan], found: Followed, critical: float
+    system: System, plan_at: Callable[[float], Plan], found: Followed, critical: float
 ) -> dict[str, str]:
     """Repeat what simulate warns of at the scale that tells; warn of runs without a verdict."""
     cautions: list[str] = []

@@ -1,19 +1,21 @@
 """Incremental dynamic analysis: motions that are scaled until limit states are exceeded."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Final, Unpack
+from typing import Final, Unpack
 
 import numpy as np
 import xarray as xr
 
 from rockframe.comparison.models import check_system
 from rockframe.errors import ModelWarning, StudyError, warn
+from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.friction import share_words
+from rockframe.simulation.system import System
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import (
     STATES,
@@ -36,11 +38,7 @@ from rockframe.studies.lines import (
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import named_motions
-
-if TYPE_CHECKING:
-    from rockframe.motion import GroundMotion
-    from rockframe.simulation.system import System
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
 _MOST_SCALES: Final = 100_000
@@ -49,15 +47,15 @@ _SCALES: Final = tuple(0.1 * k for k in range(1, 41))
 
 @takes(SweepArguments)
 def incremental_dynamic_analysis(
-    system: "System",
-    motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
+    system: System,
+    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
     *,
-    scale: "Sequence[float] | np.ndarray" = _SCALES,
+    scale: Sequence[float] | np.ndarray = _SCALES,
     limits: Iterable[object] = (),
     intensity: str | None = None,
-    period: "QuantityLike | None" = None,
-    resolution: "RatioLike" = 0.02,
-    bracket_width: "RatioLike" = 1e-3,
+    period: QuantityLike | None = None,
+    resolution: RatioLike = 0.02,
+    bracket_width: RatioLike = 1e-3,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Scale motions, and find all scales between which limit states begin or cease to be exceeded.

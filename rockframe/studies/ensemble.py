@@ -1,7 +1,7 @@
 """Statistics of ensembles: how a result is distributed over motions or cases."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -13,22 +13,19 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.probability import SAMPLED
-from rockframe.units import Condition, to_ratio
-
-if TYPE_CHECKING:
-    from rockframe.units import RatioLike
+from rockframe.units import Condition, RatioLike, to_ratio
 
 _OWNER: Final = "ensemble_statistics"
 _SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 
 
 def ensemble_statistics(
-    runs: "xr.Dataset | xr.DataArray",
+    runs: xr.Dataset | xr.DataArray,
     name: str = "peak_relative_rotation",
     *,
-    quantiles: "Sequence[RatioLike]" = (0.16, 0.5, 0.84),
+    quantiles: Sequence[RatioLike] = (0.16, 0.5, 0.84),
     pooled: Iterable[str] = (),
-    confidence: "RatioLike" = 0.95,
+    confidence: RatioLike = 0.95,
 ) -> xr.Dataset:
     """Give the empirical distribution of a result, with bands.
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, Unpack
+from typing import Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -16,17 +16,14 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
+from rockframe.simulation.system import System
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import SCALE, VERDICT, Lines, bracket_arrays, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.system.options import Overturning
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.units import ACCELERATION, FREQUENCY, quantity
-
-if TYPE_CHECKING:
-    from rockframe.simulation.system import System
-    from rockframe.units import RatioLike
+from rockframe.units import ACCELERATION, FREQUENCY, RatioLike, quantity
 
 _OWNER: Final = "overturning_map"
 _STANDS: Final = -1.0
@@ -35,13 +32,13 @@ _MOST_IMPACTS: Final = 1000
 
 @takes(SweepArguments, overturning=Overturning.CONTINUE)
 def overturning_map(
-    system: "System",
-    pulse: "GroundMotion | Callable[..., GroundMotion]",
+    system: System,
+    pulse: GroundMotion | Callable[..., GroundMotion],
     *,
     amplitude: Any,
     frequency: Any,
     impacts: int = 3,
-    bracket_width: "RatioLike" = 1e-3,
+    bracket_width: RatioLike = 1e-3,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Run pulses of all amplitudes and frequencies, and find the boundaries of overturning.
@@ -189,7 +186,7 @@ def _without_stands(counts: Array) -> Array:
     return np.where(counts == _STANDS, np.nan, counts)
 
 
-def _labels(system: "System", levels: Array, frequencies: Array) -> dict[str, Any]:
+def _labels(system: System, levels: Array, frequencies: Array) -> dict[str, Any]:
     """Give the coordinates; on rigid ground also those without a dimension."""
 
     def labels(name: str, dim: str, values: Array) -> tuple[str, Array, dict[str, Any]]:

@@ -1,20 +1,22 @@
 """How probable overturning is where parameters and motions are spread; the distributions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, Unpack, cast
+from typing import Any, Final, NamedTuple, Unpack, cast
 
 import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
+from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
+from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import head
@@ -24,14 +26,7 @@ from rockframe.studies.sweeps.motions import named_motions
 from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import SweptScene, own_motion, scene_of
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.units import POSITIVE, Measure, Unit, to_ratio, to_si
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rockframe.motion import GroundMotion
-    from rockframe.simulation.system import System
-    from rockframe.units import RatioLike
+from rockframe.units import POSITIVE, Measure, RatioLike, Unit, to_ratio, to_si
 
 
 class Sampling(StrEnum):
@@ -210,14 +205,14 @@ _MOST_CASES: Final = 1_000_000_000
 
 @takes(SweepArguments)
 def probability_of_overturning(
-    system: "System | Callable[..., System]",
-    motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
+    system: System | Callable[..., System],
+    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
     *,
     spread: Mapping[str, Any],
     cases: int = 1000,
     sampling: str = Sampling.LATIN,
     seed: int = 0,
-    confidence: "RatioLike" = 0.95,
+    confidence: RatioLike = 0.95,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Draw parameters and motions, and count how many cases overturn.

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate
-from typing import TYPE_CHECKING, Any, Final, Unpack, cast
+from typing import Any, Final, Unpack, cast
 
 import numpy as np
 import xarray as xr
@@ -21,14 +21,11 @@ from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.signal import COEFFICIENTS
 from rockframe.simulation.run import NONE
+from rockframe.simulation.system import System
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SequenceArguments
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.units import NOT_NEGATIVE, TIME, to_si
-
-if TYPE_CHECKING:
-    from rockframe.simulation.system import System
-    from rockframe.units import QuantityLike
+from rockframe.units import NOT_NEGATIVE, TIME, QuantityLike, to_si
 
 _OWNER: Final = "earthquake_sequences"
 _SAME_STEP: Final = 1e-9
@@ -38,10 +35,10 @@ NUMBER: Final = "earthquake"
 
 @takes(SequenceArguments)
 def earthquake_sequences(
-    system: "System",
-    sequences: "Mapping[str, Sequence[GroundMotion]] | Sequence[Sequence[GroundMotion]]",
+    system: System,
+    sequences: Mapping[str, Sequence[GroundMotion]] | Sequence[Sequence[GroundMotion]],
     *,
-    pause: "QuantityLike" = "20 s",
+    pause: QuantityLike = "20 s",
     **run: Unpack[SequenceArguments],
 ) -> xr.Dataset:
     """Run earthquakes one after the other, each from where the one before has left the system.

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final, Unpack
+from typing import Any, Final, TypeAlias, Unpack
 
 import numpy as np
 import xarray as xr
@@ -34,12 +34,9 @@ from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.motions import named_motions
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.units import LENGTH, PERIOD, Measure, Unit
+from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Unit
 
-if TYPE_CHECKING:
-    from rockframe.units import QuantityLike, RatioLike
-
-    Motions = GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion]
+Motions: TypeAlias = GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion]
 
 
 SIZE: Final = ("slenderness", "rocking_period")
@@ -152,8 +149,8 @@ _MOST_SCALES: Final = 100_000
 
 @takes(SweepArguments)
 def rocking_spectrum(
-    system: "System",
-    motions: "Motions | None" = None,
+    system: System,
+    motions: Motions | None = None,
     *,
     periods: Any,
     slenderness: Any = None,
@@ -216,16 +213,16 @@ def rocking_spectrum(
 
 @takes(SweepArguments)
 def overturning_spectrum(
-    system: "System",
-    motions: "Motions | None" = None,
+    system: System,
+    motions: Motions | None = None,
     *,
     periods: Any,
     slenderness: Any = None,
-    scale: "Sequence[float] | np.ndarray",
+    scale: Sequence[float] | np.ndarray,
     intensity: str = "PGA",
-    period: "QuantityLike | None" = None,
-    resolution: "RatioLike" = 0.02,
-    bracket_width: "RatioLike" = 1e-3,
+    period: QuantityLike | None = None,
+    resolution: RatioLike = 0.02,
+    bracket_width: RatioLike = 1e-3,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Find the least intensity of motions that overturns blocks of all sizes.
@@ -324,7 +321,7 @@ def overturning_spectrum(
     )
 
 
-def _given(motions: object, system: "System", owner: str) -> Any:
+def _given(motions: object, system: System, owner: str) -> Any:
     given = system.motion if motions is None else motions
     if given is None:
         msg = f"{owner}: there is no motion; give one"

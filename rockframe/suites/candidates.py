@@ -15,13 +15,13 @@ from rockframe.measures.response import checked_periods, shortest_of, spectra_of
 from rockframe.motion.processing.samples import say_coarse
 from rockframe.signals.arrays import Array
 from rockframe.suites.target import TargetSpectrum
+from rockframe.suites.value import LabelledMotions
 from rockframe.units import PERIOD, POSITIVE, to_ratio
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rockframe.motion.quantities import ArrayLike
-    from rockframe.suites.suite import MotionSuite
     from rockframe.units import QuantityLike, RatioLike
 
 _USUAL_BAND: Final = (0.1, 4.0)
@@ -71,7 +71,7 @@ class Candidates:
 
 
 def candidates_of(
-    suite: "MotionSuite",
+    suite: LabelledMotions,
     target: object,
     *,
     periods: "ArrayLike | Iterable[QuantityLike] | None",
@@ -143,7 +143,7 @@ def _bounds(given: "tuple[RatioLike, RatioLike] | None", owner: str) -> tuple[fl
 
 
 def _spectra(
-    suite: "MotionSuite", kind: Combination, seconds: Array, damping_ratio: float, owner: str
+    suite: LabelledMotions, kind: Combination, seconds: Array, damping_ratio: float, owner: str
 ) -> tuple[list[str], Array, list[str]]:
     with_unit = (seconds, str(PERIOD.unit))
     if kind is Combination.EACH:

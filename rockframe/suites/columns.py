@@ -16,7 +16,7 @@ from rockframe.results.variables.suites import RECORDS
 from rockframe.units import Measure, Unit, to_ratio, to_si
 
 if TYPE_CHECKING:
-    from rockframe.suites.suite import MotionSuite
+    from rockframe.suites.value import LabelledMotions
 
 
 _COMPUTED: Final = ("time_step", "duration", "sample_count", "peak_ground_acceleration")
@@ -163,7 +163,7 @@ _SHOWN: Final = 8
 """Motions that have a row of their own."""
 
 
-def suite_html(suite: "MotionSuite") -> str:
+def suite_html(suite: "LabelledMotions") -> str:
     """Give number, and curves of the first motions, of a suite as HTML."""
     rows = {"motions": str(len(suite))}
     if suite.verticals:

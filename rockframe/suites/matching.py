@@ -1,17 +1,13 @@
 """Matching all motions of a suite to a target spectrum."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from rockframe.errors import RecordWarning, collected_warnings, warn
+from rockframe.motion import GroundMotion
+from rockframe.motion.operations.matching import Target
+from rockframe.suites.value import LabelledMotions
 
-if TYPE_CHECKING:
-    from rockframe.motion import GroundMotion
-    from rockframe.motion.operations.matching import Target
-    from rockframe.suites.suite import MotionSuite
-
-    Suite = TypeVar("Suite", bound=MotionSuite)
+Suite = TypeVar("Suite", bound=LabelledMotions)
 
 
 def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:

@@ -1,7 +1,8 @@
 """From files to a suite."""
 
+from collections.abc import Iterable
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.arguments import hinted
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
@@ -9,6 +10,7 @@ from rockframe.motion import GroundMotion
 from rockframe.records import (
     Known,
     Reading,
+    RecordLike,
     Request,
     Source,
     Unread,
@@ -20,12 +22,7 @@ from rockframe.records import (
 from rockframe.suites.records import RecordedComponent, assign_records, number_in_name
 from rockframe.suites.stored import is_stored_suite, stored_suite
 from rockframe.suites.suite import MotionSuite
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rockframe.records import RecordLike
-    from rockframe.units import QuantityLike
+from rockframe.units import QuantityLike
 
 _OWNER: Final = "read_suite"
 _OTHER_MOTIONS: Final = {".vt2": "a velocity", ".dt2": "a displacement"}
@@ -36,11 +33,11 @@ _LISTED: Final = 3
 
 @hinted()
 def read_suite(
-    path: "RecordLike | Iterable[RecordLike]",
+    path: RecordLike | Iterable[RecordLike],
     *,
     format: str | None = None,  # noqa: A002
     unit: str | None = None,
-    time_step: "QuantityLike | None" = None,
+    time_step: QuantityLike | None = None,
 ) -> MotionSuite:
     r"""Read all records of a folder, of an archive, or of a list of files.
 
@@ -103,7 +100,7 @@ def read_suite(
         if isinstance(file, Unread):
             found.left.append(file)
         elif is_stored_suite(file):
-            return stored_suite(file, MotionSuite)
+            return stored_suite(file, MotionSuite.from_dataset)
         else:
             found.take(file, format, request)
     found.complete()

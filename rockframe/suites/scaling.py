@@ -7,21 +7,21 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError
+from rockframe.motion.quantities import ArrayLike
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.columns import column
+from rockframe.suites.target import TargetSpectrum
+from rockframe.suites.value import LabelledMotions
+from rockframe.units import QuantityLike, RatioLike
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rockframe.motion import GroundMotion
-    from rockframe.motion.quantities import ArrayLike
     from rockframe.signals.arrays import Array
-    from rockframe.suites.suite import MotionSuite
-    from rockframe.suites.target import TargetSpectrum
-    from rockframe.units import QuantityLike, RatioLike
 
 USUAL_BOUNDS: Final = (0.25, 4.0)
 """Factors within which scaling is taken for harmless."""
@@ -29,12 +29,12 @@ _ROUNDING: Final = 1e-9
 
 
 def scaling_to(
-    suite: "MotionSuite",
-    target: "TargetSpectrum",
+    suite: LabelledMotions,
+    target: TargetSpectrum,
     *,
-    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
-    conditioned_on: "ArrayLike | Iterable[QuantityLike] | None" = None,
-    bounds: "tuple[RatioLike, RatioLike] | None" = USUAL_BOUNDS,
+    periods: ArrayLike | Iterable[QuantityLike] | None = None,
+    conditioned_on: ArrayLike | Iterable[QuantityLike] | None = None,
+    bounds: tuple[RatioLike, RatioLike] | None = USUAL_BOUNDS,
     combination: str = Combination.EACH,
 ) -> xr.Dataset:
     """Find the factor that brings each motion's spectrum to a target, and the misfit left.
@@ -165,7 +165,7 @@ def spread_of(logarithms: "Array") -> "Array":
 
 
 def scaled_motions(
-    suite: "MotionSuite", found: xr.Dataset
+    suite: LabelledMotions, found: xr.Dataset
 ) -> "tuple[dict[str, GroundMotion], dict[str, GroundMotion]]":
     """Scale the motions of a suite by the factors that were found."""
     needed = ("scale_factor", "spectral_misfit", MOTION)

@@ -9,19 +9,18 @@ import xarray as xr
 
 from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError
+from rockframe.motion.quantities import ArrayLike
 from rockframe.results.dataset import build_dataset
 from rockframe.suites.candidates import Combination, candidates_of
 from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set
-from rockframe.units import NOT_NEGATIVE, to_ratio
+from rockframe.suites.target import TargetSpectrum
+from rockframe.suites.value import LabelledMotions
+from rockframe.units import NOT_NEGATIVE, QuantityLike, RatioLike, to_ratio
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rockframe.motion.quantities import ArrayLike
     from rockframe.signals.arrays import Array
-    from rockframe.suites.suite import MotionSuite
-    from rockframe.suites.target import TargetSpectrum
-    from rockframe.units import QuantityLike, RatioLike
 
 _MOST_STARTS: Final = 20
 _MOST_PASSES: Final = 50
@@ -33,15 +32,15 @@ _REFERENCES: Final = (
 
 
 def selection_for(
-    suite: "MotionSuite",
-    target: "TargetSpectrum",
+    suite: LabelledMotions,
+    target: TargetSpectrum,
     count: int,
     *,
-    periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
-    conditioned_on: "ArrayLike | Iterable[QuantityLike] | None" = None,
-    bounds: "tuple[RatioLike, RatioLike] | None" = USUAL_BOUNDS,
+    periods: ArrayLike | Iterable[QuantityLike] | None = None,
+    conditioned_on: ArrayLike | Iterable[QuantityLike] | None = None,
+    bounds: tuple[RatioLike, RatioLike] | None = USUAL_BOUNDS,
     combination: str = Combination.EACH,
-    spread_weight: "RatioLike | None" = None,
+    spread_weight: RatioLike | None = None,
     per_event: int | None = None,
 ) -> xr.Dataset:
     """Choose motions, each scaled, so that median and spread of their spectra fit a target.
@@ -158,12 +157,12 @@ class _Search:
     events: "NDArray[np.intp]"  # earthquakes by numbers; -1 where it is not known
     most: int  # most motions of one earthquake
 
-    def misfit(self, chosen: "list[int]") -> float:
+    def misfit(self, chosen: list[int]) -> float:
         """Compute :eq:`eq-set-misfit` of a set."""
         *others, last = chosen
         return float(self._misfits(others)[last])
 
-    def best(self, count: int) -> "list[int] | None":
+    def best(self, count: int) -> list[int] | None:
         """Find a set of so many; None where earthquakes do not suffice."""
         alone = np.argsort((self.residuals**2).mean(axis=1), kind="stable")
         found: list[tuple[float, list[int]]] = []
@@ -174,7 +173,7 @@ class _Search:
                 found.append((self.misfit(chosen), chosen))
         return min(found)[1] if found else None
 
-    def _misfits(self, others: "list[int]") -> "Array":
+    def _misfits(self, others: list[int]) -> "Array":
         """Compute :eq:`eq-set-misfit` of a set with each candidate added in turn, shape (n,)."""
         held = self.residuals[others]
         count = len(others) + 1
@@ -188,7 +187,7 @@ class _Search:
             squares = squares + self.weight * (spread - self.deviations) ** 2
         return np.sqrt(squares.mean(axis=1))
 
-    def _allowed(self, others: "list[int]") -> "NDArray[np.bool_]":
+    def _allowed(self, others: list[int]) -> "NDArray[np.bool_]":
         """Tell which candidates may be added to a set, shape (n,)."""
         free = np.ones(len(self.residuals), dtype=bool)
         free[others] = False
@@ -196,7 +195,7 @@ class _Search:
         full = numbers[(counts >= self.most) & (numbers >= 0)]
         return free & ~np.isin(self.events, full)
 
-    def _grown(self, first: int, count: int) -> "list[int] | None":
+    def _grown(self, first: int, count: int) -> list[int] | None:
         chosen = [first]
         while len(chosen) < count:
             misfits = np.where(self._allowed(chosen), self._misfits(chosen), np.inf)
@@ -206,7 +205,7 @@ class _Search:
             chosen.append(place)
         return chosen
 
-    def _improved(self, chosen: "list[int]") -> "list[int]":
+    def _improved(self, chosen: list[int]) -> list[int]:
         now = self.misfit(chosen)
         for _ in range(_MOST_PASSES):
             before = now
@@ -222,6 +221,6 @@ class _Search:
         return chosen
 
 
-def _numbered(events: "list[str]") -> "NDArray[np.intp]":
+def _numbered(events: list[str]) -> "NDArray[np.intp]":
     numbers = {event: k for k, event in enumerate(dict.fromkeys(filter(None, events)))}
     return np.array([numbers.get(event, -1) for event in events], dtype=np.intp)

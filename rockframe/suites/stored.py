@@ -7,7 +7,7 @@ belong to each, the contiguous ragged array of CF 9.3.3.
 import json
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
@@ -22,15 +22,15 @@ from rockframe.results.joining import MOTION
 from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import COEFFICIENTS, VERTICAL
 from rockframe.suites.columns import known_columns
+from rockframe.suites.value import LabelledMotions
 from rockframe.units import Unit
 
 if TYPE_CHECKING:
     from rockframe.records import Source
-    from rockframe.suites.suite import MotionSuite
 
-    Suite = TypeVar("Suite", bound=MotionSuite)
 
 _KIND: Final = "suite of ground motions"
+Suite = TypeVar("Suite", bound=LabelledMotions)
 _TITLE: Final = "Suite of ground motions"
 _EXPECTED: Final = "a suite as MotionSuite.to_dataset().to_netcdf(...) writes it"
 _MOST_NUMBERS: Final = 20_000_000
@@ -55,7 +55,7 @@ _HELD: Final = {
 }
 
 
-def suite_dataset(suite: "MotionSuite") -> xr.Dataset:
+def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
     """Write a suite as a dataset that plain xarray can store."""
     motions = {**suite, **suite.verticals}
     dataset = build_dataset(
@@ -140,7 +140,7 @@ def is_stored_suite(source: "Source") -> bool:
         return False
 
 
-def stored_suite(source: "Source", kind: "type[Suite]") -> "Suite":
+def stored_suite(source: "Source", read: Callable[[xr.Dataset], Suite]) -> Suite:
     """Read the netCDF file of a suite."""
     import netCDF4
     from xarray.backends import NetCDF4DataStore
@@ -157,7 +157,7 @@ def stored_suite(source: "Source", kind: "type[Suite]") -> "Suite":
                 expected = f"a suite of at most {_MOST_NUMBERS} numbers"
                 raise source.refuse(found=f"{total} numbers declared", expected=expected)
             dataset = xr.open_dataset(NetCDF4DataStore(file), decode_times=False)
-            return kind.from_dataset(dataset.load())
+            return read(dataset.load())
     except RecordError:
         raise
     except SchemaError as problem:

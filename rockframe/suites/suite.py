@@ -1,49 +1,28 @@
-"""A suite: labelled motions in an order, and what is known of them."""
+"""A suite: labelled motions, their measures, and what fits them to a target."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, Self, cast
+from collections.abc import Iterable
+from typing import Any, Self
 
 import xarray as xr
 
-from rockframe.arguments import by_words, checked_dataset
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import checked_dataset
 from rockframe.measures import (
     average_spectral_acceleration,
     intensity_measures,
     response_spectrum,
     rotated_spectrum,
 )
-from rockframe.motion import GroundMotion
-from rockframe.motion.pair import HorizontalPair
-from rockframe.results.dataset import build_dataset
-from rockframe.results.joining import MOTION
-from rockframe.results.table import table as table_of
-from rockframe.suites.columns import (
-    check_column,
-    chosen,
-    known_columns,
-    order,
-    other_columns,
-    suite_html,
-)
+from rockframe.motion.quantities import ArrayLike
 from rockframe.suites.matching import matched
-from rockframe.suites.records import pairs_of
 from rockframe.suites.scaling import scaled_motions, scaling_to
 from rockframe.suites.selection import selection_for
 from rockframe.suites.stored import stored_motions, suite_dataset
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.suites.target import TargetSpectrum
-    from rockframe.units import QuantityLike, RatioLike
-
-_EXAMPLE: Final = "rf.read_suite(path) reads files"
+from rockframe.suites.target import TargetSpectrum
+from rockframe.suites.value import LabelledMotions
+from rockframe.units import QuantityLike, RatioLike
 
 
-class MotionSuite(Mapping[str, GroundMotion]):
+class MotionSuite(LabelledMotions):
     """Labelled ground motions in an order; immutable.
 
     A mapping of labels to motions, accepted wherever several motions are. It holds the
@@ -79,222 +58,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
     [1.0, 1.0]
     """
 
-    __slots__ = ("_motions", "_remarks", "_unread", "_verticals")
-
-    def __init__(
-        self,
-        motions: Mapping[str, GroundMotion] | Iterable[GroundMotion],
-        *,
-        verticals: Mapping[str, GroundMotion] | None = None,
-        unread: Mapping[str, str] | None = None,
-        remarks: Iterable[str] = (),
-    ) -> None:
-        owner = type(self).__name__
-        self._motions = _named(motions, owner)
-        self._verticals = {} if verticals is None else _named(verticals, owner)
-        self._unread = dict(unread or {})
-        self._remarks = tuple(remarks)
-        if not self._motions:
-            msg = f"{owner}: found no motions; expected one at least"
-            raise ComponentError(msg)
-        twice = [label for label in self._verticals if label in self._motions]
-        if twice:
-            msg = f"{owner}: {twice[0]!r} names a motion and a vertical component"
-            raise ComponentError(msg)
-
-    # a mapping ------------------------------------------------------------------------------
-
-    def __getitem__(self, label: str) -> GroundMotion:
-        return self._motions[label]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._motions)
-
-    def __len__(self) -> int:
-        return len(self._motions)
-
-    def __repr__(self) -> str:
-        labels = list(self._motions)
-        listed = ", ".join(map(repr, labels[:3])) + (", ..." if len(labels) > 3 else "")
-        parts = [f"{len(labels)} motion{'s' if len(labels) > 1 else ''}: {listed}"]
-        if self._verticals:
-            parts.append(f"{len(self._verticals)} vertical components")
-        if self._unread:
-            parts.append(f"{len(self._unread)} files not read")
-        return f"<{type(self).__name__} of {'; '.join(parts)}>"
-
-    # what is known --------------------------------------------------------------------------
-
-    def __dir__(self) -> list[str]:
-        return [name for name in super().__dir__() if not name.startswith("_")]
-
-    def _repr_html_(self) -> str:
-        return suite_html(self)
-
-    @property
-    def verticals(self) -> Mapping[str, GroundMotion]:
-        """Vertical components, by their labels."""
-        return MappingProxyType(self._verticals)
-
-    @property
-    def unread(self) -> Mapping[str, str]:
-        """Files that were not read, and what was found in them."""
-        return MappingProxyType(self._unread)
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """What is worth a look: of records that contradict themselves or do not make a pair."""
-        return self._remarks
-
-    @property
-    def table(self) -> "pd.DataFrame":
-        """What is known of the motions: a row for each, units in the heads of the columns."""
-        dataset = build_dataset(known_columns(self), {}, over=(MOTION,), title="Suite")
-        frame = table_of(dataset.assign_coords({MOTION: (MOTION, list(self))}))
-        for name, values in other_columns(self).items():
-            frame[name] = values
-        return frame
-
-    @property
-    def pairs(self) -> dict[str, HorizontalPair]:
-        """Both horizontal components, and the vertical one, of records that have them."""
-        return pairs_of(self._motions, self._verticals)
-
-    # choosing -------------------------------------------------------------------------------
-
-    def select(self, **criteria: Any) -> Self:
-        """Keep the motions that meet all criteria.
-
-        Parameters
-        ----------
-        **criteria
-            By column of `table`, without its unit: a range ``(lowest, highest)``, both
-            included, either of them None; a list of values; a function of the value, which is
-            in SI units; or one value. Values have units where columns have them.
-
-        Returns
-        -------
-        MotionSuite
-            With the vertical components of these.
-
-        Raises
-        ------
-        UnitsError
-            A value has no unit where it needs one, or one of another kind.
-        ComponentError
-            No such column, or nothing is left.
-
-        Examples
-        --------
-        >>> import rockframe as rf
-        >>> suite = MotionSuite([rf.GroundMotion.stochastic(m, "20 km", seed=m) for m in (5, 6, 7)])
-        >>> len(suite.select(magnitude=(6, None)))
-        2
-        """
-        labels = chosen(self, criteria)
-        if not labels:
-            wanted = ", ".join(f"{name}={given!r}" for name, given in criteria.items())
-            msg = f"{type(self).__name__}.select: no motion has {wanted}"
-            raise ComponentError(msg)
-        return self.only(labels)
-
-    def only(self, labels: Sequence[str]) -> Self:
-        """Keep the motions of some labels, in their order.
-
-        Parameters
-        ----------
-        labels : sequence of str
-            Labels.
-
-        Returns
-        -------
-        MotionSuite
-
-        Raises
-        ------
-        ComponentError
-            None of them, or one that is not there.
-        """
-        unknown = [label for label in labels if label not in self._motions]
-        if unknown:
-            msg = f"{type(self).__name__}.only: there is no motion {shown(unknown[0])}"
-            raise ComponentError(msg)
-        return self._with({label: self._motions[label] for label in labels})
-
-    def sort(self, by: str, *, descending: bool = False) -> Self:
-        """Order the motions by a column; those of which it is not known stand last.
-
-        Parameters
-        ----------
-        by : str
-            A column of `table`, without its unit.
-        descending : bool, optional
-            Whether the greatest stands first.
-
-        Returns
-        -------
-        MotionSuite
-
-        Raises
-        ------
-        ComponentError
-            No such column.
-        """
-        check_column(self, by, owner=f"{type(self).__name__}.sort")
-        return self.only(order(self, by, descending=descending))
-
-    # changing -------------------------------------------------------------------------------
-
-    def changed(self, step: Callable[[GroundMotion], GroundMotion]) -> Self:
-        """Do the same to all motions, and to the vertical components.
-
-        Parameters
-        ----------
-        step : callable
-            New motion from old one, such as ``lambda motion: motion.filtered(low="0.1 Hz")``.
-
-        Returns
-        -------
-        MotionSuite
-
-        Raises
-        ------
-        ComponentError
-            What it gives is no motion.
-        """
-        motions = {label: step(motion) for label, motion in self._motions.items()}
-        upwards = {label: step(motion) for label, motion in self._verticals.items()}
-        return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
-
-    def with_verticals(self) -> Self:
-        """Set the vertical component of its record beside each motion that has one.
-
-        Returns
-        -------
-        MotionSuite
-            Its motions shake vertically too.
-
-        Raises
-        ------
-        ComponentError
-            A vertical component has another time step.
-        """
-        by_record = {one.metadata.get("record"): one for one in self._verticals.values()}
-        by_record.pop(None, None)
-        motions: dict[str, GroundMotion] = {}
-        for label, motion in self._motions.items():
-            upwards = by_record.get(motion.metadata.get("record"))
-            motions[label] = motion if upwards is None else motion.with_vertical(upwards)
-        return self._with(motions)
-
-    def _with(self, motions: Mapping[str, GroundMotion]) -> Self:
-        kept = {motion.metadata.get("record") for motion in motions.values()}
-        upwards = {
-            label: one
-            for label, one in self._verticals.items()
-            if one.metadata.get("record") in kept
-        }
-        return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
+    __slots__ = ()
 
     # measures -------------------------------------------------------------------------------
 
@@ -314,8 +78,8 @@ class MotionSuite(Mapping[str, GroundMotion]):
 
     def response_spectrum(
         self,
-        periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
-        damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
+        periods: ArrayLike | Iterable[QuantityLike] | None = None,
+        damping_ratios: Iterable[RatioLike] | RatioLike = (0.05,),
         *,
         component: str = "horizontal",
         interpolation: str = "linear",
@@ -337,8 +101,8 @@ class MotionSuite(Mapping[str, GroundMotion]):
 
     def rotated_spectrum(
         self,
-        periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
-        damping_ratios: "Iterable[RatioLike] | RatioLike" = (0.05,),
+        periods: ArrayLike | Iterable[QuantityLike] | None = None,
+        damping_ratios: Iterable[RatioLike] | RatioLike = (0.05,),
     ) -> xr.Dataset:
         """Compute RotD50, RotD100 and the geometric mean of all pairs, over ``motion``.
 
@@ -355,7 +119,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
         return rotated_spectrum(self.pairs, periods, damping_ratios)
 
     def average_spectral_acceleration(
-        self, periods: "ArrayLike | Iterable[QuantityLike]", damping_ratio: "RatioLike" = 0.05
+        self, periods: ArrayLike | Iterable[QuantityLike], damping_ratio: RatioLike = 0.05
     ) -> xr.Dataset:
         """Compute Sa_avg of all motions, over ``motion``.
 
@@ -372,7 +136,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
 
     # a target -------------------------------------------------------------------------------
 
-    def scaled_to(self, target: "TargetSpectrum | xr.Dataset", **arguments: Any) -> Self:
+    def scaled_to(self, target: TargetSpectrum | xr.Dataset, **arguments: Any) -> Self:
         """Scale each motion so that its spectrum fits a target.
 
         Parameters
@@ -399,7 +163,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
         motions, upwards = scaled_motions(self, found)
         return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
 
-    def chosen_for(self, target: "TargetSpectrum", count: int, **arguments: Any) -> Self:
+    def chosen_for(self, target: TargetSpectrum, count: int, **arguments: Any) -> Self:
         """Choose and scale the set of motions that fits a target best.
 
         Parameters
@@ -467,25 +231,3 @@ class MotionSuite(Mapping[str, GroundMotion]):
             verticals={label: motions[label] for label in labels[count:]},
             **about,
         )
-
-
-def _named(given: object, owner: str) -> dict[str, GroundMotion]:
-    """Read motions with their labels."""
-    motions: dict[str, Any] = {}
-    if isinstance(given, Mapping):
-        motions = by_words(cast("Mapping[Any, Any]", given), owner=owner)
-    elif isinstance(given, Iterable) and not isinstance(given, str):
-        for one in cast("Iterable[Any]", given):
-            name = str(getattr(one, "name", len(motions)))
-            if name in motions:
-                msg = f"{owner}: two motions are called {name!r}; give a mapping of labels"
-                raise ComponentError(msg)
-            motions[name] = one
-    else:
-        msg = f"{owner}: motions must be several motions, got {shown(given)}; {_EXAMPLE}"
-        raise ComponentError(msg)
-    for label, one in motions.items():
-        if not isinstance(one, GroundMotion):
-            msg = f"{owner}: {label!r} needs a GroundMotion, got {shown(one)}; {_EXAMPLE}"
-            raise ComponentError(msg)
-    return motions

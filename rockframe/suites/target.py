@@ -1,14 +1,16 @@
 """Spectra that are aimed at: tables, spectra of motions, and those of codes."""
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import Any, Final, Self
 
 import numpy as np
 import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.errors import ComponentError, SchemaError
+from rockframe.motion.quantities import ArrayLike
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
 from rockframe.suites.codes import GroundType, Shape, asce_7, eurocode_8
@@ -17,15 +19,11 @@ from rockframe.units import (
     PERIOD,
     POSITIVE,
     Condition,
+    QuantityLike,
+    RatioLike,
     to_ratio,
     to_si_values,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.units import QuantityLike, RatioLike
 
 _DEVIATION: Final = Condition("from 0 to 3", lambda value: 0.0 <= value <= 3.0)
 _USUAL: Final = 0.05
@@ -61,11 +59,11 @@ class TargetSpectrum:
     @classmethod
     def from_table(
         cls,
-        periods: "ArrayLike | Iterable[QuantityLike]",
-        accelerations: "ArrayLike | Iterable[QuantityLike]",
+        periods: ArrayLike | Iterable[QuantityLike],
+        accelerations: ArrayLike | Iterable[QuantityLike],
         *,
-        standard_deviations: "Sequence[float] | None" = None,
-        damping_ratio: "RatioLike" = _USUAL,
+        standard_deviations: Sequence[float] | None = None,
+        damping_ratio: RatioLike = _USUAL,
         name: str = "table",
     ) -> Self:
         """Take a target from a table.
@@ -177,13 +175,13 @@ class TargetSpectrum:
     @classmethod
     def eurocode_8(
         cls,
-        ground_acceleration: "QuantityLike",
+        ground_acceleration: QuantityLike,
         ground_type: str = GroundType.A,
         *,
         spectrum_type: int = 1,
-        soil_factor: "RatioLike | None" = None,
-        corner_periods: "Sequence[QuantityLike] | None" = None,
-        damping_ratio: "RatioLike" = _USUAL,
+        soil_factor: RatioLike | None = None,
+        corner_periods: Sequence[QuantityLike] | None = None,
+        damping_ratio: RatioLike = _USUAL,
     ) -> Self:
         """Take the horizontal elastic spectrum of Eurocode 8.
 
@@ -229,10 +227,10 @@ class TargetSpectrum:
     @classmethod
     def asce_7(
         cls,
-        short_period_acceleration: "QuantityLike",
-        one_second_acceleration: "QuantityLike",
+        short_period_acceleration: QuantityLike,
+        one_second_acceleration: QuantityLike,
         *,
-        long_period: "QuantityLike" = "8 s",
+        long_period: QuantityLike = "8 s",
     ) -> Self:
         """Take the design response spectrum of ASCE 7.
 
@@ -270,7 +268,7 @@ class TargetSpectrum:
             )
         )  # fmt: skip
 
-    def at(self, periods: "ArrayLike | Iterable[QuantityLike]") -> Array:
+    def at(self, periods: ArrayLike | Iterable[QuantityLike]) -> Array:
         """Give the accelerations at periods.
 
         Parameters
@@ -339,7 +337,7 @@ class TargetSpectrum:
         """
         return np.zeros(seconds.size) if self.deviation is None else self.deviation(seconds)
 
-    def scaled(self, factor: "RatioLike") -> Self:
+    def scaled(self, factor: RatioLike) -> Self:
         """Multiply the accelerations, as by an importance factor.
 
         Parameters
@@ -362,7 +360,7 @@ class TargetSpectrum:
             self, name=f"{self.name}, times {ratio:g}", shape=_Multiple(ratio, self.shape)
         )
 
-    def with_deviation(self, standard_deviation: "RatioLike") -> Self:
+    def with_deviation(self, standard_deviation: RatioLike) -> Self:
         """Give a set the same spread at all periods.
 
         Parameters

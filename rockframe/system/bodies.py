@@ -3,17 +3,14 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
+from rockframe.dynamics.body import Body
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
 from rockframe.system.options import Options, restraint_code
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.body import Body
-
 
 ROUNDING = 1e-12
 """Excess over the greatest restitution that is taken for rounding."""
@@ -221,11 +218,11 @@ class BaseLoad:
         return self.body.overturning_angles.on_slope(self.slope, small=self.options.small)
 
     @cached_property
-    def rigid_body(self) -> "Body":
+    def rigid_body(self) -> Body:
         """The body as the equations take it, per unit of its own mass."""
         return self.law(self.body.mass)
 
-    def law(self, mass: float) -> "Body":
+    def law(self, mass: float) -> Body:
         """Give the body as the equations take it, per unit of some mass [kg]."""
         from rockframe.dynamics.alone import rigid_body
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockframe.components import Link, Load, PointLink, RearWall, Restrainer, Tendon
+from rockframe.dynamics.links import LinkNumbers
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import SupportedBody
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.link_rows import ChainLink
-    from rockframe.dynamics.links import LinkNumbers
 
 
 class OwnLink(PointLink):
@@ -22,7 +22,7 @@ class OwnLink(PointLink):
     """
 
     @abstractmethod
-    def law(self, mass: float) -> "LinkNumbers":
+    def law(self, mass: float) -> LinkNumbers:
         """Give the law as the equations take it.
 
         Parameters
@@ -66,7 +66,7 @@ class PlacedLink:
         """Distance of the points [m]."""
         return math.hypot(*self.apart)
 
-    def numbers(self, mass: float) -> "LinkNumbers":
+    def numbers(self, mass: float) -> LinkNumbers:
         """Give the law, per unit of a mass [kg]."""
         from rockframe.dynamics.links import LinkNumbers, SteadyForce
 
@@ -147,7 +147,7 @@ def tie_words(part: Restrainer | Tendon) -> list[str]:
     return [*found, "pulls and pushes" if pushes else "pulls only"]
 
 
-def tie_of(part: Restrainer | Tendon, mass: float) -> "LinkNumbers":
+def tie_of(part: Restrainer | Tendon, mass: float) -> LinkNumbers:
     """Give the law of a restrainer, :eq:`eq-tie`, or of a tendon, per unit of a mass [kg]."""
     from rockframe.dynamics.links import LinkNumbers, Tie
 
@@ -165,7 +165,7 @@ def tie_of(part: Restrainer | Tendon, mass: float) -> "LinkNumbers":
     return LinkNumbers(law, stiffness, damping, (size,))
 
 
-def bumper_of(part: RearWall, mass: float) -> "LinkNumbers":
+def bumper_of(part: RearWall, mass: float) -> LinkNumbers:
     """Give the law of an elastic wall, per unit of a mass [kg]."""
     from rockframe.dynamics.links import Bumper, LinkNumbers
 

@@ -4,17 +4,15 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NoReturn
+from typing import ClassVar, NoReturn
 
 from rockframe.components import Component
+from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import AssemblyError
 from rockframe.system.own_base import OwnAnswers
 from rockframe.system.parts import Parts
 from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics, least_overturning_energy
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel
 
 
 @dataclass(frozen=True)
@@ -85,7 +83,7 @@ class OwnScene(OwnAnswers, Setting):
     def _lacks(self, words: str, method: str) -> NoReturn:
         raise AssemblyError([f"{self.model} {words}; it is for its class to give {method}"])
 
-    def compile(self) -> "ContactModel":
+    def compile(self) -> ContactModel:
         """Give the equations, ready for the integrator.
 
         Raises
@@ -100,7 +98,7 @@ class OwnScene(OwnAnswers, Setting):
         return model
 
 
-def _faults_of(model: "ContactModel") -> list[str]:
+def _faults_of(model: ContactModel) -> list[str]:
     """Compare the sizes of a model's tables with what its system gives at the start."""
     from rockframe.dynamics.protocol import BODY_COLUMNS, POWERS, Ground, Start
 

@@ -2,9 +2,10 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from rockframe.components import TwoSpringSupport
+from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.body import Body
 from rockframe.system.bodies import (
     BaseLoad,
     Restitutions,
@@ -13,10 +14,6 @@ from rockframe.system.bodies import (
 )
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.body import Body
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,7 @@ class PadSupport(Support):
             )
         return found
 
-    def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
+    def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
         """Give the pads as the equations take them."""
         from rockframe.dynamics.base_numbers import pads_numbers
 

@@ -4,8 +4,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
+from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.signals.motion import Slope
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
@@ -13,9 +14,6 @@ from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, least_overturning_energy, required_states
 from rockframe.system.support import Support
 from rockframe.system.words import Words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel, Ending
 
 LARGE_LEAN = 0.1
 """Share of the overturning angle above which a lean at rest is worth a warning."""
@@ -197,14 +195,14 @@ class Setting(ABC):
             f"overturning angle to that side, since {' and '.join(reasons)}"
         ]
 
-    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+    def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
         """Tell how far each body slipped, by the end of a run; nothing of bodies that are held."""
         return ()
 
     @abstractmethod
-    def contact_model(self) -> "ContactModel":
+    def contact_model(self) -> ContactModel:
         """Give the equations, with limits of the rotation as of a level base."""
 
-    def compile(self) -> "ContactModel":
+    def compile(self) -> ContactModel:
         """Give the equations, ready for the integrator."""
         return replace(self.contact_model(), rotation_limits=self.overturning_angles)

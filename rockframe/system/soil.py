@@ -2,17 +2,15 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from rockframe.components import WinklerSoil
 from rockframe.components.soil import Separation
+from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.body import Body
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.body import Body
 
 _SEPARATION = {
     Separation.DISPLACEMENT: "above the level of the unloaded bed",
@@ -53,7 +51,7 @@ class BedSupport(Support):
             "that the smallest disturbance overturns it"
         ]
 
-    def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
+    def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
         """Give the bed as the equations take it."""
         from rockframe.dynamics.base_numbers import bed_numbers
 

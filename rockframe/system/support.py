@@ -8,15 +8,13 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
+from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.dynamics.body import Body
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.statics import StandingBodies, Statics, required_states
 from rockframe.system.words import vibration_words
-
-if TYPE_CHECKING:
-    from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.dynamics.body import Body
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ class Support(ABC):
         return uplift_rotation(self.standing.chain.links[0], self.load.slope.normal_gravity)
 
     @abstractmethod
-    def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
+    def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
         """Give the base as the equations take it.
 
         Parameters
@@ -138,7 +136,7 @@ class Support(ABC):
         return StandingBodies(chain, self.load.body.mass, (numbers,))
 
     @cached_property
-    def base_numbers(self) -> "BaseNumbers":
+    def base_numbers(self) -> BaseNumbers:
         """The base as the equations of its body alone take it, per unit mass of that."""
         mass = self.load.body.mass
         return self.law(self.load.rigid_body, mass, mass)

@@ -22,6 +22,7 @@ from rockframe.motion.pulses import (
     sine,
     type_c,
 )
+from rockframe.motion.value import Made
 from rockframe.shared_arguments import with_raises
 from rockframe.units import (
     ACCELERATION,
@@ -32,15 +33,15 @@ from rockframe.units import (
     VELOCITY,
     Condition,
     Measure,
+    QuantityLike,
+    RatioLike,
     Unit,
     to_ratio,
     to_si,
 )  # fmt: skip
 
 if TYPE_CHECKING:
-    from rockframe.motion.value import Made
     from rockframe.signals import Motion
-    from rockframe.units import QuantityLike, RatioLike
 
 Constructor = TypeVar("Constructor", bound=Callable[..., Any])
 

@@ -12,20 +12,16 @@ import numpy as np
 
 from rockframe.arguments import hinted, text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError, shown, warn
-from rockframe.motion.quantities import accelerations_to_si, declared_times
-from rockframe.motion.value import UNNAMED
-from rockframe.records import read_record, request_of
+from rockframe.motion.quantities import ArrayLike, accelerations_to_si, declared_times
+from rockframe.motion.value import UNNAMED, Made
+from rockframe.records import PathLike, RecordLike, read_record, request_of
 from rockframe.signals import Motion
-from rockframe.units import POSITIVE, TIME_STEP, to_si
+from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
 
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.motion.value import Made
-    from rockframe.records import PathLike, RecordLike
     from rockframe.signals.arrays import Array
-    from rockframe.units import QuantityLike
 
 
 _SAME_STEP: Final = 1e-6

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe.arguments import hinted, one_of_words, whole_number
 from rockframe.errors import ComponentError, ModelWarning
+from rockframe.motion.stochastic import Corners, Site
+from rockframe.motion.value import Made
 from rockframe.signals import Motion
 from rockframe.units import (
     DENSITY,
@@ -16,15 +18,15 @@ from rockframe.units import (
     TIME,
     Condition,
     Measure,
+    QuantityLike,
+    RatioLike,
     Unit,
     to_ratio,
     to_si,
 )
 
 if TYPE_CHECKING:
-    from rockframe.motion.stochastic import Corners, PointSource, Site
-    from rockframe.motion.value import Made
-    from rockframe.units import QuantityLike, RatioLike
+    from rockframe.motion.stochastic import PointSource
 
 MODEL: Final = (
     "stochastic point source: Boore (2003), doi:10.1007/PL00012553, with the parameters of "

@@ -12,11 +12,12 @@ from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, RecordWarning, shown
 from rockframe.motion.processing.samples import instants_of
 from rockframe.motion.quantities import (
+    ArrayLike,
     accelerations_to_si,
     relative_seconds,
     times_to_si,
 )
-from rockframe.motion.value import UNNAMED
+from rockframe.motion.value import UNNAMED, Made
 from rockframe.records import (
     DOWNWARDS,
     MAXIMUM_SAMPLES,
@@ -29,13 +30,10 @@ from rockframe.records import (
     uniform_step,
 )
 from rockframe.signals import Motion
-from rockframe.units import POSITIVE, TIME_STEP, to_si
+from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.motion.value import Made
     from rockframe.signals.arrays import Array
-    from rockframe.units import QuantityLike
 
 
 _SAME_STEP: Final = 1e-6

@@ -12,16 +12,15 @@ import numpy as np
 from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion.operations.following import following, other_motion
 from rockframe.motion.processing.samples import padded
+from rockframe.motion.value import Made, MotionValue
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
 from rockframe.signals.signal import COEFFICIENTS, VERTICAL
-from rockframe.units import ANGLE, to_si
+from rockframe.units import ANGLE, QuantityLike, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.value import Made, MotionValue
     from rockframe.signals.arrays import Array
-    from rockframe.units import QuantityLike
 
 _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degrees; agencies round azimuths to whole ones
 _ROUNDING: Final = 1e-15

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import TYPE_CHECKING, Final, cast
+from typing import Final, cast
 
 from rockframe.arguments import hinted, one_of_words, whole_number
 from rockframe.errors import ComponentError, shown
@@ -14,12 +14,9 @@ from rockframe.motion.processing.samples import (
     without_baseline,
     without_drift,
 )
+from rockframe.motion.value import Made
 from rockframe.signals.signal import MAXIMUM_SAMPLES
-from rockframe.units import FREQUENCY, POSITIVE, to_si
-
-if TYPE_CHECKING:
-    from rockframe.motion.value import Made
-    from rockframe.units import QuantityLike
+from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 _HIGHEST_ORDER: Final = 12
 _HIGHEST_DEGREE: Final = 20

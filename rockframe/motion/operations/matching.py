@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
@@ -13,16 +14,13 @@ from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.motion.matching.iteration import Goal, Matched, changes, match, unusual
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing.samples import finer, say_coarse
+from rockframe.motion.value import Made
 from rockframe.signals.spectra import check_cost
-from rockframe.units import PERIOD, Condition, to_ratio, to_si_values
+from rockframe.units import PERIOD, Condition, QuantityLike, RatioLike, to_ratio, to_si_values
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rockframe.motion.value import Made
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
-    from rockframe.units import QuantityLike, RatioLike
 
 USUAL_PERIODS: Final = ("0.1 s", "2 s")
 USUAL_TOLERANCE: Final = 0.05

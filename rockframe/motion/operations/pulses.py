@@ -11,17 +11,16 @@ from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.quantities import with_quantity
+from rockframe.motion.value import Made
 from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import knots_of
-from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, to_si
+from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, QuantityLike, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.value import Made
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
-    from rockframe.units import QuantityLike
 
 SHORTEST: Final = "0.25 s"
 LONGEST: Final = "15 s"

@@ -11,6 +11,7 @@ from rockframe.arguments import hinted
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following
 from rockframe.motion.processing.samples import say_coarse
+from rockframe.motion.value import Made
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import greatest
@@ -20,12 +21,20 @@ from rockframe.signals.spectra import (
     pseudo_spectra,
     spectral_peaks,
 )
-from rockframe.units import ACCELERATION, PERIOD, POSITIVE, TIME, VELOCITY, to_ratio, to_si
+from rockframe.units import (
+    ACCELERATION,
+    PERIOD,
+    POSITIVE,
+    TIME,
+    VELOCITY,
+    QuantityLike,
+    RatioLike,
+    to_ratio,
+    to_si,
+)
 
 if TYPE_CHECKING:
-    from rockframe.motion.value import Made
     from rockframe.signals import Signal
-    from rockframe.units import QuantityLike, RatioLike
 
 _OPPOSITE: Final = {UPWARDS: DOWNWARDS, DOWNWARDS: UPWARDS}
 _USUAL_DAMPING: Final = 0.05

@@ -21,6 +21,8 @@ from rockframe.motion.processing.floors import (
     uniform_modes,
 )
 from rockframe.motion.processing.samples import divided_signal, padded
+from rockframe.motion.quantities import ArrayLike
+from rockframe.motion.value import Made
 from rockframe.signals import Motion
 from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.signals.spectra import DAMPING_RATIO, MAXIMUM_PARTS
@@ -34,6 +36,8 @@ from rockframe.units import (
     TIME_STEP,
     Condition,
     Measure,
+    QuantityLike,
+    RatioLike,
     to_ratio,
     to_si,
     to_si_values,
@@ -46,10 +50,7 @@ if TYPE_CHECKING:
 
     _Read: TypeAlias = tuple[Array, Array, str, dict[str, Any]]
     """Periods and participations of the modes, the building in words, and its arguments."""
-    from rockframe.motion.quantities import ArrayLike
-    from rockframe.motion.value import Made
     from rockframe.signals import Signal
-    from rockframe.units import QuantityLike, RatioLike
 
 
 _MOST_STOREYS: Final = 1000

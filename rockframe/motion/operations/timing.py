@@ -16,14 +16,13 @@ from rockframe.motion.operations.following import (
     with_samples,
 )
 from rockframe.motion.processing.samples import band_limited, coarsened, refined, tapered
+from rockframe.motion.value import Made
 from rockframe.signals.signal import MAXIMUM_SAMPLES
-from rockframe.units import POSITIVE, TIME, TIME_STEP, to_si
+from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:
-    from rockframe.motion.value import Made
     from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
-    from rockframe.units import QuantityLike
 
 _SNAP: Final = 1e-6
 

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from enum import StrEnum
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.arguments import one_of_words
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
+from rockframe.motion.value import MotionValue
 from rockframe.writing import FileKind, checked_path, write_file
-
-if TYPE_CHECKING:
-    import os
-
-    from rockframe.motion.value import MotionValue
 
 _TITLE: Final = "PEER FORMAT ACCELERATION FILE, WRITTEN BY ROCKFRAME"
 _KIND: Final = FileKind.marked("an acceleration file", (".at2",), _TITLE)

@@ -3,12 +3,13 @@
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, SchemaError, StudyError, UnitsError, shown
+from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import LIMIT_STATE
@@ -37,11 +38,7 @@ from rockframe.studies.limit_states import (
 )
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import Changes, free_values
-from rockframe.units import PERIOD, to_si
-
-if TYPE_CHECKING:
-    from rockframe.motion import GroundMotion
-    from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import PERIOD, QuantityLike, RatioLike, to_si
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +69,7 @@ class Structures:
 
 
 def structures_of(
-    runs: xr.Dataset, pooled: "Iterable[str]", given: Sequence[object], *, owner: str
+    runs: xr.Dataset, pooled: Iterable[str], given: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
     asked = (pooled,) if isinstance(pooled, str) else tuple(pooled)
@@ -177,16 +174,16 @@ _MOST_LEFT_OUT: Final = 80
 
 
 def fragility(
-    runs: "xr.Dataset | dict[str, Any]",
-    intensity: "str | xr.DataArray | Sequence[str | xr.DataArray]" = "PGA",
+    runs: xr.Dataset | dict[str, Any],
+    intensity: str | xr.DataArray | Sequence[str | xr.DataArray] = "PGA",
     *,
     limits: Iterable[object] | None = None,
-    period: "QuantityLike | None" = None,
-    motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
+    period: QuantityLike | None = None,
+    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
     pooled: Iterable[str] = (),
     trials: str = "runs",
     bands: str | None = None,
-    confidence: "RatioLike" = 0.95,
+    confidence: RatioLike = 0.95,
 ) -> xr.Dataset:
     """Fit lognormal capacities to runs, by maximum likelihood: one for each structure.
 
@@ -344,9 +341,9 @@ def fragility(
 def _of_counts(
     counts: Mapping[Any, Any],
     measure: object,
-    period: "QuantityLike | None",
+    period: QuantityLike | None,
     bands: str | None,
-    confidence: "RatioLike",
+    confidence: RatioLike,
     others: Sequence[str],
 ) -> xr.Dataset:
     """Fit a capacity to counts: intensities, and how many of how many trials exceeded there."""
@@ -433,7 +430,7 @@ def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
     return f" {words[0].upper()}{words[1:]}; these count as if it were held." if words else ""
 
 
-def _period_of(given: "QuantityLike | None") -> dict[str, str | float | int]:
+def _period_of(given: QuantityLike | None) -> dict[str, str | float | int]:
     """Read the period of a spectral intensity [s], and give it as an attribute."""
     if given is None:
         return {}
@@ -451,7 +448,7 @@ def _several(given: object) -> list[object]:
 
 
 def _measure(
-    runs: xr.Dataset, given: object, period: "QuantityLike | None", motions: object
+    runs: xr.Dataset, given: object, period: QuantityLike | None, motions: object
 ) -> xr.DataArray:
     if not isinstance(given, xr.DataArray):
         return intensity_in(

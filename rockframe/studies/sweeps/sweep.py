@@ -3,13 +3,16 @@
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import xarray as xr
 
 from rockframe.arguments import truth
+from rockframe.components import InitialState
 from rockframe.errors import ModelWarning, StudyError, shown, warn
+from rockframe.motion import GroundMotion
 from rockframe.shared_arguments import documented_by
+from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER
@@ -18,38 +21,32 @@ from rockframe.studies.sweeps.lazily import lazy_dataset
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.running import folder_of, run_study, stored_dataset
 from rockframe.studies.sweeps.store import Store
-from rockframe.system.options import Overturning
+from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
+from rockframe.units import QuantityLike
 from rockframe.version import __version__
-
-if TYPE_CHECKING:
-    from rockframe.components import InitialState
-    from rockframe.motion import GroundMotion
-    from rockframe.simulation.system import System
-    from rockframe.system.options import OverturningLike, PointsLike, SweepAccuracyLike
-    from rockframe.units import QuantityLike
 
 
 @documented_by(SweepArguments)
 def sweep(
-    scene: "System | Callable[..., System]",
-    motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
+    scene: System | Callable[..., System],
+    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
     *,
     axes: Mapping[str, Any] | None = None,
     cases: Any = None,
-    period: "QuantityLike | None" = None,
-    duration: "QuantityLike | None" = None,
-    free_vibration: "QuantityLike | None" = None,
-    initial: "InitialState | None" = None,
-    accuracy: "SweepAccuracyLike" = AccuracyLevel.STANDARD,
-    output_step: "QuantityLike | None" = None,
+    period: QuantityLike | None = None,
+    duration: QuantityLike | None = None,
+    free_vibration: QuantityLike | None = None,
+    initial: InitialState | None = None,
+    accuracy: SweepAccuracyLike = AccuracyLevel.STANDARD,
+    output_step: QuantityLike | None = None,
     outputs: Sequence[str] | None = None,
-    points: "PointsLike | None" = None,
-    overturning: "OverturningLike" = Overturning.STOP,
-    store: "str | PathLike[str] | None" = None,
+    points: PointsLike | None = None,
+    overturning: OverturningLike = Overturning.STOP,
+    store: str | PathLike[str] | None = None,
     executor: Executor | None = None,
     chunk: int | None = None,
     progress: bool | None = None,
-    known: "str | PathLike[str] | Sequence[str | PathLike[str]]" = (),
+    known: str | PathLike[str] | Sequence[str | PathLike[str]] = (),
     **more_axes: Any,
 ) -> xr.Dataset:
     """Run a scene at all combinations of values, or at all rows of a table.
@@ -165,7 +162,7 @@ def sweep(
         return run_study(study, bar, store=store, executor=executor, chunk=chunk, known=several)
 
 
-def open_study(path: "str | PathLike[str]", *, lazy: bool = False) -> xr.Dataset:
+def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
     """Read what a sweep has kept so far, also while it runs.
 
     Parameters
