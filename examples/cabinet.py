@@ -30,7 +30,7 @@ def cabinet(height_of_load: str) -> rf.Block:
 
 def main() -> None:
     """Tell a curator where the heavy things belong."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
     motion = rf.GroundMotion.stochastic(magnitude=6.5, distance="10 km", seed=4)

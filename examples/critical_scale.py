@@ -17,7 +17,7 @@ import rockframe as rf
 
 def main() -> int:
     """Read the arguments, search, and tell in one line why it cannot be done."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; a synthetic one if none")
     parser.add_argument("--largest", type=float, default=4.0, help="largest scale of the motion")
     parser.add_argument("--folder", default=".", help="where the result is written")

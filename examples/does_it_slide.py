@@ -18,7 +18,7 @@ import rockframe as rf
 
 def main() -> None:
     """Simulate the case, and tell what an engineer asks."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
     case = rf.Block(width="0.6 m", height="1.8 m", mass="180 kg")

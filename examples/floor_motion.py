@@ -35,7 +35,7 @@ def advice(fallen: list[bool]) -> str:
 
 def main() -> int:
     """Read the arguments, run, and tell in one line why it cannot be done."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; a synthetic one if none")
     parser.add_argument("--period", type=float, default=0.9, help="of the building [s]")
     parser.add_argument("--folder", default=".", help="where the results are written")

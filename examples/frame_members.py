@@ -14,7 +14,7 @@ import rockframe as rf
 
 def main() -> None:
     """Build the frame, print what it consists of, and keep the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the table is written")
     arguments = parser.parse_args()
 

@@ -37,7 +37,7 @@ def record(path: Path) -> None:
 
 def main() -> None:
     """Make the test, read it back, and tell what was found."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
     folder.mkdir(parents=True, exist_ok=True)

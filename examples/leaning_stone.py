@@ -18,7 +18,7 @@ PEAK = 3.0  # of the pulse [m/s^2]
 
 def main() -> None:
     """Tell a curator from which side the stone is in danger."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
     outline = [(0.0, 0.0), (0.9, 0.0), (0.8 + LEAN, 4.2), (0.1 + LEAN, 4.2)]

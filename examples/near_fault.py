@@ -30,7 +30,7 @@ def with_a_pulse() -> rf.GroundMotion:
 
 def main() -> int:
     """Read the arguments, run, and tell in one line why it cannot be done."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; made up if none")
     parser.add_argument("--component", help="component of the record, such as N or 090")
     parser.add_argument("--folder", default=".", help="where the figure is written")

@@ -39,7 +39,7 @@ VELOCITY = "peak_ground_velocity"
 
 def main() -> int:
     """Read the arguments, run the analyses, and tell in one line why it cannot be done."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--motions", type=int, default=6, help="number of synthetic earthquakes")
     parser.add_argument("--store", help="folder in which the runs are kept")
     parser.add_argument("--folder", default=".", help="where the results are written")

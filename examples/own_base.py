@@ -93,7 +93,10 @@ class YieldingSupport(ext.PadSupport):
 
     strength: float  # over the weight
     hardening: float
-    model = "yielding pads"
+
+    @property
+    def model(self):
+        return "yielding pads"
 
     def law(self, body, mass, load_mass):
         elastic = super().law(body, mass, load_mass)
@@ -152,7 +155,7 @@ rf.register(YieldingPads, columns=[
 
 def main() -> None:
     """Simulate a block on yielding pads, alone and on a cap on soil; compare."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     file = Path(parser.parse_args().folder) / "own_base.nc"
     block = rf.Block(width="1 m", height="4 m", mass="10 t")

@@ -290,10 +290,12 @@ class SlidingScene(ext.OwnScene):
     """A block that slides and rocks on rigid ground."""
 
     made_of: ClassVar = {"block": rf.Block, "sliding_ground": SlidingGround}
-    model = "slide-rock"
     slides = True  # friction is in the equations
     flies = False  # a run warns where the ground would have to pull
-    uplift_angle = 0.0
+
+    @property
+    def model(self):
+        return "slide-rock"
 
     @property
     def frictions(self):
@@ -375,7 +377,7 @@ rf.register(edge_height, unit="m")
 
 def main() -> None:
     """Simulate a block with little, some and much friction."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     file = Path(parser.parse_args().folder) / "own_scene.nc"
     block = rf.Block(width="1 m", height="4 m", mass="10 t")

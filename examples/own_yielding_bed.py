@@ -87,8 +87,11 @@ class YieldingSupport(ext.Support):
     stiffness: float  # k0 [Pa]
     damping: float  # c0 [Pa s]
     strength: float  # q_u [N/m]
-    model = "yielding bed"
     settlement_name = "soil_settlement"
+
+    @property
+    def model(self):
+        return "yielding bed"
 
     def law(self, body, mass, load_mass):
         spring = YieldingSpring(self.stiffness / mass, self.damping / mass, self.strength / mass)
@@ -147,7 +150,7 @@ def moment(n: float, phi: float) -> float:
 
 def main() -> None:
     """Rotate a wall on yielding soil, and shake it."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     file = Path(parser.parse_args().folder) / "own_yielding_bed.nc"
     wall = rf.Block(width="2 m", height="6 m", mass="30 t")
@@ -157,7 +160,7 @@ def main() -> None:
     print("k0 b a/q_u   M/(N_u b)   in closed form")
     for phi in (0.2, 0.5, 1.0, 4.0):
         rotation = phi * 0.005 / n  # alpha = phi q_u/(k0 b)
-        held = system.setting.support.held_at(rotation)
+        held = system.setting.supports[0].held_at(rotation)
         print(f"{phi:10.1f}  {held.base_moment / (weight / n * b):10.5f}  {moment(n, phi):15.5f}")
     pulse = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1 Hz")
     response = rf.System(wall, soil).simulate(pulse, free_vibration="3 s", outputs=["energy"])

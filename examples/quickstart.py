@@ -18,7 +18,7 @@ import rockframe as rf
 
 def main() -> int:
     """Read the arguments, run, and tell in one line why it cannot be done."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; a synthetic one if none")
     parser.add_argument("--component", help="component of the record, such as NS or 090")
     parser.add_argument("--folder", default=".", help="where the results are written")

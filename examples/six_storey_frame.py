@@ -34,7 +34,7 @@ def building(shape_factor: float | None) -> rf.FrameEquivalent:
 
 def main() -> int:
     """Read the arguments, run, and tell in one line why it cannot be done."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("record", nargs="?", help="ground-motion file; a pulse if none")
     parser.add_argument(
         "--shape-factor",

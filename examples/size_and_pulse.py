@@ -30,7 +30,7 @@ COLOURS = {
 
 def main() -> int:
     """Read the arguments, run the study, and tell in one line why it cannot be done."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--sizes", type=int, default=30, help="number of sizes")
     parser.add_argument("--amplitudes", type=int, default=40, help="number of amplitudes")
     parser.add_argument("--store", help="folder in which the runs are kept")
@@ -50,7 +50,7 @@ def main() -> int:
     return 0
 
 
-def block_of(radius: object) -> rf.System:
+def block_of(radius: str) -> rf.System:
     """Put a block of the given half diagonal on rigid ground."""
     return rf.System(rf.Block.from_size(radius=radius, slenderness=SLENDERNESS, mass="10 t"))
 

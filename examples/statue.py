@@ -21,7 +21,7 @@ OUTLINE = [
 
 def main() -> None:
     """Tell a curator at what shaking the statue falls."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
     statue = rf.Block.from_outline(OUTLINE, unit="m", density="2700 kg/m^3", depth="0.25 m")

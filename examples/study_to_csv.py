@@ -17,7 +17,7 @@ SCALES = (1.0, 2.0, 3.0, 4.0)
 
 def main() -> None:
     """Run the study and write its table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("--folder", default=".", help="where the results are written")
     folder = Path(parser.parse_args().folder)
     folder.mkdir(parents=True, exist_ok=True)

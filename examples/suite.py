@@ -39,7 +39,7 @@ def made_up() -> bytes:
 
 def main() -> int:
     """Read the arguments, run, and tell in one line why it cannot be done."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
     parser.add_argument("records", nargs="?", help="folder or archive; made up if none")
     parser.add_argument("--count", type=int, default=7, help="records to choose")
     parser.add_argument("--folder", default=".", help="where the results are written")

@@ -18,7 +18,7 @@ run = system.simulate(motion, free_vibration="6 s", outputs="energy")
 print(f"Out of balance: {float(run.energy_residual):.1e} of the largest energy.")
 
 figure, axes = plt.subplots(figsize=(7.0, 4.0), layout="constrained")
-for name in run.data_vars:
+for name in map(str, run.data_vars):
     if name.endswith("_energy") and run[name].dims == ("time",):
         axes.plot(run.time, run[name] / 1e3, lw=1.2, label=name.replace("_", " "))
 axes.set(xlabel="time [s]", ylabel="energy [kJ]", xlim=(0.0, float(run.time[-1])))

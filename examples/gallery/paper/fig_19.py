@@ -17,9 +17,9 @@ print("The text: rotation and vertical displacement are affected very little by 
 print("Here: held for the size of the second peak; not for its time, nor for y after it.")
 print("beta   cascade   coupled, k0 = 3 MPa   12 MPa")
 for ratio in free_response.worked_example.FREQUENCY_RATIOS:
-    cascade, soft, stiff = (
+    soft, stiff, cascade = (
         free_response.second_peak(runs[ratio, coupling, soil])
-        for coupling, soil in (("cascade", 9), ("coupled", 3), ("coupled", 12))
+        for coupling, soil in free_response.WAYS
     )
     print(f"{ratio:<6} {cascade:.4f} {soft:>14.4f} {stiff:>16.4f}   {stiff / soft - 1.0:+.1%}")
 free_response.draw(runs)

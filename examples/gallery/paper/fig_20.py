@@ -19,9 +19,9 @@ print(
 print("Here: it grows with k0 on all pads, coupled; the cascade does not know k0.")
 print("beta   cascade   coupled, k0 = 3 MPa   12 MPa")
 for ratio in free_response.worked_example.FREQUENCY_RATIOS:
-    cascade, soft, stiff = (
+    soft, stiff, cascade = (
         free_response.second_peak(runs[ratio, coupling, soil])
-        for coupling, soil in (("cascade", 9), ("coupled", 3), ("coupled", 12))
+        for coupling, soil in free_response.WAYS
     )
     print(f"{ratio:<6} {cascade:.4f} {soft:>14.4f} {stiff:>16.4f}   {stiff / soft - 1.0:+.1%}")
 free_response.draw(runs)

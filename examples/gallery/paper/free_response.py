@@ -10,11 +10,15 @@ from matplotlib.figure import Figure
 
 import rockframe as rf
 
-WAYS = {("coupled", 3): "#cc6677", ("coupled", 12): "#1f3a5f", ("cascade", 9): "0.55"}
+WAYS: dict[tuple[worked_example.Coupling, int], str] = {
+    ("coupled", 3): "#cc6677", ("coupled", 12): "#1f3a5f", ("cascade", 9): "0.55",
+}  # fmt: skip
 NAMES = {"rotation": r"rotation $\alpha$ [rad]", "vertical_displacement": "vertical $y$ [m]"}
 
 
-def released(storeys: int, seconds: int) -> dict[tuple[int, str, int], xr.Dataset]:
+def released(
+    storeys: int, seconds: int
+) -> dict[tuple[int, worked_example.Coupling, int], xr.Dataset]:
     """Let a frame go, on three pads, by cascade and coupled on soft and on stiff soil."""
     return {
         (ratio, coupling, soil): worked_example.scene(storeys, ratio, coupling, soil=soil).simulate(
@@ -33,7 +37,7 @@ def second_peak(run: xr.Dataset) -> float:
     return float(np.abs(rotation[np.argmax(rotation < 0.0) :]).max())
 
 
-def draw(runs: dict[tuple[int, str, int], xr.Dataset]) -> Figure:
+def draw(runs: dict[tuple[int, worked_example.Coupling, int], xr.Dataset]) -> Figure:
     """Draw rotation and vertical displacement over time, a column for each of the pads."""
     figure, grid = plt.subplots(
         2, 3, figsize=(9.0, 4.6), sharex=True, sharey="row", layout="constrained"

@@ -58,7 +58,8 @@ def draw(runs: xr.Dataset) -> Figure:
                 if run.overturned:
                     end = run[name].dropna("time")
                     axes.plot(end.time[-1], end[-1], "x", color=colour, ms=6)
-        uplift = float(run.uplift_angle) / np.arctan(1.0 / slenderness)
+        lifts_at = float(runs.sel(slenderness=slenderness).uplift_angle[0])
+        uplift = lifts_at / np.arctan(1.0 / slenderness)
         for side in (-uplift, uplift):
             grid[0, column].axhline(side, color=BROWN, lw=0.8)
         grid[0, column].set(title=f"H/B = {slenderness}", xlim=(0.0, 10.0))

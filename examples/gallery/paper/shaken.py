@@ -8,7 +8,7 @@ import worked_example
 import xarray as xr
 from matplotlib.figure import Figure
 
-WAYS = {
+WAYS: dict[str, tuple[worked_example.Coupling, dict[int, float]]] = {
     "cascade, printed shape factor": ("cascade", worked_example.PRINTED),
     "coupled, shape factor of the members": ("coupled", worked_example.BY_MEMBERS),
 }

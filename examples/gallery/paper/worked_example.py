@@ -7,6 +7,7 @@ the cap: here it is as wide and as deep as the plan, 4 m, and of concrete.
 import os
 import warnings
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 import rockframe as rf
 
@@ -18,6 +19,8 @@ PRINTED = {3: 1.153, 6: 0.380}
 BY_MEMBERS = {3: 2.774, 6: 2.923}
 COLOURS = {20: "#cc6677", 40: "#1f3a5f", 60: "#44aa99"}
 RECORD = "PEERSMD_CHICHI_TCU128-N.AT2"
+
+Coupling: TypeAlias = Literal["coupled", "cascade"]
 
 
 def frame(storeys: int, shape_factors: dict[int, float] = PRINTED) -> rf.FrameEquivalent:
@@ -35,7 +38,7 @@ def frame(storeys: int, shape_factors: dict[int, float] = PRINTED) -> rf.FrameEq
 def scene(
     storeys: int,
     frequency_ratio: float,
-    coupling: str = "coupled",
+    coupling: Coupling = "coupled",
     *,
     soil: float = 9,
     shape_factors: dict[int, float] = PRINTED,

@@ -18,7 +18,6 @@ weight = 400.0 * 9.80665
 floor = rf.GroundMotion.sine_pulse(amplitude="9.80665 m/s^2", frequency="2 Hz")
 levels = np.arange(0.5, 1.35, 0.1)
 strengths = np.array([0.25, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5])
-run = {"motions": [floor], "scale": levels, "free_vibration": "2 s", "accuracy": "fast"}
 
 
 def anchored(strength):
@@ -34,9 +33,17 @@ def anchored(strength):
     return rf.System(cabinet, *anchors)
 
 
-free = rf.sweep(rf.System(cabinet), progress=False, **run).overturned.squeeze().to_numpy()
-tied = rf.sweep(anchored, strength=strengths, progress=False, **run)
-falls = tied.overturned.squeeze().transpose("scale", "strength").to_numpy()
+def falls_of(cabinets, **axes):
+    """Give whether each cabinet falls, at each level of its floor's motion."""
+    runs = rf.sweep(
+        cabinets, [floor], scale=levels, free_vibration="2 s", accuracy="fast", progress=False,
+        **axes,
+    )  # fmt: skip
+    return runs.overturned.squeeze()
+
+
+free = falls_of(rf.System(cabinet)).to_numpy()
+falls = falls_of(anchored, strength=strengths).transpose("scale", "strength").to_numpy()
 free_stands = levels[~free].max()
 needed = strengths[~falls[np.isclose(levels, 1.0)].any(axis=0)].min()
 worse = ", ".join(f"{one:g}" for one in strengths[(falls & ~free[:, None]).any(axis=0)])

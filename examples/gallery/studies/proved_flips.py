@@ -10,6 +10,7 @@ what rocks on for long forgets from where it came (:doc:`/guide/proved_verdicts`
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import ListedColormap
+from matplotlib.patches import Rectangle
 
 import rockframe as rf
 
@@ -47,7 +48,7 @@ axes.set(
     yticklabels=["exact", *(f"{given:g}" for given in tolerances[1:])],
 )
 axes.invert_yaxis()
-handles = [plt.Rectangle((0.0, 0.0), 1.0, 1.0, color=colour) for colour in colours]
+handles = [Rectangle((0.0, 0.0), 1.0, 1.0, color=colour) for colour in colours]
 figure.legend(handles, ["proved safe", "proved to overturn", "undecided"], ncols=3, frameon=False,
               loc="outside upper center")  # fmt: skip
 plt.show()
