@@ -96,9 +96,9 @@ def asce_7_22(
     body, weight = setting.body, setting.body.mass * setting.gravity
     arm = min(body.left, body.right)
     base = given["S_DS"] * given["I_p"] * weight
-    asked = 0.4 * base * given["H_f"] / given["R_mu"] * given["C_AR"] / given["R_po"]
+    by_formula = 0.4 * base * given["H_f"] / given["R_mu"] * given["C_AR"] / given["R_po"]
     least, most = _LEAST * base, _MOST * base
-    force = min(max(asked, least), most)
+    force = min(max(by_formula, least), most)
     tipping, resisting = force * body.centre_height, _RESISTING * weight * arm
     newton, moment = Unit.NEWTON, Unit.NEWTON_METRE
     factors = tuple(
@@ -106,7 +106,7 @@ def asce_7_22(
     )
     forces = (
         CheckedLine("W_p", weight, newton, "weight", "of the block"),
-        CheckedLine("F_p, formula", asked, newton,
+        CheckedLine("F_p, formula", by_formula, newton,
                     "0.4 S_DS I_p W_p (H_f/R_mu) (C_AR/R_po)", "13.3-1"),
         CheckedLine("F_p, least", least, newton, "0.3 S_DS I_p W_p", "13.3.1"),
         CheckedLine("F_p, greatest", most, newton, "1.6 S_DS I_p W_p", "13.3.1"),

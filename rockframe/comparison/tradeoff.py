@@ -93,7 +93,7 @@ def tradeoff(
     models: Sequence[str] | str | None = None,
     accuracies: Sequence[AccuracyLike] | AccuracyLike = tuple(AccuracyLevel),
     repeats: int = 5,
-    **asked: Unpack[ComparedArguments],
+    **arguments: Unpack[ComparedArguments],
 ) -> xr.Dataset:
     """Measure what each model and each accuracy costs, and how far off it is.
 
@@ -146,7 +146,7 @@ def tradeoff(
             scene.assembly,
             record,
             accuracy=accuracy,
-            **asked,
+            **arguments,
         )
 
     with warnings.catch_warnings():

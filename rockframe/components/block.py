@@ -232,8 +232,8 @@ class Block(Component):
 
     def _unphysical(self) -> list[str]:
         """Say whether the given inertia is one that no such body has."""
-        told = self.given.shape_factor is not None or self.given.inertia is not None
-        return unphysical_inertia(self.si) if told else []
+        stated = self.given.shape_factor is not None or self.given.inertia is not None
+        return unphysical_inertia(self.si) if stated else []
 
     def _shapes(self) -> list[Polygon]:
         half, si = self.si.half_width, self.si

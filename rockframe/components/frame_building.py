@@ -98,11 +98,11 @@ class Outline:
         return (si.width / self.width) * (si.height / self.height) * (si.depth / self.depth)
 
     def _mean_spread(
-        self, members: Sequence[Member], about: tuple[float, float], radius: float
+        self, members: Sequence[Member], point: tuple[float, float], radius: float
     ) -> float:
         """Mean square distance of all mass from a point, over the square of a radius."""
         return mean_by_mass(
-            [member.si for member in members], lambda si: _spread(si, about, radius)
+            [member.si for member in members], lambda si: _spread(si, point, radius)
         )
 
     def _check_within(self, member: Member, owner: str) -> None:
@@ -138,13 +138,13 @@ class Outline:
             raise ComponentError(msg)
 
 
-def _spread(si: MemberSI, about: tuple[float, float], radius: float) -> float:
+def _spread(si: MemberSI, point: tuple[float, float], radius: float) -> float:
     """Mean square distance of a member's mass from a point, over the square of a radius."""
     if si.width is None or si.height is None:
         turning = si.inertia / si.mass / radius / radius
     else:
         turning = (math.hypot(si.width, si.height) / radius) ** 2 / 12.0
-    return turning + (math.hypot(si.x - about[0], si.y - about[1]) / radius) ** 2
+    return turning + (math.hypot(si.x - point[0], si.y - point[1]) / radius) ** 2
 
 
 def outline_cautions(outline: Outline, members: Sequence[Member]) -> list[str]:

@@ -203,13 +203,13 @@ class Base:
         return 1.0
 
 
-def root_above_zero(function: Callable[[float], float], about: float) -> float:
+def root_above_zero(function: Callable[[float], float], start: float) -> float:
     """Give where a function that is negative at zero, and grows, comes to zero."""
     from scipy.optimize import root_scalar
 
-    while function(about) <= 0.0:
-        about *= 2.0
-    found = root_scalar(function, bracket=(0.0, about), xtol=1e-18, rtol=1e-14)
+    while function(start) <= 0.0:
+        start *= 2.0
+    found = root_scalar(function, bracket=(0.0, start), xtol=1e-18, rtol=1e-14)
     return float(found.root)
 
 

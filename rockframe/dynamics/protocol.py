@@ -344,12 +344,12 @@ class ContactModel:
         return float(self.rotation_weights @ state[: len(self.rotation_weights)])
 
 
-def _of_each(asked: Callable[[int], int], modes: Integers) -> Integers:
+def _of_each(function: Callable[[int], int], modes: Integers) -> Integers:
     """Ask what modes mean, each once; most last for many samples."""
     differs = np.ones(len(modes) + 1, dtype=np.bool_)  # at both ends, too
     np.not_equal(modes[1:], modes[:-1], out=differs[1:-1])
     changes = np.flatnonzero(differs)
     met = modes[changes[:-1]].tolist()
-    meant = {mode: asked(mode) for mode in set(met)}
+    meant = {mode: function(mode) for mode in set(met)}
     found = np.array([meant[mode] for mode in met], dtype=np.int64)
     return np.repeat(found, changes[1:] - changes[:-1])

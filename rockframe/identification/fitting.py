@@ -125,10 +125,10 @@ def uncertainty_of(solution: Solution, confidence: float) -> Uncertainty:
     seen = solution.seen
     directions = np.where(seen, solution.jacobian, 0.0) / np.where(seen, length, 1.0)
     _, singular, rows = np.linalg.svd(directions, full_matrices=False)
-    told = singular > _SINGULAR * singular[0]
+    determined = singular > _SINGULAR * singular[0]
     # an unknown that has a share in what the data do not tell is itself not told
-    lost = ~seen | (np.sum(rows[~told] ** 2, axis=0) > _SINGULAR)
-    inverse = (rows[told].T / singular[told] ** 2) @ rows[told]
+    lost = ~seen | (np.sum(rows[~determined] ** 2, axis=0) > _SINGULAR)
+    inverse = (rows[determined].T / singular[determined] ** 2) @ rows[determined]
     variance = float(solution.residuals @ solution.residuals) / freedom
     spread = np.sqrt(np.diag(inverse))
     error = math.sqrt(variance) * spread / np.where(seen, length, 1.0)

@@ -177,19 +177,19 @@ def _sought(
     given: Sequence[str] | str | None, data: History | MeasuredPeaks
 ) -> tuple[Circumstance, ...]:
     """Give the circumstances that are to be found; refuse what the data cannot tell."""
-    told = [Circumstance.INITIAL_ROTATION]
+    circumstances = [Circumstance.INITIAL_ROTATION]
     if isinstance(data, History) or data.time is not None:
-        told.append(Circumstance.RELEASE_TIME)
+        circumstances.append(Circumstance.RELEASE_TIME)
     if isinstance(data, History):
-        told.append(Circumstance.GAUGE_OFFSET)
+        circumstances.append(Circumstance.GAUGE_OFFSET)
     if given is None:
-        return tuple(told)
+        return tuple(circumstances)
     if isinstance(data, MeasuredPeaks) and data.signed:
-        told.append(Circumstance.GAUGE_OFFSET)
+        circumstances.append(Circumstance.GAUGE_OFFSET)
     listed = (given,) if isinstance(given, str) else given
     names = [one_of_words(Circumstance, one, owner=_OWNER, name="circumstances") for one in listed]
     for name in names:
-        if name not in told:
+        if name not in circumstances:
             needed = "times" if name is Circumstance.RELEASE_TIME else "their signs"
             msg = f"{_OWNER}: {str(name)!r} cannot be found from peaks without {needed}"
             raise ComponentError(msg)

@@ -127,13 +127,13 @@ class Proof:
             of += f", with every {' and every '.join(wide)} of the given one"
         if not self.decided:
             at = "" if math.isnan(self.latest) else f", at {self.latest:.6g} s"
-            told = (
+            sentence = (
                 f"Undecided: {self.reason}{at}; rotations were enclosed within {self.width:.2g} rad"
             )
             if not (self.safe_share or self.overturning_share):
-                return f"{told}. Nothing is proved."
+                return f"{sentence}. Nothing is proved."
             return (
-                f"{told}. Of the set {self.safe_share:.3%} are proved safe for ever and "
+                f"{sentence}. Of the set {self.safe_share:.3%} are proved safe for ever and "
                 f"{self.overturning_share:.3%} to overturn, {of}."
             )
         found = "does not overturn, however long it stands on the still ground afterwards"

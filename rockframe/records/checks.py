@@ -67,11 +67,11 @@ def check_asked_time_step(
     source: Source, request: Request, time_step: float, line: int | None
 ) -> None:
     """Refuse a ``time_step=`` argument that the file contradicts."""
-    asked = request.time_step
-    if asked is not None and not math.isclose(asked, time_step, rel_tol=_ROUNDING):
+    requested = request.time_step
+    if requested is not None and not math.isclose(requested, time_step, rel_tol=_ROUNDING):
         raise source.refuse(
             found=f"a time step of {time_step!r} s",
-            expected=f"the {asked!r} s asked for by the argument time_step",
+            expected=f"the {requested!r} s asked for by the argument time_step",
             line=line,
         )
 
@@ -278,5 +278,5 @@ def record_of(
         )
         warnings = [*warnings, *differing]
     doubts = doubts_of(source, values, unit, time_step, stated)
-    about: Metadata = {**metadata, "unit_as_read": as_read, **counts}
-    return Record(time_step, values, unit, about, warnings=(*warnings, *said, *doubts, *behind))
+    described: Metadata = {**metadata, "unit_as_read": as_read, **counts}
+    return Record(time_step, values, unit, described, warnings=(*warnings, *said, *doubts, *behind))

@@ -166,9 +166,9 @@ class FileComponent:
         """Name, and what else tells it from the others, for messages."""
         where = "" if self.channel is None else f"channel {self.channel}"
         direction = str(self.orientation)
-        about = ", ".join(part for part in (where, direction) if part and part != self.name)
+        details = ", ".join(part for part in (where, direction) if part and part != self.name)
         name = repr(self.name or "")
-        return f"{name} ({about})" if about else name
+        return f"{name} ({details})" if details else name
 
 
 class EveryComponentError(RecordError):
@@ -290,8 +290,8 @@ def _alone(
     if len(components) > 1:
         names = ", ".join(str(entry.name) for entry in components[:_LISTED])
         history = (*history, f"component {chosen.name} taken (of {names})")
-    asked = request.component
-    if chosen.orientation.vertical is not None and asked is None:
+    requested = request.component
+    if chosen.orientation.vertical is not None and requested is None:
         warnings = (
             *warnings,
             f"{source.path}: the component {chosen.name} is vertical, and is read as if it "
@@ -299,9 +299,9 @@ def _alone(
             "use with_vertical to set it beside a horizontal one",
         )
     # asked for as upwards, not by the name that the file gives it
-    by_direction = asked is not None and not _has_name(asked, chosen)
+    by_direction = requested is not None and not _has_name(requested, chosen)
     sense = chosen.orientation.vertical
-    if by_direction and orientation_of(asked or "").vertical == UPWARDS:
+    if by_direction and orientation_of(requested or "").vertical == UPWARDS:
         record, step, warning = _upwards(source, record, chosen)
         history, warnings, sense = (*history, *step), (*warnings, *warning), UPWARDS
     if sense is not None:
@@ -374,22 +374,22 @@ def _upwards(
 
 
 def _about(component: FileComponent) -> Metadata:
-    about: Metadata = {}
+    metadata: Metadata = {}
     if component.name is not None:
-        about["component"] = component.name
+        metadata["component"] = component.name
     if component.orientation.azimuth is not None:
-        about["azimuth"] = component.orientation.azimuth
+        metadata["azimuth"] = component.orientation.azimuth
     if component.channel is not None:
-        about["channel"] = component.channel
-    return about
+        metadata["channel"] = component.channel
+    return metadata
 
 
-def _named(source: Source, asked: str, components: Sequence[FileComponent]) -> FileComponent:
-    direction = orientation_of(asked)
-    number = _CHANNEL.fullmatch(asked.strip().casefold())
+def _named(source: Source, requested: str, components: Sequence[FileComponent]) -> FileComponent:
+    direction = orientation_of(requested)
+    number = _CHANNEL.fullmatch(requested.strip().casefold())
     channel = None if number is None else int(number.group(1))
     tiers: tuple[Callable[[FileComponent], bool], ...] = (
-        lambda entry: _has_name(asked, entry),
+        lambda entry: _has_name(requested, entry),
         lambda entry: entry.orientation.matches(direction),
         lambda entry: channel is not None and entry.channel == channel,
     )
@@ -399,14 +399,14 @@ def _named(source: Source, asked: str, components: Sequence[FileComponent]) -> F
             return found[0]
         if found:
             raise source.refuse(
-                found=f"{len(found)} components that answer to {asked!r}: {_labels(found)}",
+                found=f"{len(found)} components that answer to {requested!r}: {_labels(found)}",
                 expected="one; ask for its channel number",
             )
-    raise _missing(source, asked, components)
+    raise _missing(source, requested, components)
 
 
-def _missing(source: Source, asked: str, components: Sequence[FileComponent]) -> RecordError:
-    expected = f"the component {asked!r}"
+def _missing(source: Source, requested: str, components: Sequence[FileComponent]) -> RecordError:
+    expected = f"the component {requested!r}"
     if len(components) > 1:
         return source.refuse(found=_listed(components), expected=expected)
     only = components[0]
@@ -415,9 +415,9 @@ def _missing(source: Source, asked: str, components: Sequence[FileComponent]) ->
     return source.refuse(found=f"the component {only.name!r}", expected=expected, line=only.line)
 
 
-def _has_name(asked: str, component: FileComponent) -> bool:
+def _has_name(requested: str, component: FileComponent) -> bool:
     names = [name for name in (component.name, *component.aliases) if name is not None]
-    return _key(asked) in map(_key, names)
+    return _key(requested) in map(_key, names)
 
 
 def _key(name: str) -> str:
@@ -441,8 +441,8 @@ def _example(components: Sequence[FileComponent]) -> str:
     first = (level or list(components))[0]
     # where names are not unique, only the channel number tells
     unique = names.count(first.name) == 1
-    asked = first.name if unique or first.channel is None else f"channel {first.channel}"
-    text = f"the argument component, such as component={asked!r}"
+    requested = first.name if unique or first.channel is None else f"channel {first.channel}"
+    text = f"the argument component, such as component={requested!r}"
     if level and len(upwards) == 1:
-        text += f", or component=({asked!r}, {upwards[0].name!r}) with the vertical one"
+        text += f", or component=({requested!r}, {upwards[0].name!r}) with the vertical one"
     return text

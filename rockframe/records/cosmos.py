@@ -336,8 +336,8 @@ def _samples(source: Source, request: Request, header: Header) -> Record:
         peak_unit = chosen[1] if request.unit is None else name
         stated.append(Stated(f"{peak:.12g}", peak_unit, header.reals.line(header.reals_at, 64)))
     behind = surplus(source, line + layout.rows(count), f"line {line}")
-    about = _description(header)
-    return record_of(source, values, time_step, chosen, about, stated=stated, behind=behind)
+    metadata = _description(header)
+    return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
 
 
 def _data_line(source: Source, header: Header) -> tuple[int, re.Match[str]]:

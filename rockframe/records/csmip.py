@@ -171,11 +171,11 @@ def _event(lines: list[str], place: int) -> Metadata:
     # processing. What is neither a name nor a time is not passed off as one.
     name, time = "", ""
     for text in lines[place : place + 2]:
-        told = _RECORD_OF.sub("", _WIDE_GAP.split(text.split("(")[0].strip())[0])
-        if _DATE.search(told):
-            time = time or told
-        elif not name and _PROCESSING.search(told) is None and re.search("[a-z]{3}", told, re.I):
-            name = told
+        entry = _RECORD_OF.sub("", _WIDE_GAP.split(text.split("(")[0].strip())[0])
+        if _DATE.search(entry):
+            time = time or entry
+        elif not name and _PROCESSING.search(entry) is None and re.search("[a-z]{3}", entry, re.I):
+            name = entry
     for text in lines:
         said = _OF_DATE.match(_WIDE_GAP.split(text)[0])
         if said is not None:
@@ -406,8 +406,8 @@ def _component_of_pairs(
         time_step, values = read_pairs(source, pairs)
         settle_time_step(source, request, time_step, pairs.data_at + 1)
         stated, behind = _stated(header, first), surplus(source, pairs.behind, "'NO. OF POINTS'")
-        about = description(header)
-        return record_of(source, values, time_step, chosen, about, stated=stated, behind=behind)
+        metadata = description(header)
+        return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
 
     return _named(header, first, samples)
 

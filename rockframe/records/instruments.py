@@ -268,9 +268,9 @@ def record_of_counts(
     flat, which that of an accelerometer is from zero to near its corner.
     """
     if request.unit is not None and request.unit_name is not None:
-        about: Metadata = {**metadata, "unit_as_read": request.unit_name}
+        described: Metadata = {**metadata, "unit_as_read": request.unit_name}
         history = (f"the samples taken as accelerations in {request.unit_name}, as asked for",)
-        return Record(time_step, values, request.unit, about, history)
+        return Record(time_step, values, request.unit, described, history)
     if response is None:
         found = "counts, and no response of the instrument"
         expected = (
@@ -279,7 +279,7 @@ def record_of_counts(
         )
         raise source.refuse(found=found, expected=expected)
     offset = float(math.fsum(values) / values.size)
-    about = {
+    described = {
         **metadata,
         "unit_as_read": "counts",
         "sensitivity": response.sensitivity,
@@ -293,5 +293,5 @@ def record_of_counts(
         "the response of the instrument is taken as flat",
     )
     return Record(
-        time_step, (values - offset) / response.sensitivity, response.unit, about, history
+        time_step, (values - offset) / response.sensitivity, response.unit, described, history
     )

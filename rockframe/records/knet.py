@@ -82,13 +82,13 @@ def _read(source: Source, request: Request) -> Record:
         offset = math.fsum(counts) / counts.size
         values = (counts - offset) * scale
         words = _compare_peak(source, header, values)
-        about: Metadata = {**metadata, **held, "scale_factor": scale, "offset_removed": offset}
+        described: Metadata = {**metadata, **held, "scale_factor": scale, "offset_removed": offset}
         history = (
             f"counts times the scale factor {header['Scale Factor'][0]}, "
             f"less their mean of {offset:.9g} counts ({offset * scale:.6g} gal)",
         )
         said = (*warnings, *differing, *words)
-        return Record(1.0 / rate, values, unit, about, history, said)
+        return Record(1.0 / rate, values, unit, described, history, said)
 
     component = FileComponent(
         name,

@@ -211,8 +211,8 @@ def _component(
             raise problem
         counts, time_step, start = joined_traces(source, traces)
         settle_time_step(source, request, time_step, None)
-        about: Metadata = {**about_codes(name), "record_time": start}
-        return record_of_counts(source, request, counts, time_step, about, response)
+        metadata: Metadata = {**about_codes(name), "record_time": start}
+        return record_of_counts(source, request, counts, time_step, metadata, response)
 
     return FileComponent(name if several else channel, samples, direction, aliases=(name, channel))
 

@@ -227,16 +227,16 @@ def peer_table(source: Source) -> dict[str, Known] | None:
             found = f"{len(row)} fields"
             raise source.refuse(found=found, expected=f"{len(heads)}", line=place)
         fields = dict(zip(heads, (field.strip() for field in row), strict=False))
-        about = _about(fields, source, place)
+        metadata = _about(fields, source, place)
         for head, axis in _FILES.items():
             name = _filled(fields.get(head, ""))
             if name:
-                known[name] = {**about, "axis": axis}
+                known[name] = {**metadata, "axis": axis}
     return known
 
 
 def _about(fields: dict[str, str], source: Source, line: int) -> Known:
-    about: Known = {name: fields[head] for head, name in _TEXTS.items() if fields.get(head)}
+    metadata: Known = {name: fields[head] for head, name in _TEXTS.items() if fields.get(head)}
     for head, (name, factor) in _NUMBERS.items():
         text = _filled(fields.get(head, ""))
         if not text:
@@ -244,8 +244,8 @@ def _about(fields: dict[str, str], source: Source, line: int) -> Known:
         value = _number(text, source, line, head) * factor
         if value == -999.0 * factor:  # what the databases write for unknown
             continue
-        about[name] = int(value) if name in _WHOLE else value
-    return about
+        metadata[name] = int(value) if name in _WHOLE else value
+    return metadata
 
 
 def _filled(text: str) -> str:

@@ -139,9 +139,9 @@ def _samples(source: Source, request: Request) -> Record:
         words = f"{source.path}, line 14: the file marks a problem (integer 18); see its comments"
         behind.append(words)
     stated = _stated_peak(source)
-    about = _description(source)
+    metadata = _description(source)
     return record_of(
-        source, values, time_step, chosen, about, said=said, stated=stated, behind=behind
+        source, values, time_step, chosen, metadata, said=said, stated=stated, behind=behind
     )
 
 

@@ -83,8 +83,8 @@ def _read(source: Source, request: Request) -> Record:
         metadata["description"] = table.header[0][1].lstrip("#% \t")
     if columns > 1 and not (timed and (names or is_rising(table))):
         order = None if any(map(is_direction, names)) else reading_order(table.values)
-        asked = (request.component or "").strip().casefold() == BY_ROWS
-        if order == ROWS or (asked and order != COLUMNS):
+        requested = (request.component or "").strip().casefold() == BY_ROWS
+        if order == ROWS or (requested and order != COLUMNS):
             return _row_by_row(source, request, table, metadata)
         unsaid = request.every or request.component is None
         if order is None and unsaid and not names and not timed:
@@ -163,13 +163,13 @@ def _record(
 ) -> Record:
     name, line = column.unit, None
     if name is None or table.values.shape[1] <= 2:
-        name, line = unit_of_header(source, table, asked=request.unit is not None)
+        name, line = unit_of_header(source, table, requested=request.unit is not None)
     unit, as_read, said = choose_unit(source, request, name, line)
     peak = stated_peak(table.header) if table.values.shape[1] <= 2 else None
     if peak is not None:
         said += doubts_of(source, values, unit, time_step, [peak])
-    about: Metadata = {"unit_as_read": as_read, **metadata}
-    return Record(time_step, values, unit, about, warnings=(*said, *warnings))
+    described: Metadata = {"unit_as_read": as_read, **metadata}
+    return Record(time_step, values, unit, described, warnings=(*said, *warnings))
 
 
 def _counted(source: Source, request: Request, head: FirstLines) -> Record:
@@ -210,12 +210,12 @@ def _step_without_times(source: Source, request: Request, table: Table) -> float
 
 def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, list[str]]:
     """Tell whether the samples begin in the second row, below the time step, and say so."""
-    asked = request.time_step
-    if asked is None or table.values.shape[1] > 1 or stated_step(table.header) is not None:
+    requested = request.time_step
+    if requested is None or table.values.shape[1] > 1 or stated_step(table.header) is not None:
         return 0, []
     number, line = table.first_fields[0], table.lines[0]
     where = f"{source.path}, line {line}: {number} is"
-    same = math.isclose(float(table.values[0, 0]), asked, rel_tol=_ROUNDING)
+    same = math.isclose(float(table.values[0, 0]), requested, rel_tol=_ROUNDING)
     if same and looks_like_step(table):
         return 1, [f"{where} the time step, as time_step says, and not read as a sample"]
     if same:
@@ -223,7 +223,7 @@ def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, 
     if looks_like_step(table):
         raise source.refuse(
             found=f"{number} above the samples, which looks like a time step",
-            expected=f"the {asked!r} s asked for by the argument time_step, or no such line",
+            expected=f"the {requested!r} s asked for by the argument time_step, or no such line",
             line=line,
         )
     return 0, []

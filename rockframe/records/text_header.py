@@ -179,7 +179,9 @@ def time_scale(source: Source, table: Table, names: list[str]) -> float:
     return units.pop() if len(units) == 1 else 1.0
 
 
-def unit_of_header(source: Source, table: Table, *, asked: bool) -> tuple[str | None, int | None]:
+def unit_of_header(
+    source: Source, table: Table, *, requested: bool
+) -> tuple[str | None, int | None]:
     """Find the unit of the accelerations in the header."""
     unknown: tuple[str, int] | None = None
     other: tuple[str, int] | None = None
@@ -196,7 +198,7 @@ def unit_of_header(source: Source, table: Table, *, asked: bool) -> tuple[str | 
     if known:
         name, line, factor = known[0]
         differing = [entry for entry in known if not math.isclose(entry[2], factor)]
-        if differing and not asked:
+        if differing and not requested:
             found = f"the units {name!r} and {differing[0][0]!r} (line {differing[0][1]})"
             raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
         return name, line

@@ -131,12 +131,12 @@ def _samples(
         what="NUM. TOTAL DE MUESTRAS",
         line=count_line,
     )
-    about: Metadata = {**metadata, **counts}
+    described: Metadata = {**metadata, **counts}
     stated = [
         *(Stated(text, _PEAK_UNIT, line) for text, line in lists.peaks[place : place + 1]),
         *(Stated(text, LENGTH, line) for text, line in lists.lengths[place : place + 1]),
     ]
-    return record_of(source, values, time_step, chosen, about, said=said, stated=stated)
+    return record_of(source, values, time_step, chosen, described, said=said, stated=stated)
 
 
 def _list(header: Keys, start: str) -> list[tuple[str, int]]:

@@ -93,23 +93,23 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     if run.overturning_time <= run.end_time:  # how a block falls is another matter
         upright = events.until(run.overturning_time)
     found = slidings(system, along)
-    told: dict[str, Generic | float] = {
+    scalars: dict[str, Generic | float] = {
         **force_scalars(along, upright, load.body.mass),
         **sliding_scalars(found),
         **residuals(values, load),
     }
     if "slip" in values:
-        told["residual_displacement"] = float(values["horizontal_displacement"][-1])
+        scalars["residual_displacement"] = float(values["horizontal_displacement"][-1])
     if system.model.shows_bodies:
-        told["peak_body_rotation"] = _peak_rotations(system, along)
+        scalars["peak_body_rotation"] = _peak_rotations(system, along)
         if slips := setting.slips_of(run.ending):
-            told["peak_body_slip"] = np.array([one.peak for one in slips])
+            scalars["peak_body_slip"] = np.array([one.peak for one in slips])
     places: dict[str, Generic] = {}
     if system.model.links:
-        told |= _of_links(system, run, along)
+        scalars |= _of_links(system, run, along)
         places = {"restrainer": np.array(system.setting.link_names)}
     if plan.points:
-        told |= point_peaks(plan.points, along, load)
+        scalars |= point_peaks(plan.points, along, load)
         places |= point_labels(plan.points)
         values |= point_histories(plan.points, values, load)
     shown = run.events.kind != SILENT
@@ -119,7 +119,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     everything = values | impulses | _energies(system, plan, run, values)
     if plan.histories:
         own = _own_answers(system, everything, events.those(shown), missing)
-        told |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
+        scalars |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
         everything |= {name: each for name, each in own.items() if SCHEMA[name].dims}
     for one in plan.diagnostics:
         state = _state_of(values, run.time, ground[:count])
@@ -128,13 +128,13 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
             None, f"the diagnostic {one.name!r}", missing,
         )  # fmt: skip
         if history_and_peak is not None:
-            everything[one.name], told[one.rows[1].name] = history_and_peak
+            everything[one.name], scalars[one.rows[1].name] = history_and_peak
     kept = {
         name: each
         for name, each in everything.items()
         if name not in ON_REQUEST or name in plan.requested
     }
-    return Answers(kept if plan.histories else {}, told, places, found)
+    return Answers(kept if plan.histories else {}, scalars, places, found)
 
 
 def _everything(plan: Plan) -> bool:

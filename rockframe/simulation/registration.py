@@ -66,11 +66,11 @@ def register(
         if given is not None
     ]
     rows = [row for row in cast("Sequence[Any]", columns) if isinstance(row, Variable)]
-    told = [row.name for row in rows if row.dims != TIME]
-    if told and getattr(kind, "answers", None) is OwnAnswers.answers:
+    scalars = [row.name for row in rows if row.dims != TIME]
+    if scalars and getattr(kind, "answers", None) is OwnAnswers.answers:
         faults.append(
             f"{kind.__name__} has no method answers(histories, before, after), which gives "
-            f"{' and '.join(map(repr, told))}"
+            f"{' and '.join(map(repr, scalars))}"
         )
     _refuse(faults)
     if issubclass(kind, OwnBase):

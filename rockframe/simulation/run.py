@@ -96,8 +96,8 @@ class Response:
     @cached_property
     def scalars(self) -> dict[str, Generic | float | int | bool]:
         """All scalars, and peaks at points, by their names in the schema."""
-        told = scalars_of(self.system, self.trajectory, self.missing)
-        return {**told, **self.answers.scalars}
+        scalars = scalars_of(self.system, self.trajectory, self.missing)
+        return {**scalars, **self.answers.scalars}
 
     @cached_property
     def in_motion(self) -> bool:
@@ -193,7 +193,7 @@ def run(
         )
         attributes["verdict"] = f"{attributes['verdict']}{friction}"
     of_scene = or_missing(lambda: system.cautions, [], "what is unusual about the scene", missing)
-    cautions, told = response.cautions(), len(missing)
+    cautions, before = response.cautions(), len(missing)
     values = {**response.events, **response.scalars}
     if look_again and certification is None and plan.accuracy == LEVELS[AccuracyLevel.FAST]:
         error, doubted = or_missing(
@@ -228,7 +228,7 @@ def run(
     )  # fmt: skip
     if dataset is None:
         dataset = build_dataset(values, attributes)
-    late = missing[told:]
+    late = missing[before:]
     for text in late:
         warn(text, SolverWarning)
     every = [*of_scene, *(text for _, text in cautions), *late]

@@ -80,8 +80,10 @@ class Accuracy:
             low, high = bounds[field.name]
             whole = field.name in ("max_steps", "substeps")
             if isinstance(value, bool) or not isinstance(value, Real):
-                asked = f"a whole number or {FEWEST!r}" if field.name == "substeps" else "a number"
-                msg = f"Accuracy: {field.name} must be {asked}, got {shown(value)}"
+                expected = (
+                    f"a whole number or {FEWEST!r}" if field.name == "substeps" else "a number"
+                )
+                msg = f"Accuracy: {field.name} must be {expected}, got {shown(value)}"
                 raise SolverError(msg)
             if whole and not isinstance(value, Integral):
                 msg = f"Accuracy: {field.name} must be a whole number, got {shown(value)}"

@@ -180,8 +180,8 @@ def observe_steps(
     if names == BODY_FORCES:
         columns = tuple(one for one in columns if one.name in BODY_FORCES)
         function = forces
-    asked = [i for i, one in enumerate(columns) if names is None or one.name in names]
-    wanted = np.array(asked, dtype=np.int64)
+    chosen = [i for i, one in enumerate(columns) if names is None or one.name in names]
+    wanted = np.array(chosen, dtype=np.int64)
     out = np.empty((len(wanted), len(steps.time)))
     observe_kept(
         _of(model.system, slope),
@@ -194,7 +194,7 @@ def observe_steps(
         _room(model, memory),
         out,
     )
-    return _named(model, [columns[i] for i in asked], out)
+    return _named(model, [columns[i] for i in chosen], out)
 
 
 def _room(model: ContactModel, memory: Matrix) -> Room:

@@ -92,9 +92,9 @@ def candidates_of(
     fixed = seconds if conditioned_on is None else checked_periods(conditioned_on, owner=owner)
     every = np.unique(np.concatenate([seconds, fixed]))
     if periods is not None or conditioned_on is not None:
-        asked = fixed if periods is None else every
+        every_period = fixed if periods is None else every
         signals = [motion.si.horizontal for motion in suite.values()]
-        say_coarse(signals, shortest_of(asked), owner=owner)
+        say_coarse(signals, shortest_of(every_period), owner=owner)
     goal = np.log(target.at_seconds(every, owner=owner))
     labels, spectra, events = _spectra(suite, kind, every, target.damping_ratio, owner)
     still = [label for label, row in zip(labels, spectra, strict=True) if not (row > 0.0).all()]

@@ -168,14 +168,14 @@ class _Found:
 
     def complete(self) -> None:
         """Add what tables tell, and put components together."""
-        told = {name.casefold(): about for name, about in self._tables.items()}
+        tables = {name.casefold(): metadata for name, metadata in self._tables.items()}
         there: set[str] = set()
         for component in self.components:
             name = str(component.motion.metadata.get("source_file", "")).casefold()
-            if name in told:
+            if name in tables:
                 there.add(name)
-                component.known |= told[name]
-                component.vertical = component.vertical or told[name].get("axis") == "V"
+                component.known |= tables[name]
+                component.vertical = component.vertical or tables[name].get("axis") == "V"
         self.left += [
             Unread(f"{self._table}: {name}", "found no such file; expected it beside the table")
             for name in self._tables

@@ -37,7 +37,7 @@ class RecordedComponent:
     known: dict[str, str | float | int] = field(default_factory=dict)
 
     @property
-    def about(self) -> dict[str, Any]:
+    def metadata(self) -> dict[str, Any]:
         """What the file and other sources tell."""
         own = {name: self.known[name] for name in _OF_THE_SUITE if name in self.known}
         return {**self.known, **self.motion.metadata, **own}
@@ -46,7 +46,7 @@ class RecordedComponent:
         """Give the motion with its label and all that is known."""
         one = self.motion
         return GroundMotion(
-            one.si, name=self.label, metadata=self.about, history=one.history, recipe=one.recipe
+            one.si, name=self.label, metadata=self.metadata, history=one.history, recipe=one.recipe
         )
 
 
@@ -94,8 +94,8 @@ def pairs_of(
     """Put the components of each record together."""
     axes: dict[str, dict[str, GroundMotion]] = {}
     for motion in (*motions.values(), *verticals.values()):
-        about = motion.metadata
-        axes.setdefault(str(about.get("record", "")), {})[str(about.get("axis", ""))] = motion
+        metadata = motion.metadata
+        axes.setdefault(str(metadata.get("record", "")), {})[str(metadata.get("axis", ""))] = motion
     return {
         record: HorizontalPair(held[FIRST], held[SECOND], held.get(VERTICAL))
         for record, held in axes.items()
@@ -133,56 +133,56 @@ def _at_one_time(members: list[RecordedComponent]) -> list[list[RecordedComponen
 
 def _start(component: RecordedComponent) -> float | None:
     """Give when a component starts [s], where nothing else tells its earthquake."""
-    about = component.about
-    if not _named_by_station(about) or any(about.get(key) for key in _WHEN):
+    metadata = component.metadata
+    if not _named_by_station(metadata) or any(metadata.get(key) for key in _WHEN):
         return None
-    return epoch_seconds(about.get(_START))
+    return epoch_seconds(metadata.get(_START))
 
 
-def _named_by_station(about: Mapping[str, Any]) -> bool:
-    told = about.get("station") or about.get("station_name")
-    return bool(told) and "record_sequence_number" not in about
+def _named_by_station(metadata: Mapping[str, Any]) -> bool:
+    station = metadata.get("station") or metadata.get("station_name")
+    return bool(station) and "record_sequence_number" not in metadata
 
 
 def _record_of(component: RecordedComponent) -> tuple[str, ...]:
-    about = component.about
-    if "record_sequence_number" in about:
-        return (f"RSN{about['record_sequence_number']}",)
-    if not _named_by_station(about):
+    metadata = component.metadata
+    if "record_sequence_number" in metadata:
+        return (f"RSN{metadata['record_sequence_number']}",)
+    if not _named_by_station(metadata):
         # all components of one file have its path
         return (component.file.replace("\\", "/").rsplit("/", 1)[-1],)
-    where = [about[key] for key in _WHERE if about.get(key)] or [about["station_name"]]
+    where = [metadata[key] for key in _WHERE if metadata.get(key)] or [metadata["station_name"]]
     return (*_event(component), *map(str, where))
 
 
 def _name_of(component: RecordedComponent) -> str:
-    start = [] if _start(component) is None else [str(component.about[_START])]
+    start = [] if _start(component) is None else [str(component.metadata[_START])]
     return ", ".join((*start, *_record_of(component)))
 
 
 def _event(component: RecordedComponent) -> tuple[str, ...]:
-    about = component.about
-    when = next((about[key] for key in _WHEN if about.get(key)), None)
+    metadata = component.metadata
+    when = next((metadata[key] for key in _WHEN if metadata.get(key)), None)
     if when is None and _start(component) is None:
-        when = about.get(_START)
-    event = str(about.get("event", ""))
-    told = [event, "" if str(when) in event else when]
-    return tuple(str(part) for part in told if part)
+        when = metadata.get(_START)
+    event = str(metadata.get("event", ""))
+    parts = [event, "" if str(when) in event else when]
+    return tuple(str(part) for part in parts if part)
 
 
 def _event_and_station(component: RecordedComponent) -> tuple[str, ...]:
-    about = component.about
-    if not _named_by_station(about):
+    metadata = component.metadata
+    if not _named_by_station(metadata):
         return _record_of(component)
-    station = about.get("station") or about.get("station_name")
-    return (*_event(component), str(about.get("network", "")), str(station))
+    station = metadata.get("station") or metadata.get("station_name")
+    return (*_event(component), str(metadata.get("network", "")), str(station))
 
 
 def _instrument(component: RecordedComponent) -> tuple[str, ...]:
     """Give the codes of band and instrument, and the processing, as far as they are known."""
-    about = component.about
-    found = _INSTRUMENT.search(str(about.get("component", "")))
-    return ("" if found is None else found.group(1), str(about.get("processing", "")))
+    metadata = component.metadata
+    found = _INSTRUMENT.search(str(metadata.get("component", "")))
+    return ("" if found is None else found.group(1), str(metadata.get("processing", "")))
 
 
 def _is_one(members: list[RecordedComponent]) -> bool:
@@ -194,13 +194,13 @@ def _why_apart(members: list[RecordedComponent]) -> list[str]:
     """Say why components of one station and time are no pair."""
     if len(members) < len(HORIZONTAL):
         return []
-    told = {
-        "sensor locations": [str(one.about.get("sensor_location", "")) for one in members],
+    statements = {
+        "sensor locations": [str(one.metadata.get("sensor_location", "")) for one in members],
         "instruments or processings": [" ".join(_instrument(one)).strip() for one in members],
     }
     apart = "; ".join(
         f"{what} {', '.join(repr(value) for value in values)}"
-        for what, values in told.items()
+        for what, values in statements.items()
         if len(set(values)) > 1
     )
     labels = ", ".join(one.label for one in members)
@@ -219,8 +219,8 @@ def _assign(record: str, members: list[RecordedComponent]) -> list[str]:
             one.known["record"] = one.label
         found = f"{len(level)} horizontal and {len(upwards)} vertical components"
         return [f"{record}: {found}, which are not put together"]
-    told = sorted(str(one.known.get("axis", "")) for one in level)
-    if told != list(HORIZONTAL):
+    axes = sorted(str(one.known.get("axis", "")) for one in level)
+    if axes != list(HORIZONTAL):
         for one, axis in zip(level, HORIZONTAL, strict=False):
             one.known["axis"] = axis
     if len(level) < len(HORIZONTAL):

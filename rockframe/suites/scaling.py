@@ -198,11 +198,11 @@ def scaled_motions(
 def _scaled(motion: "GroundMotion", factor: float, misfit: float) -> "GroundMotion":
     done = motion.scaled(factor)
     before: Any = column("scale_factor", motion)
-    about = {
+    metadata = {
         **done.metadata,
         "scale_factor": factor * (1.0 if before is None else before),
         "spectral_misfit": misfit,
     }
     return type(done)(
-        done.si, name=done.name, metadata=about, history=done.history, recipe=done.recipe
+        done.si, name=done.name, metadata=metadata, history=done.history, recipe=done.recipe
     )

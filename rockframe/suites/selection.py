@@ -105,8 +105,8 @@ def selection_for(
     most = wanted
     if per_event is not None:
         most = whole_number(per_event, owner=owner, name="per_event", lowest=1)
-    told = bool(candidates.deviations.any())
-    weight = float(told)
+    deviates = bool(candidates.deviations.any())
+    weight = float(deviates)
     if spread_weight is not None:
         weight = to_ratio(
             spread_weight, owner=owner, name="spread_weight", condition=NOT_NEGATIVE, example="1"

@@ -89,12 +89,12 @@ def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
             continue
         if words:
             counts = np.array([0 if part is None else len(part) for part in parts])
-            about = {"long_name": f"number of {words}", "units": str(Unit.ONE)}
-            dataset[count] = (MOTION, counts, about)
+            attributes = {"long_name": f"number of {words}", "units": str(Unit.ONE)}
+            dataset[count] = (MOTION, counts, attributes)
         dataset[count].attrs["sample_dimension"] = dim
         dims = (dim,) if held[0].ndim == 1 else (dim, "power")
-        about = {"units": str(Unit.METRE_PER_SECOND_SQUARED), "long_name": LONG_NAMES[name]}
-        dataset[name] = (dims, np.concatenate(held), about)
+        attributes = {"units": str(Unit.METRE_PER_SECOND_SQUARED), "long_name": LONG_NAMES[name]}
+        dataset[name] = (dims, np.concatenate(held), attributes)
         dataset[name].encoding["_FillValue"] = None
     labels = {"long_name": "ground motion"}
     dataset = dataset.assign_coords({MOTION: (MOTION, list(motions), labels)})
@@ -110,7 +110,7 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
         raise SchemaError(msg)
     try:
         motions = _motions(dataset)
-        about = {
+        attributes = {
             "verticals": int(dataset.attrs["verticals"]),
             "unread": dict(json.loads(dataset.attrs["unread"])),
             "remarks": tuple(json.loads(dataset.attrs["remarks"])),
@@ -120,7 +120,7 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
             raise
         msg = f"found a suite that cannot be read ({problem}); expected {_EXPECTED}"
         raise SchemaError(msg) from problem
-    return motions, about
+    return motions, attributes
 
 
 def is_stored_suite(source: "Source") -> bool:

@@ -223,11 +223,11 @@ class MotionSuite(LabelledMotions):
             Not such a dataset, or its samples were changed since.
         """
         owner = f"{cls.__name__}.from_dataset"
-        motions, about = stored_motions(checked_dataset(dataset, owner=owner))
-        count = len(motions) - about.pop("verticals")
+        motions, attributes = stored_motions(checked_dataset(dataset, owner=owner))
+        count = len(motions) - attributes.pop("verticals")
         labels = list(motions)
         return cls(
             {label: motions[label] for label in labels[:count]},
             verticals={label: motions[label] for label in labels[count:]},
-            **about,
+            **attributes,
         )

@@ -77,8 +77,8 @@ class OwnScene(OwnAnswers, Setting):
         """Refuse a vertical start, unless overridden."""
         if not has_vertical_start:
             return []
-        told = "InitialState: vertical_displacement and vertical_velocity are no start of "
-        return [f"{told}{self.model}"]
+        sentence = "InitialState: vertical_displacement and vertical_velocity are no start of "
+        return [f"{sentence}{self.model}"]
 
     def _lacks(self, words: str, method: str) -> NoReturn:
         raise AssemblyError([f"{self.model} {words}; it is for its class to give {method}"])

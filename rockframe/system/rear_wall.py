@@ -103,12 +103,12 @@ class RearWallSetting(RigidGroundSetting):
 
     def words(self) -> Words:
         """Tell the block before its wall."""
-        told, law = super().words(), self.wall.given.restitution
+        inherited, law = super().words(), self.wall.given.restitution
         named = f'law "{law}"' if isinstance(law, WallImpact) else "as given"
         away = "right" if self.direction > 0.0 else "left"
-        rest, rocking, _ = told.equations
+        rest, rocking, _ = inherited.equations
         return replace(
-            told,
+            inherited,
             equations=[
                 rest,
                 (away, rocking[1]),
@@ -116,10 +116,10 @@ class RearWallSetting(RigidGroundSetting):
                  f"({named})"),
             ],
             numbers=[
-                *told.numbers[:-1],
+                *inherited.numbers[:-1],
                 ("wall", f"on the {self.wall.given.side}, rebound {self.rebound:.6g} ({named})"),
             ],
-            left_out=[*told.left_out, "elasticity of the wall"],
+            left_out=[*inherited.left_out, "elasticity of the wall"],
         )  # fmt: skip
 
     def _start_words(self) -> str:

@@ -94,19 +94,19 @@ class RockingFrameSetting(RigidGroundSetting):
 
     def words(self) -> Words:
         """Tell the frame."""
-        body, si, told = self.body, self.frame, super().words()
+        body, si, inherited = self.body, self.frame, super().words()
         share = si.beam_mass / (si.columns * si.column.mass)
         radius = body.gyration_square_about(body.half_width) / (
             body.radius * (1.0 + 1.0 / si.column.shape_factor)
         )
         return replace(
-            told,
+            inherited,
             numbers=[
                 ("columns", f"{si.columns}, each {si.column.width:.6g} m wide, "
                  f"{si.column.height:.6g} m high, {si.column.mass:.6g} kg"),
                 ("beam over columns, gamma = m_b/(N m)", f"{share:.6g}"),
                 ("R0 of a lone column that rocks alike", f"{radius:.6g} m"),
-                *told.numbers,
+                *inherited.numbers,
             ],
             restraint="the corners that bear, under and above the columns, do not slide (the "
             "restraint options make no difference)",
@@ -216,16 +216,16 @@ class TiedFrameSetting(RockingFrameSetting):
 
     def words(self) -> Words:
         """Tell the frame and its tendons."""
-        told = super().words()
+        inherited = super().words()
         return replace(
-            told,
+            inherited,
             equations=[
-                *told.equations,
+                *inherited.equations,
                 ("tendons", "a'' less s 2 b cos(a/2) N T/I, of the forces T of all tendons of a "
                  "column, each longer by 4 b sin(|a|/2)"),
             ],
             numbers=[
-                *told.numbers,
+                *inherited.numbers,
                 *((name, f"along the axis of each column, {', '.join(tie_words(one))}")
                   for name, one in zip(self.link_names, self.tendons, strict=True)),
             ],

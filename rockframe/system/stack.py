@@ -110,11 +110,11 @@ class StackSetting(Setting):
         numbers = list[tuple[str, str]]()
         left_out = ["sliding", "elasticity of the bodies"]
         for k, (body, base) in enumerate(zip(self.bodies, self.bases, strict=True), 1):
-            told = base.words()
+            of_base = base.words()
             size = f"{2.0 * body.half_width:.6g} m wide, centre of mass {body.centre_height:.6g} m"
             numbers.append((f"body {k}", f"{size} above its base, {body.mass:.6g} kg"))
-            numbers += [(f"base {k}: {name}", words) for name, words in told.numbers]
-            left_out += [one for one in told.left_out if one not in left_out]
+            numbers += [(f"base {k}: {name}", words) for name, words in of_base.numbers]
+            left_out += [one for one in of_base.left_out if one not in left_out]
         numbers += [(one.name, one.words()) for one in self.ties]
         laws = list(dict.fromkeys(base.words().law for base in self.bases))
         projected = (

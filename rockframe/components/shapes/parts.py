@@ -83,41 +83,43 @@ class PlacedPart:
 def read_part(name: str, given: Mapping[str, Any], owner: str) -> PlacedPart:
     """Read a part."""
     place = f"{owner}: part {name!r}"
-    told = {word: value for word, value in given.items() if value is not None}
-    kind = next((word for word in _KINDS if word in told), None)
+    values = {word: value for word, value in given.items() if value is not None}
+    kind = next((word for word in _KINDS if word in values), None)
     if kind is None:
         msg = (
             f"{place} needs width and height, an outline, a body, or its mass alone; got "
             f"{', '.join(map(shown, given)) or 'nothing'}"
         )
         raise ComponentError(msg)
-    foreign = [word for word in told if word not in _KINDS[kind]]
+    foreign = [word for word in values if word not in _KINDS[kind]]
     if foreign:
         msg = (
             f"{place} has {', '.join(map(shown, foreign))}, which says nothing of a part with "
             f"{shown(kind)}; it is told by {', '.join(_KINDS[kind])}"
         )
         raise ComponentError(msg)
-    x, y = (0.0, 0.0) if "at" not in told else read_place(told["at"], owner=place, name="at")
+    x, y = (0.0, 0.0) if "at" not in values else read_place(values["at"], owner=place, name="at")
     read = {"body": _body, "outline": _outline, "mass": _point}.get(kind, _rectangle)
-    return read(name, told, (x, y), place)
+    return read(name, values, (x, y), place)
 
 
 def _rectangle(
-    name: str, told: Mapping[str, Any], at: tuple[float, float], owner: str
+    name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str
 ) -> PlacedPart:
-    width, height = (_positive(told, word, LENGTH, owner=owner) for word in ("width", "height"))
-    mass = read_mass(told, width * height, owner=owner)
+    width, height = (_positive(values, word, LENGTH, owner=owner) for word in ("width", "height"))
+    mass = read_mass(values, width * height, owner=owner)
     (x, y), half, top = at, 0.5 * width, at[1] + height
-    about = mass * (width * width + height * height) / 12.0
+    inertia = mass * (width * width + height * height) / 12.0
     ends = ((x - half, y), (x + half, y), (x + half, top), (x - half, top))
     words = f"a corner of part {name!r}"
     corners = tuple(OutlineCorner(words, *end) for end in ends)
-    return PlacedPart(name, PlaneMass(mass, x, y + 0.5 * height, about), corners, top)
+    return PlacedPart(name, PlaneMass(mass, x, y + 0.5 * height, inertia), corners, top)
 
 
-def _outline(name: str, told: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
-    mass, corners = outline_mass(told["outline"], told, owner, "outline")
+def _outline(
+    name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str
+) -> PlacedPart:
+    mass, corners = outline_mass(values["outline"], values, owner, "outline")
     x, y = at
     moved = tuple(
         OutlineCorner(f"{corner.words} of part {name!r}", corner.x + x, corner.y + y)
@@ -127,12 +129,12 @@ def _outline(name: str, told: Mapping[str, Any], at: tuple[float, float], owner:
     return PlacedPart(name, there, moved, max(corner.y for corner in moved))
 
 
-def _body(name: str, told: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
-    si = getattr(told["body"], "si", None)
+def _body(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
+    si = getattr(values["body"], "si", None)
     if not hasattr(si, "centre_height"):
-        msg = f"{owner} needs a Block as its body, got {shown(told['body'])}"
+        msg = f"{owner} needs a Block as its body, got {shown(values['body'])}"
         raise ComponentError(msg)
-    block: Block = told["body"]
+    block: Block = values["body"]
     (x, y), si = at, block.si
     there = PlaneMass(si.mass, x + si.eccentricity, y + si.centre_height, si.inertia)
     words = f"an end of the base of part {name!r}"
@@ -143,20 +145,22 @@ def _body(name: str, told: Mapping[str, Any], at: tuple[float, float], owner: st
     return PlacedPart(name, there, corners, y + si.height)
 
 
-def _point(name: str, told: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
-    mass = _positive(told, "mass", MASS, owner=owner)
-    about = 0.0
-    if "inertia" in told:
-        about = to_si(told["inertia"], INERTIA, owner=owner, name="inertia", condition=NOT_NEGATIVE)
+def _point(name: str, values: Mapping[str, Any], at: tuple[float, float], owner: str) -> PlacedPart:
+    mass = _positive(values, "mass", MASS, owner=owner)
+    inertia = 0.0
+    if "inertia" in values:
+        inertia = to_si(
+            values["inertia"], INERTIA, owner=owner, name="inertia", condition=NOT_NEGATIVE
+        )
     corner = OutlineCorner(f"part {name!r}", *at)
-    return PlacedPart(name, PlaneMass(mass, *at, about), (corner,), at[1], stands=False)
+    return PlacedPart(name, PlaneMass(mass, *at, inertia), (corner,), at[1], stands=False)
 
 
-def _positive(told: Mapping[str, Any], name: str, measure: Measure, *, owner: str) -> float:
-    if name not in told:
+def _positive(values: Mapping[str, Any], name: str, measure: Measure, *, owner: str) -> float:
+    if name not in values:
         msg = f"{owner} needs width and height; {name} is missing"
         raise ComponentError(msg)
-    return to_si(told[name], measure, owner=owner, name=name, condition=POSITIVE)
+    return to_si(values[name], measure, owner=owner, name=name, condition=POSITIVE)
 
 
 def body_of_parts(given: object, base: object, owner: str) -> ShapedBody:

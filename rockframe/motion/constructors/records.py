@@ -90,14 +90,14 @@ def read(
         and its samples), its peak, offset or time step is unusual, or its only
         component is vertical.
     """
-    asked = request_of(
+    requested = request_of(
         owner=f"{kind.__name__}.read",
         unit=unit,
         time_step=time_step,
         component=component,
         response=response,
     )
-    reading = read_record(path, format, asked)
+    reading = read_record(path, format, requested)
     for message in reading.warnings:
         warn(message, RecordWarning)
     return kind(
@@ -240,12 +240,12 @@ def example(
     file = io.BytesIO((folder / record["file"]).read_bytes())
     file.name = record["file"]
     motion = read(kind, file, component=component or record["component"])
-    told: dict[str, Any] = record["metadata"]
+    metadata: dict[str, Any] = record["metadata"]
     return kind(
         motion.si,
         name=record["name"],
-        metadata={**motion.metadata, **told},
-        history=(*motion.history, f"source: {told['attribution']}; {told['licence']}"),
+        metadata={**motion.metadata, **metadata},
+        history=(*motion.history, f"source: {metadata['attribution']}; {metadata['licence']}"),
     )
 
 

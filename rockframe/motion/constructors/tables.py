@@ -252,9 +252,9 @@ def _column(frame: Any, label: object, owner: str, argument: str) -> Array:
 
 
 def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: str) -> float:
-    asked = None
+    requested = None
     if time_step is not None:
-        asked = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
+        requested = to_si(time_step, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     if time is None:
         axis = frame.index
     elif time in frame.columns:
@@ -266,10 +266,10 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
         raise ComponentError(msg)
     times = relative_seconds(axis, "s")
     if times is None:
-        if asked is None:
+        if requested is None:
             msg = f"{owner}: the frame holds no times; give time, or time_step='0.01 s'"
             raise ComponentError(msg)
-        return asked
+        return requested
     printed = [repr(one) for one in cast("list[float]", times.tolist())]
     step, misfit = uniform_step(times, printed)
     if misfit is not None:
@@ -278,8 +278,8 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
             "use from_times, which resamples"
         )
         raise ComponentError(msg)
-    if asked is not None and not np.isclose(asked, step, rtol=_SAME_STEP, atol=0.0):
-        msg = f"{owner}: the times have the step {step:.9g} s, but time_step is {asked:.9g} s"
+    if requested is not None and not np.isclose(requested, step, rtol=_SAME_STEP, atol=0.0):
+        msg = f"{owner}: the times have the step {step:.9g} s, but time_step is {requested:.9g} s"
         raise ComponentError(msg)
     return step
 
@@ -337,9 +337,9 @@ def from_trace(
     do is read.
     """
     owner = f"{kind.__name__}.from_trace"
-    asked = request_of(owner=owner, unit=unit, component=component)
+    requested = request_of(owner=owner, unit=unit, component=component)
     traces = [trace] if all(hasattr(trace, part) for part in _NEEDED) else _listed(trace, owner)
-    reading = read_traces(traces, asked, owner=owner)
+    reading = read_traces(traces, requested, owner=owner)
     for message in reading.warnings:
         warnings.warn(message, RecordWarning, stacklevel=2)
     codes = [reading.metadata.get(key, "") for key in ("network", "station", "component")]

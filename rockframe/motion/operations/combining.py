@@ -72,12 +72,12 @@ def with_vertical(motion: Made, other: MotionValue) -> Made:
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
     result = Motion(padded(si.horizontal, count), upwards)
-    about = {f"vertical_{key}": value for key, value in other.metadata.items()}
+    added = {f"vertical_{key}": value for key, value in other.metadata.items()}
     if sense is not None:
-        about[f"vertical_{SENSE}"] = UPWARDS
+        added[f"vertical_{SENSE}"] = UPWARDS
     known = None if other.recipe is None else dict(other.recipe)
     operation = None if known is None else {"with_vertical": {"other": known}}
-    return following(motion, result, *steps, operation=operation, metadata=about)
+    return following(motion, result, *steps, operation=operation, metadata=added)
 
 
 def rotated(

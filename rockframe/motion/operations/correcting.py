@@ -131,9 +131,9 @@ def filtered(
     before = 1 if causal else padding
     kept = f", padding kept: {before} samples before and {padding} after" if keep_padding else ""
     step = f"Butterworth filter of order {order}, {way}{kept}"
-    asked = {name: f"{value!r} {FREQUENCY.unit}" for name, value in corners.items()}
+    named = {name: f"{value!r} {FREQUENCY.unit}" for name, value in corners.items()}
     operation = {
-        "filtered": {**asked, "order": order, "causal": causal, "keep_padding": keep_padding}
+        "filtered": {**named, "order": order, "causal": causal, "keep_padding": keep_padding}
     }
     return following(motion, result, step, *lost_pieces(si), operation=operation)
 

@@ -140,7 +140,7 @@ def matched(
         samples = found.scale_factor * scaled.samples
         scaled = replace(scaled, samples=samples, polynomials=None)
     changed = changes(scaled, found.signal, goal)
-    about = {**_about(motion, target, found), "target_reached": int(reached), **changed}
+    added = {**_about(motion, target, found), "target_reached": int(reached), **changed}
     if not reached:
         worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
         msg = (
@@ -162,12 +162,12 @@ def matched(
         return type(motion)(
             si,
             name=motion.name,
-            metadata={**motion.metadata, **about},
+            metadata={**motion.metadata, **added},
             history=(*motion.history, words),
             recipe=motion.recipe,
         )
     across = replace(si, horizontal=found.signal)
-    return following(motion, across, words, *lost_pieces(si), metadata=about)
+    return following(motion, across, words, *lost_pieces(si), metadata=added)
 
 
 def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> Goal:

@@ -128,12 +128,12 @@ def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str])
             pieces = None if signal.polynomials is None else signal.polynomials * ratio
             return replace(signal, samples=signal.samples * ratio, polynomials=pieces)
 
-    about: dict[str, str] = {}
+    added: dict[str, str] = {}
     sense = motion.metadata.get(SENSE)
     if ratio < 0.0 and sense in _OPPOSITE:  # mirrored: what was positive upwards is so downwards
-        about[SENSE] = _OPPOSITE[str(sense)]
+        added[SENSE] = _OPPOSITE[str(sense)]
     operation = {"scaled": given}
-    return following(motion, motion.si.each(times), step, operation=operation, metadata=about)
+    return following(motion, motion.si.each(times), step, operation=operation, metadata=added)
 
 
 class _Target(NamedTuple):

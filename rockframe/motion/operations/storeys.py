@@ -72,19 +72,19 @@ class BuildingModes(NamedTuple):
 
 def read_building(given: Mapping[str, Any], damping_ratio: object, *, owner: str) -> BuildingModes:
     """Read one of the three ways in which a building is described."""
-    told = {name: value for name, value in given.items() if value is not None}
-    ways = [set(needed) <= set(told) <= {*needed, *more} for needed, more in _WAYS]
+    values = {name: value for name, value in given.items() if value is not None}
+    ways = [set(needed) <= set(values) <= {*needed, *more} for needed, more in _WAYS]
     if True not in ways:
-        found = ", ".join(told) or "none of them"
+        found = ", ".join(values) or "none of them"
         known = "; or ".join(_listed(needed) for needed, _ in _WAYS)
         msg = f"{owner}: give {known}; got {found}; write for example periods=['0.5 s']"
         raise ComponentError(msg)
     periods, participations, words, arguments = (_of_modes, _uniform, _of_masses)[ways.index(True)](
-        told, owner
+        values, owner
     )
-    if "modes" in told:
+    if "modes" in values:
         highest = periods.size
-        kept = whole_number(told["modes"], owner=owner, name="modes", lowest=1, highest=highest)
+        kept = whole_number(values["modes"], owner=owner, name="modes", lowest=1, highest=highest)
         periods, participations = periods[:kept], participations[:kept]
         words += f", of {highest} modes the first {kept}"
         arguments["modes"] = kept
@@ -98,9 +98,9 @@ def _listed(names: tuple[str, ...]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def _of_modes(told: Mapping[str, Any], owner: str) -> _Read:
-    periods = _values(told["periods"], PERIOD, owner, "periods", zero=True)
-    given = told.get("floor_participations")
+def _of_modes(values: Mapping[str, Any], owner: str) -> _Read:
+    periods = _values(values["periods"], PERIOD, owner, "periods", zero=True)
+    given = values.get("floor_participations")
     if given is None and periods.size > 1:
         msg = (
             f"{owner}: {periods.size} periods need floor_participations, of each mode its "
@@ -118,27 +118,27 @@ def _of_modes(told: Mapping[str, Any], owner: str) -> _Read:
     return periods, np.array(each), "given modes", arguments
 
 
-def _uniform(told: Mapping[str, Any], owner: str) -> _Read:
+def _uniform(values: Mapping[str, Any], owner: str) -> _Read:
     storeys = whole_number(
-        told["storeys"], owner=owner, name="storeys", lowest=1, highest=_MOST_STOREYS
+        values["storeys"], owner=owner, name="storeys", lowest=1, highest=_MOST_STOREYS
     )
-    floor = whole_number(told["floor"], owner=owner, name="floor", lowest=1, highest=storeys)
-    period = to_si(told["period"], PERIOD, owner=owner, name="period", condition=POSITIVE)
+    floor = whole_number(values["floor"], owner=owner, name="floor", lowest=1, highest=storeys)
+    period = to_si(values["period"], PERIOD, owner=owner, name="period", condition=POSITIVE)
     words = f"floor {floor} of a shear building of equal storeys, {storeys} in number"
     arguments = {"storeys": storeys, "floor": floor, "period": f"{period!r} {PERIOD.unit}"}
     return *uniform_modes(storeys, floor, period), words, arguments
 
 
-def _of_masses(told: Mapping[str, Any], owner: str) -> _Read:
-    masses = _values(told["masses"], MASS, owner, "masses")
-    stiffnesses = _values(told["stiffnesses"], STIFFNESS, owner, "stiffnesses")
+def _of_masses(values: Mapping[str, Any], owner: str) -> _Read:
+    masses = _values(values["masses"], MASS, owner, "masses")
+    stiffnesses = _values(values["stiffnesses"], STIFFNESS, owner, "stiffnesses")
     if masses.size != stiffnesses.size or masses.size > _MOST_STOREYS:
         msg = (
             f"{owner}: masses and stiffnesses need one value for each storey, from the lowest "
             f"up, at most {_MOST_STOREYS}; got {masses.size} and {stiffnesses.size}"
         )
         raise ComponentError(msg)
-    floor = whole_number(told["floor"], owner=owner, name="floor", lowest=1, highest=masses.size)
+    floor = whole_number(values["floor"], owner=owner, name="floor", lowest=1, highest=masses.size)
     with np.errstate(invalid="ignore", divide="ignore"):
         periods, participations = building_modes(masses, stiffnesses, floor)
     if not np.isfinite(periods).all():

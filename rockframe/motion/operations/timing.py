@@ -71,32 +71,32 @@ def window(
         longer than the part.
     """
     owner, si = f"{type(motion).__name__}.window", motion.si
-    asked = {
+    ends = {
         name: own if value is None else to_si(value, TIME, owner=owner, name=name)
         for name, value, own in (("start", start, 0.0), ("end", end, si.duration))
     }
     last = len(motion) - 1
-    places = {name: value / si.time_step for name, value in asked.items()}
+    places = {name: value / si.time_step for name, value in ends.items()}
     for name, place in places.items():
         # some records count their length as n dt, one step beyond the last sample
         if place < -_SNAP or place > last + 1.0 + _SNAP:
             msg = (
-                f"{owner}: {name} = {asked[name]:.6g} s is outside the motion, "
+                f"{owner}: {name} = {ends[name]:.6g} s is outside the motion, "
                 f"which lasts from 0 s to {si.duration:.6g} s"
             )
             raise ComponentError(msg)
     first, final = (min(max(round(places[name]), 0), last) for name in ("start", "end"))
     if final <= first:
         msg = (
-            f"{owner}: end = {asked['end']:.6g} s must be at least one time step "
-            f"({si.time_step:.6g} s) after start = {asked['start']:.6g} s"
+            f"{owner}: end = {ends['end']:.6g} s must be at least one time step "
+            f"({si.time_step:.6g} s) after start = {ends['start']:.6g} s"
         )
         raise ComponentError(msg)
     step = f"window from {first * si.time_step:.9g} s to {final * si.time_step:.9g} s"
     if any(abs(places[n] - k) > _SNAP for n, k in (("start", first), ("end", final))):
-        step += f", the samples nearest to {asked['start']:.9g} s and {asked['end']:.9g} s"
+        step += f", the samples nearest to {ends['start']:.9g} s and {ends['end']:.9g} s"
     part = si.each(lambda signal: _between(signal, first, final))
-    given = {name: f"{value!r} {TIME.unit}" for name, value in asked.items()}
+    given = {name: f"{value!r} {TIME.unit}" for name, value in ends.items()}
     steps = [step]
     if taper is not None:
         length = to_si(taper, TIME, owner=owner, name="taper", condition=POSITIVE)

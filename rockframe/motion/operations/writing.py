@@ -76,12 +76,12 @@ def to_at2(
     printed_step = usual if float(usual) == step else repr(step)
     event = str(motion.metadata.get("event", motion.name))
     station = str(motion.metadata.get("station", ""))
-    about = [" ".join(_plain(part).replace(",", " ").split()) for part in (event, station, named)]
+    parts = [" ".join(_plain(part).replace(",", " ").split()) for part in (event, station, named)]
     samples = [f"{value:15.7E}" for value in (signal.samples / STANDARD_GRAVITY).tolist()]
     rows = [samples[k : k + _PER_LINE] for k in range(0, len(samples), _PER_LINE)]
     lines = [
         _TITLE,
-        ", ".join(about),
+        ", ".join(parts),
         _UNIT,
         f"NPTS= {len(samples):6d}, DT= {printed_step:>7} SEC,",
         *("".join(row) for row in rows),
