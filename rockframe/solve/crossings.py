@@ -138,7 +138,8 @@ def earliest_crossing(
             end = _point_below_zero(
                 equations, i, bottom, low, high, mode, count, span, tolerance, w
             )
-        if end < 0.0 and w.after[i] < 0.0:
+        # of one that starts at zero, within its rounding noise, only what lies deeper is a fall
+        if end < 0.0 and w.after[i] < (0.0 if w.before[i] > tolerance[i] else -tolerance[i]):
             end = 1.0
         if end >= 0.0:
             root = _first_root(equations, i, end, mode, count, span, tolerance, w)

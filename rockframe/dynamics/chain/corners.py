@@ -232,14 +232,14 @@ class RigidCorners(Chain):
     ) -> None:
         """Write the guards of both corners: the force of one that bears, the gap of another."""
         part, body = self.on_base(k), self.standing_state(k, standing, state)
-        line, weight = part.body.base_line_at(body), self.number(k, at.MASS) * part.body.gravity
+        line, force_size = part.body.base_line_at(body), self.number(k, at.FORCE_SIZE)
         flies = part.flies(standing.contact)
         for i in range(GUARDS):
             values[GUARDS * k + i], changes[GUARDS * k + i] = 1.0, 0.0
         for side in range(2):
             i = GUARDS * k + CORNER_GUARDS * side
             if part.base.is_held(standing.contact, side == 0):
-                values[i] = self.corner_force(k, side == 0) / weight
+                values[i] = self.corner_force(k, side == 0) / force_size
             elif flies:
                 size = part.body.size()
                 values[i] = (line.left if side == 0 else line.right) / size

@@ -49,12 +49,13 @@ class AtRest(NamedTuple):
     vertical: float
 
 
-def chain_of(links: Sequence[ChainBody]) -> Chain:
-    """Give the equations of bodies upon one another, from the top down."""
+def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
+    """Give the equations of bodies upon one another, from the top down, without their ties."""
     kind = RigidChain if some_rigid(links) else Chain
-    return kind(*lists_of([
-        row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links
-    ]))  # fmt: skip
+    rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
+    for row in rows:  # what rounds the length of a stiff tie changes its force, which corners bear
+        row[at.FORCE_SIZE] += sum(one.numbers.stiffness * reach_of(one) for one in ties)
+    return kind(*lists_of(rows))
 
 
 def some_rigid(links: Sequence[ChainBody]) -> bool:
@@ -97,7 +98,7 @@ def chain(
     ContactModel
     """
     top, count = links[0].body, len(links)
-    bare = chain_of(links)
+    bare = chain_of(links, ties)
     system = linked(bare, ties) if ties else with_friction(bare, frictions) if frictions else bare
     fastest, damping_rate = fastest_vibration(links, ties)
     rigid = some_rigid(links)
@@ -190,10 +191,14 @@ def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
     )
 
 
+def reach_of(tie: ChainLink) -> float:
+    """Give the lengths by which the rounding of a link's elongation is known."""
+    return math.hypot(*tie.apart) + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
+
+
 def _tie_tolerance(tie: ChainLink) -> Vector:
     """Give the rounding noise of a link's guards."""
-    reach = math.hypot(*tie.apart) + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
-    return np.full(GUARDS_OF_LINK, ROUNDING * reach)
+    return np.full(GUARDS_OF_LINK, ROUNDING * reach_of(tie))
 
 
 def _tie_columns(i: int, *, shown: bool) -> tuple[Column, ...]:

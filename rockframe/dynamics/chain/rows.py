@@ -32,7 +32,8 @@ PER_MASS: Final = 11
 PER_INERTIA: Final = 12
 PLACE_VALUE: Final = 13  # of its mode in that of the chain
 LAW: Final = 14  # which law its base has
-BASE: Final = 15  # numbers of that law
+FORCE_SIZE: Final = 15  # of what its corners bear, by which rounding is known
+BASE: Final = 16  # numbers of that law
 BASE_NUMBERS: Final = 12
 ROW: Final = BASE + BASE_NUMBERS
 
@@ -455,7 +456,7 @@ def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float
     row = np.zeros(ROW)
     # a corner that bears on a rigid base does not slide on it, whatever the rule
     row[: len(body)] = body._replace(restraint=BY_CONTACT) if law == ON_RIGID else body
-    row[[MASS, TOP, BESIDE, LAW]] = mass, top, beside, law
+    row[[MASS, TOP, BESIDE, LAW, FORCE_SIZE]] = mass, top, beside, law, mass * body.gravity
     row[[PER_MASS, PER_INERTIA]] = 1.0 / mass, 1.0 / body.inertia
     numbers = numbers_in(base.law)
     row[BASE : BASE + len(numbers)] = numbers
