@@ -1,12 +1,12 @@
 """Bodies as they stand on a base: block and cap as one, how they land, and how they are held."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
+from rockframe.many import atan2, tan
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
 from rockframe.system.options import Options, restraint_code
@@ -65,7 +65,7 @@ class SupportedBody(BodyGeometry):
     def overturning_angles(self) -> "OverturningAngles":
         """Rotations at which the centre of mass stands above an end of the base."""
         return OverturningAngles(
-            math.atan2(self.left, self.centre_height), math.atan2(self.right, self.centre_height)
+            atan2(self.left, self.centre_height), atan2(self.right, self.centre_height)
         )
 
     @property
@@ -118,7 +118,7 @@ class OverturningAngles(NamedTuple):
 
     def on_slope(self, slope: Slope, *, small: bool) -> "OverturningAngles":
         """Give those relative to a base line that rises, :eq:`eq-incline-overturning`."""
-        i = math.tan(slope.inclination) if small else slope.inclination
+        i = tan(slope.inclination) if small else slope.inclination
         return OverturningAngles(self.left - i, self.right + i)
 
 

@@ -1,11 +1,11 @@
 """A bed of soil under a body: its numbers, its equations and its words."""
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.components import WinklerSoil
 from rockframe.components.soil import Separation
+from rockframe.many import sqrt
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
@@ -120,6 +120,6 @@ def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
     given, body = soil.si, load.body
     damping = given.damping
     if damping is None:
-        critical = math.sqrt(2.0 * body.half_width * given.stiffness * body.mass)
+        critical = sqrt(2.0 * body.half_width * given.stiffness * body.mass)
         damping = given.damping_ratio * critical / body.half_width
     return BedSupport(load, given.stiffness, damping, given.separation)

@@ -18,7 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 import rockframe as rf
-from rockframe.studies.sweeps import side_by_side, study
+from rockframe.studies.sweeps import side_by_side, study, together
 
 CASES, ROUNDS, MANY = 600, 5, 10_000
 BLOCK = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
@@ -105,11 +105,11 @@ def share(motion, axes) -> float:
         finally:
             inside[0] += time.thread_time() - begun
 
-    side_by_side.integrate_lanes = timed
+    side_by_side.integrate_lanes = together.integrate_lanes = timed
     try:
         whole = _once(lambda: _swept(motion, axes, threads=1))
     finally:
-        side_by_side.integrate_lanes = loops
+        side_by_side.integrate_lanes = together.integrate_lanes = loops
     return 1.0 - inside[0] / whole
 
 

@@ -24,7 +24,7 @@ from rockframe.units import ACCELERATION, PERIOD, POSITIVE, TIME, VELOCITY, to_r
 
 if TYPE_CHECKING:
     from rockframe.motion.value import Made
-    from rockframe.signals import Signal
+    from rockframe.signals import Motion, Signal
     from rockframe.units import QuantityLike, RatioLike
 
 _OPPOSITE: Final = {UPWARDS: DOWNWARDS, DOWNWARDS: UPWARDS}
@@ -113,18 +113,26 @@ def scaled(
     return _times(motion, ratio, f"scaled by {ratio!r} to {target.words}", target.arguments)
 
 
-def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
+def multiplied(motion: Motion, ratio: float) -> Motion:
+    """Multiply the accelerations of both components."""
+
     def times(signal: Signal) -> Signal:
         with np.errstate(over="ignore"):
             pieces = None if signal.polynomials is None else signal.polynomials * ratio
             return replace(signal, samples=signal.samples * ratio, polynomials=pieces)
 
+    return motion.each(times)
+
+
+def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
     about: dict[str, str] = {}
     sense = motion.metadata.get(SENSE)
     if ratio < 0.0 and sense in _OPPOSITE:  # mirrored: what was positive upwards is so downwards
         about[SENSE] = _OPPOSITE[str(sense)]
     operation = {"scaled": given}
-    return following(motion, motion.si.each(times), step, operation=operation, metadata=about)
+    return following(
+        motion, multiplied(motion.si, ratio), step, operation=operation, metadata=about
+    )
 
 
 class _Target(NamedTuple):

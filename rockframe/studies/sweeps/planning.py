@@ -44,8 +44,8 @@ from rockframe.studies.sweeps.motions import (
     motion_number,
     named_motions,
 )
+from rockframe.studies.sweeps.runs import FIRST, SCREEN
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, own_motion, scene_of
-from rockframe.studies.sweeps.side_by_side import FIRST, SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
