@@ -318,8 +318,10 @@ def _read(
         found.append(axis)
         if axis.values.size == 0:
             faults.append(f"axis {name!r} has no values")
+        if repeats:
+            continue
         kept, counts = np.unique(axis.values, return_counts=True)
-        if not repeats and (counts > 1).any():
+        if (counts > 1).any():
             faults.append(f"axis {name!r} has the value {kept[counts > 1][0]!s} twice")
     return found
 
