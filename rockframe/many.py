@@ -104,8 +104,7 @@ class Many:
     __eq__ = _comparison(np.equal)
     __ne__ = _comparison(np.not_equal)
 
-    def __hash__(self) -> int:
-        return id(self)  # what is kept for equal numbers is not looked for
+    __hash__ = None  # type: ignore[assignment] # nothing is kept for numbers of many cases
 
     def __pow__(self, power: float) -> "Many":
         # powers of numpy have other bits than Python's

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
-from rockframe.many import atan2, tan
+from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
 from rockframe.system.options import Options, restraint_code
@@ -240,7 +240,14 @@ class BaseLoad:
         )
 
 
-@lru_cache(maxsize=_KEPT)
 def load_of(block: BlockSI, options: Options) -> BaseLoad:
     """Give a block as a load; the same one for all scenes that differ in their bases alone."""
+    numbers = (*vars(block).values(), options.gravity, options.inclination)
+    if any(isinstance(number, Many) for number in numbers):
+        return BaseLoad(body_of_block(block), options)
+    return _kept_load(block, options)
+
+
+@lru_cache(maxsize=_KEPT)
+def _kept_load(block: BlockSI, options: Options) -> BaseLoad:
     return BaseLoad(body_of_block(block), options)

@@ -95,7 +95,9 @@ class CasesOfJob:
     def unscaled(self, case: int) -> GroundMotion | None:
         """Give the motion of a case before it is scaled; the scene's unless there are others."""
         motion = self.job.motions[self.job.motion_of_case[case]]
-        return self.scene(case)[0].parts.motion if motion is None else motion
+        if motion is None and not self.go_together:  # a function puts it into its systems
+            motion = self.scene(case)[0].parts.motion
+        return motion
 
     def length_key(self, case: int) -> tuple[float, float, bool] | None:
         """Give the time step and the length of the motion of a case, and whether it is vertical."""
