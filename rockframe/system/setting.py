@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
+from rockframe.many import largest
 from rockframe.signals.motion import Slope
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
@@ -31,7 +32,7 @@ class SlipRange(NamedTuple):
     @property
     def peak(self) -> float:
         """The greatest to either side."""
-        return max(self.left, self.right)
+        return largest(self.left, self.right)
 
 
 @dataclass(frozen=True)

@@ -140,8 +140,9 @@ def _told(
 ) -> Iterator[Finished | FinishedTogether]:
     """Tell what became of runs: of those together that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes
-    stands = status == Status.COMPLETED  # of which the mode tells whether they may overturn later
-    way = np.column_stack([group_of, status, np.where(stands, modes, 0)])
+    # the mode tells whether those that stand may overturn later, and which slips are over
+    asked = (status == Status.COMPLETED) | groups[0].one.system.setting.slides
+    way = np.column_stack([group_of, status, np.where(asked, modes, 0)])
     ways, way_of = np.unique(way, axis=0, return_inverse=True)
     alone = np.ones(len(ran), dtype=np.bool_)
     for k, (number, *_) in enumerate(ways.tolist()):

@@ -45,6 +45,11 @@ STUDIES = {
         rf.System(BLOCK, rf.RigidGround(restitution=0.8)),
         {"restitution": (0.6, 0.85, None)},
     ),
+    "sliding": (
+        rf.System(BLOCK, rf.RigidGround(friction=0.4)),
+        {"friction": (0.1, 0.9, None), "Block.width": (1.0, 2.0, "m")},
+    ),
+    "wall": (rf.System(BLOCK, rf.RearWall(side="left")), {"Block.mass": (20, 80, "t")}),
     "eccentric": (rf.System(BLOCK), {"eccentricity": (-0.2, 0.2, "m")}),
     "bed": (
         rf.System(BLOCK, SOIL),
