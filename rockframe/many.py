@@ -173,7 +173,7 @@ def each_way(
             yield some, found
 
 
-def values_of(number: Any, count: int) -> Floats:
+def in_each(number: Any, count: int) -> Floats:
     """Give a number in each of some cases; one that is the same in all, too."""
     if isinstance(number, Many):
         return number.values
@@ -193,14 +193,6 @@ def largest(first: Any, second: Any) -> Any:
     return max(first, second)
 
 
-def least(first: Any, second: Any) -> Any:
-    """Give the lesser of two numbers, as ``min`` does."""
-    if isinstance(first, Many) or isinstance(second, Many):
-        one, other = _value(first), _value(second)
-        return Many(np.where(np.less(other, one), other, one))
-    return min(first, second)
-
-
 def _of_one(function: Callable[[float], float]) -> Callable[[Any], Any]:
     """Let a function of Python take many numbers."""
 
@@ -218,7 +210,7 @@ def _of_two(function: Callable[[float, float], float]) -> Callable[[Any, Any], A
     def work(first: Any, second: Any) -> Any:
         if isinstance(first, Many) or isinstance(second, Many):
             count = len(first.values if isinstance(first, Many) else second.values)
-            both = values_of(first, count).tolist(), values_of(second, count).tolist()
+            both = in_each(first, count).tolist(), in_each(second, count).tolist()
             return Many(np.array(list(map(function, *both))))
         return function(first, second)
 

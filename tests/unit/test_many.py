@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockframe import many
-from rockframe.many import Differ, Many, OnlyAlone, each_way, values_of
+from rockframe.many import Differ, Many, OnlyAlone, each_way, in_each
 
 RNG = np.random.default_rng(7)
 X, Y = RNG.uniform(0.1, 0.9, 400), RNG.uniform(-3.0, 3.0, 400)
@@ -86,7 +86,7 @@ def test_divisions_by_zero_are_left_to_each_case():
 
 
 def test_numbers_that_all_cases_share_are_spread():
-    assert values_of(2, 3).tolist() == [2.0, 2.0, 2.0]
-    assert values_of(Many(X), 400) is X
+    assert in_each(2, 3).tolist() == [2.0, 2.0, 2.0]
+    assert in_each(Many(X), 400) is X
     assert many.plain(np.float64(2.0)) == 2.0
     assert type(many.plain(np.float64(2.0))) is float

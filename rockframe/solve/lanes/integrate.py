@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockframe.compiled import LANES, Matrix, bound_in_lanes, compiled_within
-from rockframe.compiled.bound import flat, structure_of
+from rockframe.compiled.bound import elements_of, structure_of
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import Many
 from rockframe.signals import Motion
@@ -154,7 +154,7 @@ def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
 
 def rows_of(model: ContactModel, begun: Begun, count: int = 1) -> Matrix:
     """Give the row of a run, or those of many, whose numbers are :class:`Many`."""
-    there, numbers = places_of(model.system), list(flat(model.system))
+    there, numbers = places_of(model.system), list(elements_of(model.system))
     memory = there.numbers + len(numbers)
     tolerance = memory + len(begun.memory)
     rows = np.zeros((count, tolerance + len(begun.tolerance)))

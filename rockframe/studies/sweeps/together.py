@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rockframe.many import Many, OnlyAlone, Places, each_way, values_of
+from rockframe.many import Many, OnlyAlone, Places, each_way, in_each
 from rockframe.results.outcome import Generic
 from rockframe.signals import Motion
 from rockframe.simulation.certify.second_look import Look, look_at
@@ -38,7 +38,7 @@ class FinishedTogether:
         """Give what tells of the verdict of each."""
         count = len(self.cases)
         told = (
-            [each] * count if isinstance(each, bool) else values_of(each, count).tolist()
+            [each] * count if isinstance(each, bool) else in_each(each, count).tolist()
             for each in vars(self.look).values()
         )
         rows = zip(*told, strict=True)
