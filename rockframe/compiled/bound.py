@@ -18,15 +18,16 @@ def numbers_in(bundle: Any) -> Vector:
 
     An array, with which a tuple may end, is copied: each run works in its own.
     """
-    return np.array(list(_flat(bundle)), dtype=np.float64)
+    return np.array([float(value) for value in elements_of(bundle)], dtype=np.float64)
 
 
-def _flat(bundle: Any) -> Iterator[float]:
+def elements_of(bundle: Any) -> Iterator[Any]:
+    """Give the elements of a tuple and of the tuples in it, one after the other."""
     for value in bundle:
         if isinstance(value, tuple | np.ndarray):
-            yield from _flat(value)
+            yield from elements_of(value)
         else:
-            yield float(value)
+            yield value
 
 
 def structure_of(bundle: Any) -> tuple[Any, ...]:

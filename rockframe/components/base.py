@@ -12,6 +12,7 @@ from rockframe.components.alternatives import OneOf
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
 from rockframe.components.registry import register_class
 from rockframe.errors import ComponentError, ModelWarning, shown, unexpected_argument, warn
+from rockframe.many import Many, isfinite
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
 
 _SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
@@ -303,7 +304,8 @@ class Component:
         owner = self._owner(changed)
         for name, value in values.items():
             one = self._declared[name]
-            if one.condition is None or not one.condition.holds(value):
+            holds = _is_finite if one.condition is None else one.condition.holds
+            if not holds(value):
                 # which also says what is wrong
                 written = value if isinstance(value, str) else one.write(value)
                 changed[name] = one.read(written, owner)
@@ -403,6 +405,11 @@ def _constructor(kind: type[Component]) -> Any:
     __init__.__qualname__ = f"{kind.__qualname__}.__init__"
     __init__.__module__ = kind.__module__
     return __init__
+
+
+def _is_finite(value: object) -> bool:
+    """Whether a value is a number that is finite; words and counts have to be read."""
+    return isinstance(value, float | Many) and isfinite(value)
 
 
 def _number_in(value: float | str) -> float:

@@ -1,6 +1,5 @@
 """The rigid block."""
 
-import math
 from collections.abc import Collection
 from typing import Any, ClassVar, Final, Self, cast
 
@@ -15,6 +14,7 @@ from rockframe.components.block_numbers import (
 from rockframe.components.parameters import DERIVED, Parameter, Ratio, SIProperty, SIValues
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
+from rockframe.many import hypot
 from rockframe.notebook import Polygon
 from rockframe.units import (
     ANGLE,
@@ -215,13 +215,13 @@ class Block(Component):
         height = 0.5 * given.height if given.centre_height is None else given.centre_height
         beside = 0.0 if given.eccentricity is None else given.eccentricity
         check_centre(given.width, given.height, height, beside, owner)
-        diagonal = math.hypot(given.width, 2.0 * height)
+        diagonal = hypot(given.width, 2.0 * height)
         mu: float = given.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
         if given.inertia is not None:
             mu = given.mass * diagonal * (diagonal / (4.0 * given.inertia))
         elif given.shape_factor is None and height != 0.5 * given.height:
             # the inertia of the rectangle, for want of another
-            whole = math.hypot(given.width, given.height)
+            whole = hypot(given.width, given.height)
             mu *= (diagonal / whole) ** 2
         si = BlockSI(given.width, given.height, given.mass, mu, height, beside)
         check_representable(si, type(self).__name__)
@@ -314,7 +314,7 @@ class Block(Component):
         ratio = to_ratio(
             slenderness, owner=owner, name="slenderness", condition=POSITIVE, example="4"
         )
-        width = 2.0 * metres / math.hypot(1.0, ratio)
+        width = 2.0 * metres / hypot(1.0, ratio)
         return cls(
             width=f"{width!r} {LENGTH.unit}",
             height=f"{width * ratio!r} {LENGTH.unit}",

@@ -6,6 +6,7 @@ from typing import Final, Protocol
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
+from rockframe.many import atan2, cos, hypot, sqrt
 
 _ROUNDING: Final = 1e-9
 _PERCENT: Final = 0.01
@@ -56,12 +57,12 @@ class BodyGeometry:
     @property
     def radius(self: Shape) -> float:
         """R0, from an end of the base to the centre of mass, were that above the middle [m]."""
-        return math.hypot(self.half_width, self.centre_height)
+        return hypot(self.half_width, self.centre_height)
 
     def frequency_at(self: Shape, gravity: float) -> float:
         """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
         mu = self.shape_factor
-        return math.sqrt(mu / (1.0 + mu) * gravity / self.radius)
+        return sqrt(mu / (1.0 + mu) * gravity / self.radius)
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,7 @@ class BlockSI(BodyGeometry):
     @property
     def overturning_angle(self) -> float:
         """Overturning angle theta = arctan(b/h) [rad], Eq. (1); the lesser of both sides."""
-        return math.atan2(min(self.left, self.right), self.centre_height)
+        return atan2(min(self.left, self.right), self.centre_height)
 
     @property
     def inertia(self) -> float:
@@ -119,7 +120,7 @@ def greatest_restitutions(body: Shape) -> tuple[float, float]:
     mu, e = body.shape_factor, body.eccentricity
     b, h = body.half_width, body.centre_height
     square = b * b + h * h
-    kept = 1.0 + mu * (math.cos(2.0 * math.atan2(b, h)) + e * e / square)
+    kept = 1.0 + mu * (cos(2.0 * atan2(b, h)) + e * e / square)
     onto_left = 1.0 + mu * (1.0 + e * (e + 2.0 * b) / square)
     onto_right = 1.0 + mu * (1.0 + e * (e - 2.0 * b) / square)
     return kept / onto_left, kept / onto_right

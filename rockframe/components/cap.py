@@ -1,12 +1,12 @@
 """The rigid cap between a building and the soil."""
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import Parameter, SIValues
+from rockframe.many import hypot
 from rockframe.notebook import Polygon
 from rockframe.units import (
     DENSITY,
@@ -34,7 +34,7 @@ class CushionCapSI:
 
     def inertia_at(self, width: float) -> float:
         """Give the inertia of a solid cap about its centre [kg m^2]."""
-        diagonal = math.hypot(width, self.height)
+        diagonal = hypot(width, self.height)
         return self.mass_at(width) * diagonal * diagonal / 12.0
 
 

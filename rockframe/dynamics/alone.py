@@ -1,6 +1,5 @@
 """One body on a base: its system, and its model."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Final, NamedTuple
@@ -26,6 +25,7 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.dynamics.statics import link_of, settled
 from rockframe.dynamics.switching import lift_by_slip, switch_part
+from rockframe.many import atan2, hypot, sqrt
 
 HORIZONTAL: Final = 2
 """Place in the state, see :mod:`rockframe.dynamics.bodies`."""
@@ -238,7 +238,7 @@ def rigid_body(
         right=right,
         inertia=inertia,
         gravity=gravity,
-        angle=math.atan2(0.5 * (left + right), height),
+        angle=atan2(0.5 * (left + right), height),
         restraint=CENTRE if small_rotation else restraint,
         small=small_rotation,
     )
@@ -267,13 +267,13 @@ def alone(
     ContactModel
     """
     part = OnBase(body, base.law)
-    vertical = math.sqrt(base.vertical_stiffness)
-    rocking = math.sqrt(base.rotational_stiffness / (body.inertia + body.height**2))
+    vertical = sqrt(base.vertical_stiffness)
+    rocking = sqrt(base.rotational_stiffness / (body.inertia + body.height**2))
     fastest = max(vertical, rocking)
     return ContactModel(
         name=name,
         system=Alone(part),
-        rotation_limits=(math.atan2(body.left, body.height), math.atan2(body.right, body.height)),
+        rotation_limits=(atan2(body.left, body.height), atan2(body.right, body.height)),
         rotation_weights=np.array([1.0, 0.0, 0.0]),
         scales=np.concatenate([*_sizes(body, base, vertical), base.variable_scales]),
         guard_tolerance=part_tolerance(base),
@@ -292,7 +292,7 @@ def alone(
 
 def radius_of(body: Body) -> float:
     """Give the distance from the ends of the base to the centre of mass, their mean [m]."""
-    return math.hypot(0.5 * (body.left + body.right), body.height)
+    return hypot(0.5 * (body.left + body.right), body.height)
 
 
 def eccentricity_of(body: Body) -> float:
@@ -303,7 +303,7 @@ def eccentricity_of(body: Body) -> float:
 def rocking_rate(body: Body) -> float:
     """Give the rate of rocking about a corner [s^-1]."""
     radius = radius_of(body)
-    return math.sqrt(body.gravity * radius / (radius**2 + body.inertia))
+    return sqrt(body.gravity * radius / (radius**2 + body.inertia))
 
 
 def part_tolerance(base: BaseNumbers) -> Vector:
@@ -361,17 +361,16 @@ def at_rotation(start: Start, rest_rotation: float) -> Start:
 def _starting(part: OnBase, rest_rotation: float) -> Callable[[Start], tuple[int, Vector, Vector]]:
     def initial(given: Start) -> tuple[int, Vector, Vector]:
         start = at_rotation(given, rest_rotation)
-        state = np.zeros(2 * DEGREES + part.base.variables())
-        memory = np.zeros(len(MEMORY))
-        body, mode = starting_state(part, start, part.base.read(state, 2 * DEGREES))
-        state[[ROTATION, VERTICAL, DEGREES + ROTATION, DEGREES + VERTICAL]] = (
-            body.rotation, body.vertical, body.angular_velocity, body.vertical_velocity,
-        )  # fmt: skip
+        own = np.zeros(part.base.variables())
+        body, mode = starting_state(part, start, part.base.read(own, 0))
         # the held point starts where it is when the body rests, so that x = 0 there
         pin = part.body.pin(mode.pivot)
-        memory[HELD_PLACE] = pin
+        x = 0.0
         if part.is_free(mode):
-            state[HORIZONTAL] = pin + part.body.about_pin(pin, body.rotation)
-        return part.number_of(mode), state, memory
+            x = pin + part.body.about_pin(pin, body.rotation)
+        places = (body.rotation, body.vertical, x)
+        rates = (body.angular_velocity, body.vertical_velocity, 0.0)
+        memory = np.array([pin if k == HELD_PLACE else 0.0 for k in range(len(MEMORY))])
+        return part.number_of(mode), np.array([*places, *rates, *own]), memory
 
     return initial

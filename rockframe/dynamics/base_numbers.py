@@ -15,6 +15,7 @@ from rockframe.dynamics.pads import LEAVE, REENGAGE, ROUNDING, ElasticPads, Pads
 from rockframe.dynamics.point_law import Point, Viscoelastic
 from rockframe.dynamics.protocol import Column
 from rockframe.dynamics.springs import GUARDS, Springs
+from rockframe.many import hypot, sqrt
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ def pads_numbers(
     BaseNumbers
     """
     rest = 0.5 * load * body.gravity / stiffness
-    size = math.hypot(0.5 * (body.left + body.right), body.height)
+    size = hypot(0.5 * (body.left + body.right), body.height)
     noise = ROUNDING * (1.0 + size / rest)
     law = ElasticPads(
         Viscoelastic(stiffness, damping),
@@ -83,14 +84,12 @@ def pads_numbers(
         rest,
         rest,
         0.5 * stiffness * rest * rest,
-        math.sqrt(2.0 * stiffness),
+        sqrt(2.0 * stiffness),
         2.0 * body.gravity * noise / damping if damping > 0.0 else 0.0,
         *restitution,
         gravity=body.gravity,
         noise=noise,
     )
-    tolerance = np.full(law.end_guards(), ROUNDING)
-    tolerance[[LEAVE, REENGAGE]] = noise
     return BaseNumbers(
         law,
         (Column("left_reaction", per_mass=True), Column("right_reaction", per_mass=True)),
@@ -98,7 +97,9 @@ def pads_numbers(
         vertical_stiffness=2.0 * stiffness,
         rotational_stiffness=stiffness * (body.left**2 + body.right**2),
         damping_time=damping / stiffness,
-        end_tolerance=tolerance,
+        end_tolerance=np.array(
+            [noise if k in (LEAVE, REENGAGE) else ROUNDING for k in range(law.end_guards())]
+        ),
     )
 
 
@@ -186,7 +187,7 @@ def springs_under(
     stiffness = law.force_rate(0, point(settlement, 1.0), np.zeros(of_law))
     damping = force(settlement, 1.0) - force(settlement)
     levers = body.left - width * np.asarray(places)
-    noise = ROUNDING * (1.0 + math.hypot(0.5 * width, body.height) / settlement)
+    noise = ROUNDING * (1.0 + hypot(0.5 * width, body.height) / settlement)
     return BaseNumbers(
         Springs(
             law,
@@ -239,7 +240,7 @@ def bed_numbers(
     """
     width = body.left + body.right
     settlement = load * body.gravity / (width * stiffness)
-    size = math.hypot(0.5 * width, body.height)
+    size = hypot(0.5 * width, body.height)
     return BaseNumbers(
         Bed(stiffness, damping, settlement, width, by_pressure),
         _BED_COLUMNS,

@@ -4,7 +4,6 @@ The forces of the bases are differentiated in the contacts that they are in, as 
 motion take them, and so is what the weights do.
 """
 
-import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from rockframe.compiled import Matrix, Vector
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.statics import Stand, StandingBody, StandingChain
 from rockframe.dynamics.trigonometry import sine_cosine
+from rockframe.many import sqrt
 
 STEP: Final = 1e-3
 """By which coordinates are moved, over the settlement and over the rotation that it allows;
@@ -87,7 +87,7 @@ def _of_weight(
 
 def _step(link: StandingBody, name: str) -> float:
     size = link.allowed_rotation if name in (PLACES[0], RATES[0]) else link.settlement
-    rate = math.sqrt(link.part.body.gravity / link.settlement) if name in RATES else 1.0
+    rate = sqrt(link.part.body.gravity / link.settlement) if name in RATES else 1.0
     return STEP * size * rate
 
 

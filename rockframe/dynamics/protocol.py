@@ -18,6 +18,7 @@ import numpy as np
 
 from rockframe.compiled import Integers, Vector
 from rockframe.errors import AssemblyError
+from rockframe.many import plain
 
 Numbers: TypeAlias = tuple[float, ...] | Vector
 """As many as a system has; in an array where that is known only when it runs."""
@@ -341,7 +342,7 @@ class ContactModel:
 
     def rotation_in(self, state: Vector) -> float:
         """Give the block's rotation in a state."""
-        return float(self.rotation_weights @ state[: len(self.rotation_weights)])
+        return plain(self.rotation_weights @ state[: len(self.rotation_weights)])
 
 
 def _of_each(function: Callable[[int], int], modes: Integers) -> Integers:

@@ -26,6 +26,7 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.dynamics.trigonometry import sine_cosine
+from rockframe.many import atan2, hypot, sqrt, tan
 
 # modes; rocking on the right corner has alpha > 0
 RESTING: Final = 0
@@ -310,9 +311,9 @@ def corner_of(
     -------
     RockingCorner
     """
-    angle = math.atan2(distance, height)
-    tangent = angle if small_rotation else math.tan(angle)
-    return RockingCorner(angle, math.hypot(distance, height), inertia, tangent, restitution)
+    angle = atan2(distance, height)
+    tangent = angle if small_rotation else tan(angle)
+    return RockingCorner(angle, hypot(distance, height), inertia, tangent, restitution)
 
 
 def rigid_ground(
@@ -335,7 +336,7 @@ def rigid_ground(
     -------
     ContactModel
     """
-    frequency = max(math.sqrt(gravity * one.radius / one.inertia) for one in (left, right))
+    frequency = max(sqrt(gravity * one.radius / one.inertia) for one in (left, right))
     least = left if left.angle < right.angle else right
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:

@@ -1,7 +1,5 @@
 """The model of a block that slides and rocks on rigid ground, and the numbers that it needs."""
 
-import math
-
 import numpy as np
 
 from rockframe.compiled import Vector
@@ -16,6 +14,7 @@ from rockframe.dynamics.slide_rock import (
     SLIPS,
     SlideRock,
 )
+from rockframe.many import atan2, hypot, sqrt
 
 
 def ill_posed_friction(inertia: float, square: float) -> float:
@@ -25,7 +24,7 @@ def ill_posed_friction(inertia: float, square: float) -> float:
     that from the corner [m^2].
     """
     ratio = inertia / square
-    return 2.0 * math.sqrt(ratio * (1.0 + ratio))
+    return 2.0 * sqrt(ratio * (1.0 + ratio))
 
 
 def impulse_lever(*, restitution: float, own: float, width: float, about_foot: float) -> float:
@@ -42,8 +41,8 @@ def slide_rock(system: SlideRock, *, mass: float) -> ContactModel:
     """Assemble the model of a block that slides and rocks, of some mass [kg]."""
     gravity = system.gravity
     least = min(system.left, system.right)
-    angle, radius = math.atan2(least, system.height), math.hypot(least, system.height)
-    frequency = math.sqrt(gravity * radius / (system.inertia + radius * radius))
+    angle, radius = atan2(least, system.height), hypot(least, system.height)
+    frequency = sqrt(gravity * radius / (system.inertia + radius * radius))
     size = np.array([least, angle, least])
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:

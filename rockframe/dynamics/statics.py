@@ -18,6 +18,7 @@ from rockframe.dynamics.body import Attitude, BaseLine, BodyState, Reach
 from rockframe.dynamics.following import Path, Sizes, followed
 from rockframe.dynamics.on_base import Mode, OnBase
 from rockframe.dynamics.trigonometry import sine_cosine, versine
+from rockframe.many import asin
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.link_rows import ChainLink
@@ -318,13 +319,13 @@ def settled(link: StandingBody, rotation: float, press: float) -> Stand:
         contact = base.starting(line, own)
         force = base.force(contact, line, own)
         excess = force.upward - press
-        low, high = (height, high) if excess > 0.0 else (low, height)
         if (before[1] - excess) * (height - before[0]) > 0.0:
             hardness = (before[1] - excess) / (height - before[0])
         step, before = excess / hardness, (height, excess)
         tries += 1
         if abs(step) <= noise or tries == TRIES:
             break
+        low, high = (height, high) if excess > 0.0 else (low, height)
         height += step
         if not low < height < high:
             height = 0.5 * (low + high)
@@ -353,7 +354,7 @@ def uplift_rotation(link: StandingBody, press: float) -> float:
         return math.nan
     # where the end has risen by the settlement, and on from there by secants
     guess = link.allowed_rotation
-    guess = guess if body.small else math.asin(min(guess, 1.0))
+    guess = guess if body.small else asin(min(guess, 1.0))
     last, left, slope = math.nan, math.nan, 1.0 / guess
     for _ in range(HALVINGS):
         now = spare(guess)

@@ -17,6 +17,7 @@ from rockframe.dynamics.protocol import (
     ContactModel,
     column_of,
 )
+from rockframe.many import largest
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import OF_EACH_BODY, OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
@@ -55,6 +56,11 @@ def peak_of(run: Summary, angles: OverturningAngles) -> Peak:
         Peak(run.peak_left / angles.left, run.peak_left, Direction.LEFT),
         key=lambda peak: peak.share,
     )
+
+
+def peak_share(run: Summary, angles: OverturningAngles) -> float:
+    """Give the share of the overturning angle in :func:`peak_of`."""
+    return largest(run.peak_right / angles.right, run.peak_left / angles.left)
 
 
 def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
@@ -212,7 +218,7 @@ def scalars(
         "overturning_time": run.overturning_time,
         "overturning_direction": run.overturning_direction,
         "peak_rotation": _unsigned(run.peak_rotation),
-        "peak_relative_rotation": _unsigned(peak_of(run, angles).share),
+        "peak_relative_rotation": _unsigned(peak_share(run, angles)),
         "first_uplift_time": run.first_uplift_time,
         "impact_count": run.impact_count,
         "flight_time": run.flight_time,

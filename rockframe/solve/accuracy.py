@@ -11,6 +11,7 @@ from typing import Any, Final, Literal
 
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import SolverError, nearest, shown
+from rockframe.many import ceil, hypot
 
 FEWEST: Final = "fewest"
 """Stands for the least number of sub-steps that `steps_per_period` allows."""
@@ -129,7 +130,7 @@ WHOLE: Final = 1e-9
 def fastest_rate(model: ContactModel) -> float:
     """Give the rate that fixes the step: of the fastest vibration, with its damping [s^-1]."""
     half = 0.5 * model.damping_rate
-    return half + math.hypot(model.fastest_frequency, half)
+    return half + hypot(model.fastest_frequency, half)
 
 
 def substeps_of(accuracy: Accuracy, model: ContactModel, interval: float) -> int:
@@ -158,8 +159,8 @@ def substeps_of(accuracy: Accuracy, model: ContactModel, interval: float) -> int
     rate = fastest_rate(model)
     if accuracy.substeps == FEWEST:
         longest = 2.0 * math.pi / rate / accuracy.steps_per_period
-        return math.ceil(interval / longest * (1.0 - WHOLE))
-    least = math.ceil(interval * rate / STABLE * (1.0 - WHOLE))
+        return ceil(interval / longest * (1.0 - WHOLE))
+    least = ceil(interval * rate / STABLE * (1.0 - WHOLE))
     if accuracy.substeps < least:
         msg = (
             f"Accuracy: substeps={accuracy.substeps} in each interval of {interval:.6g} s "

@@ -1,6 +1,7 @@
 """From a model, a start and a ground motion to a trajectory."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Final
@@ -114,24 +115,33 @@ def begun(
     contact = model.system.contact_state_of(mode, 0)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     substeps = substeps_of(accuracy, model, interval)
-    controls = np.zeros(at.CONTROLS)
-    controls[at.RTOL] = accuracy.rtol or FIXED_STEPS
-    controls[at.FLOOR] = accuracy.floor
-    controls[at.MAX_STEP] = (
-        interval / substeps if substeps else shortest_period / accuracy.steps_per_period
-    )
-    controls[at.DURATION] = duration
-    controls[at.TIME_STEP] = interval
-    controls[at.OUTPUT_STEP] = output_step or 1.0
-    controls[at.CHATTER_TIME] = CHATTER_SHARE * shortest_period
-    clock = np.zeros(at.CLOCK)
-    clock[at.NEXT_STEP] = controls[at.MAX_STEP] if substeps else FIRST_STEP * shortest_period
+    # numbers may be those of many cases: put together first, then made a row
+    controls = {
+        at.RTOL: accuracy.rtol or FIXED_STEPS,
+        at.FLOOR: accuracy.floor,
+        at.MAX_STEP: (
+            interval / substeps if substeps else shortest_period / accuracy.steps_per_period
+        ),
+        at.DURATION: duration,
+        at.TIME_STEP: interval,
+        at.OUTPUT_STEP: output_step or 1.0,
+        at.CHATTER_TIME: CHATTER_SHARE * shortest_period,
+    }
     rotation = model.rotation_in(state)
-    clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = max(-rotation, 0.0), max(rotation, 0.0)
-    clock[at.FIRST_UPLIFT] = -1.0 if contact == FULL else 0.0
-    clock[at.OVERTURNING_TIME] = clock[at.EVENT_TIME] = -1.0
-    clock[at.START_ENERGY] = clock[at.GROUND_X] = clock[at.GROUND_Y] = math.nan
-    clock[at.LARGEST_TERM] = clock[at.LARGEST_MOVED] = ENERGY_NOISE * model.energy_scale
+    noise = ENERGY_NOISE * model.energy_scale
+    clock = {
+        at.NEXT_STEP: controls[at.MAX_STEP] if substeps else FIRST_STEP * shortest_period,
+        at.PEAK_LEFT: max(-rotation, 0.0),
+        at.PEAK_RIGHT: max(rotation, 0.0),
+        at.FIRST_UPLIFT: -1.0 if contact == FULL else 0.0,
+        at.OVERTURNING_TIME: -1.0,
+        at.EVENT_TIME: -1.0,
+        at.START_ENERGY: math.nan,
+        at.GROUND_X: math.nan,
+        at.GROUND_Y: math.nan,
+        at.LARGEST_TERM: noise,
+        at.LARGEST_MOVED: noise,
+    }
     counters = np.zeros(at.COUNTERS, dtype=np.int64)
     counters[at.MODE] = mode
     counters[at.PENDING] = -1
@@ -141,12 +151,18 @@ def begun(
     counters[at.STOP_AT_OVERTURNING] = int(stop_at_overturning)
     counters[at.FLIGHTS] = int(contact == FLIGHT)
     return Begun(
-        mode, state, memory, memory.copy(), controls, clock, counters,
+        mode, state, memory, memory.copy(), _filled(at.CONTROLS, controls),
+        _filled(at.CLOCK, clock), counters,
         reference=_sizes(model, accuracy, state, rotation),
         limits=np.array([*model.rotation_limits, *model.rotation_weights, *model.other_limits]),
         tolerance=np.append(model.guard_tolerance, ROUNDING),
         substeps=substeps,
     )  # fmt: skip
+
+
+def _filled(size: int, numbers: Mapping[int, float]) -> Vector:
+    """Give a row of numbers by their places, of zeros elsewhere."""
+    return np.array([numbers.get(place, 0.0) for place in range(size)])
 
 
 def _state_of(model: ContactModel, start: Start | Ending) -> tuple[int, Vector, Vector]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from rockframe.compiled import Integers, Matrix, Vector
 from rockframe.dynamics.protocol import ContactModel, Ending
+from rockframe.many import isnan, largest
 from rockframe.solve import layout as at
 from rockframe.solve.crossings import cubic, quintic
 from rockframe.solve.layout import Status
@@ -142,12 +143,12 @@ class Summary:
     @property
     def peak_rotation(self) -> float:
         """Largest rotation to either side [rad]."""
-        return max(self.peak_left, self.peak_right)
+        return largest(self.peak_left, self.peak_right)
 
     @property
     def passed(self) -> bool:
         """Whether the rotation reached the overturning angle."""
-        return not math.isnan(self.overturning_time)
+        return not isnan(self.overturning_time)
 
     @property
     def overturned(self) -> bool | None:

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rockframe.errors import AssemblyError
+from rockframe.many import isnan
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
@@ -93,7 +94,7 @@ class AloneSetting(Setting):
     def upright(self) -> dict[str, float]:
         """Give settlement, reactions and moment at uplift, as of a body that stands upright."""
         uplift = self.uplift_angle
-        moment = math.nan if math.isnan(uplift) else self.statics(uplift).base_moment
+        moment = math.nan if isnan(uplift) else self.statics(uplift).base_moment
         return {"uplift_moment": moment, **self.support.at_rest()}
 
     def equilibrium(self) -> dict[str, float]:

@@ -1,6 +1,5 @@
 """Bodies as they stand on a base: block and cap as one, how they land, and how they are held."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Final, NamedTuple
@@ -8,6 +7,7 @@ from typing import Final, NamedTuple
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
 from rockframe.dynamics.body import Body
+from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
 from rockframe.system.options import Options, restraint_code
@@ -62,7 +62,7 @@ class SupportedBody(BodyGeometry):
     def overturning_angles(self) -> "OverturningAngles":
         """Rotations at which the centre of mass stands above an end of the base."""
         return OverturningAngles(
-            math.atan2(self.left, self.centre_height), math.atan2(self.right, self.centre_height)
+            atan2(self.left, self.centre_height), atan2(self.right, self.centre_height)
         )
 
     @property
@@ -115,7 +115,7 @@ class OverturningAngles(NamedTuple):
 
     def on_slope(self, slope: Slope, *, small: bool) -> "OverturningAngles":
         """Give those relative to a base line that rises, :eq:`eq-incline-overturning`."""
-        i = math.tan(slope.inclination) if small else slope.inclination
+        i = tan(slope.inclination) if small else slope.inclination
         return OverturningAngles(self.left - i, self.right + i)
 
 
@@ -237,7 +237,14 @@ class BaseLoad:
         )
 
 
-@lru_cache(maxsize=_KEPT)
 def load_of(block: BlockSI, options: Options) -> BaseLoad:
     """Give a block as a load; the same one for all scenes that differ in their bases alone."""
+    numbers = (*vars(block).values(), options.gravity, options.inclination)
+    if any(isinstance(number, Many) for number in numbers):
+        return BaseLoad(body_of_block(block), options)
+    return _kept_load(block, options)
+
+
+@lru_cache(maxsize=_KEPT)
+def _kept_load(block: BlockSI, options: Options) -> BaseLoad:
     return BaseLoad(body_of_block(block), options)

@@ -5,6 +5,7 @@ from typing import Final
 
 from rockframe.components import Component, RearWall, RigidGround, Stack, Tendon
 from rockframe.components.block_numbers import squat
+from rockframe.many import isfinite
 from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts, slot_of
@@ -198,7 +199,7 @@ def missizes(parts: Parts, options: Options) -> list[str]:
     if block is not None and cap is not None:
         body = parts.the_cap
         width = 2.0 * body.half_width
-        if not math.isfinite(body.inertia + block.si.mass * body.half_height * body.half_height):
+        if not isfinite(body.inertia + block.si.mass * body.half_height * body.half_height):
             faults.append(
                 f"a CushionCap of {width:.12g} m by {cap.si.height:.12g} m under the building has "
                 "a moment of inertia that a computer's numbers cannot hold"

@@ -1,11 +1,11 @@
 """Two pads under a block: their numbers, their equations and their words."""
 
-import math
 from dataclasses import dataclass
 
 from rockframe.components import TwoSpringSupport
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.body import Body
+from rockframe.many import sqrt
 from rockframe.system.bodies import (
     BaseLoad,
     Restitutions,
@@ -109,7 +109,7 @@ def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
     given, body = pads.si, load.body
     if given.stiffness is not None:
         stiffness = given.stiffness
-        vertical = math.sqrt(2.0 * stiffness / body.mass)
+        vertical = sqrt(2.0 * stiffness / body.mass)
     else:
         vertical = given.frequency_ratio * body.frequency_at(load.gravity)
         stiffness = 0.5 * body.mass * vertical**2

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.errors import AssemblyError
+from rockframe.many import atan, cos, hypot, sin, sqrt, tan
 from rockframe.system.bodies import Restitutions, restitution_cautions
 from rockframe.system.rigid_base import NO_VERTICAL_START
 from rockframe.system.setting import Setting
@@ -53,10 +54,9 @@ class RigidGroundSetting(Setting):
             left, right = self.tangents
             return self.gravity * left, self.gravity * right
         i = self.slope.inclination
-        slants = (math.atan(self.tangents[0]) - i, math.atan(self.tangents[1]) + i)
+        slants = (atan(self.tangents[0]) - i, atan(self.tangents[1]) + i)
         left, right = (
-            self.gravity * math.tan(slant) if slant < 0.5 * math.pi else math.inf
-            for slant in slants
+            self.gravity * tan(slant) if slant < 0.5 * math.pi else math.inf for slant in slants
         )
         return left, right
 
@@ -66,7 +66,7 @@ class RigidGroundSetting(Setting):
         left, right = self.body.overturning_angles
         if self.options.small:
             return left, right
-        return math.tan(left), math.tan(right)
+        return tan(left), tan(right)
 
     def cautions(self) -> list[str]:
         """Give warnings about the restitution."""
@@ -115,15 +115,15 @@ class RigidGroundSetting(Setting):
         side = math.copysign(1.0, rotation)
         theta, lean = body.overturning_angles.on_side_of(rotation), abs(rotation)
         beside = side * body.eccentricity
-        radius = math.hypot(body.half_width - beside, body.centre_height)
+        radius = hypot(body.half_width - beside, body.centre_height)
         if self.options.small:
             rise, restoring = radius * lean * (theta - 0.5 * lean), theta - lean
             weight_arm, thrust_arm = radius * lean + beside, radius
         else:
-            rise = 2.0 * radius * math.sin(theta - 0.5 * lean) * math.sin(0.5 * lean)
-            restoring = math.sin(theta - lean)
-            weight_arm = body.centre_height * math.sin(lean) + beside * math.cos(lean)
-            thrust_arm = radius * math.cos(theta - lean)
+            rise = 2.0 * radius * sin(theta - 0.5 * lean) * sin(0.5 * lean)
+            restoring = sin(theta - lean)
+            weight_arm = body.centre_height * sin(lean) + beside * cos(lean)
+            thrust_arm = radius * cos(theta - lean)
         moment = side * weight * radius * restoring
         reactions = (0.0, weight) if side > 0.0 else (weight, 0.0)
         return Statics(
@@ -201,9 +201,9 @@ class RigidGroundSetting(Setting):
         """Write the frequency of rocking about each corner; one number where they are equal."""
         body = self.body
         left, right = (
-            math.sqrt(
+            sqrt(
                 self.gravity
-                * math.hypot(distance, body.centre_height)
+                * hypot(distance, body.centre_height)
                 / body.gyration_square_about(distance)
             )
             for distance in (body.left, body.right)
@@ -223,5 +223,5 @@ def refuse_fall(setting: RigidGroundSetting) -> None:
         raise AssemblyError([
             f"the block falls to the {side} by its own weight: the ground is inclined by "
             f"{angle_words(abs(slope.inclination))}, and the block stands up to "
-            f"{angle_words(math.atan(downhill))}"
+            f"{angle_words(atan(downhill))}"
         ])  # fmt: skip

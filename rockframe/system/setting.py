@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import ClassVar, NamedTuple
 
 from rockframe.dynamics.protocol import ContactModel, Ending
+from rockframe.many import largest
 from rockframe.signals.motion import Slope
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
@@ -29,7 +30,7 @@ class SlipRange(NamedTuple):
     @property
     def peak(self) -> float:
         """The greatest to either side."""
-        return max(self.left, self.right)
+        return largest(self.left, self.right)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
+from rockframe.many import largest, plain
 from rockframe.system.bodies import load_of, resolve_restitution
 from rockframe.system.fitting import SMALL_SLIDING, friction_under
 from rockframe.system.options import Options
@@ -77,10 +78,10 @@ class SlidingSetting(RigidGroundSetting):
         """Tell how far the block slipped."""
         from rockframe.dynamics.slide_rock import FLIES_RIGHT, PEAK_LEFT, PEAK_RIGHT, SLIP, SLIPS
 
-        residual = float(ending.state[SLIP])
-        left, right = float(ending.memory[PEAK_LEFT]), float(ending.memory[PEAK_RIGHT])
+        residual = plain(ending.state[SLIP])
+        left, right = plain(ending.memory[PEAK_LEFT]), plain(ending.memory[PEAK_RIGHT])
         if ending.mode // SLIPS < FLIES_RIGHT:
-            left, right = max(left, -residual), max(right, residual)
+            left, right = largest(left, -residual), largest(right, residual)
         return (SlipRange(residual, left, right),)
 
     def cautions(self) -> list[str]:

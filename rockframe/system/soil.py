@@ -1,6 +1,5 @@
 """A bed of soil under a body: its numbers, its equations and its words."""
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -8,6 +7,7 @@ from rockframe.components import WinklerSoil
 from rockframe.components.soil import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.body import Body
+from rockframe.many import sqrt
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
@@ -118,6 +118,6 @@ def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
     given, body = soil.si, load.body
     damping = given.damping
     if damping is None:
-        critical = math.sqrt(2.0 * body.half_width * given.stiffness * body.mass)
+        critical = sqrt(2.0 * body.half_width * given.stiffness * body.mass)
         damping = given.damping_ratio * critical / body.half_width
     return BedSupport(load, given.stiffness, damping, given.separation)

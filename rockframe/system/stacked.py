@@ -1,6 +1,5 @@
 """The scenes of a block on pads on a cap on soil, by cascade and coupled."""
 
-import math
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ import numpy as np
 
 from rockframe.dynamics.statics import Stand, StandingChain, link_of
 from rockframe.errors import AssemblyError
+from rockframe.many import atan2, isnan
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
 from rockframe.system.options import restraint_words
@@ -150,7 +150,7 @@ class StackedSetting(Setting):
             left=cap.half_width,
             right=cap.half_width,
             inertia=cap_inertia / mass,
-            angle=math.atan2(cap.half_width, cap.half_height),
+            angle=atan2(cap.half_width, cap.half_height),
         )
         pads, soil = upper.law(block, mass, mass), lower.law(plate, mass, mass + cap_mass)
         return (
@@ -267,7 +267,7 @@ class CascadeSetting(StackedSetting):
 def _uplift_row(setting: AloneSetting, on: str, base: BaseWords, whose: str) -> tuple[str, str]:
     name, words = base.uplift
     title = name.replace("uplift angle", f"uplift angle {on}", 1)
-    if math.isnan(setting.uplift_angle):
+    if isnan(setting.uplift_angle):
         return title, words
     moment = setting.upright()["uplift_moment"]
     return title, f"{words} of {whose}, at a moment of {moment:.6g} N m"

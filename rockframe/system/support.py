@@ -4,7 +4,6 @@ The numbers of a base follow from its component and from the body on it; its wor
 and its law is what the equations take.
 """
 
-import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +11,7 @@ from typing import ClassVar
 
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.body import Body
+from rockframe.many import sqrt
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.statics import StandingBodies, Statics, required_states
 from rockframe.system.words import vibration_words
@@ -149,7 +149,7 @@ class Support(ABC):
     @cached_property
     def vertical_frequency(self) -> float:
         """omega_v, of vertical vibration in full contact, Eqs. (7a) and (18a) [rad s^-1]."""
-        return math.sqrt(self._slopes("vertical")[1])
+        return sqrt(self._slopes("vertical")[1])
 
     def _slopes(self, name: str) -> tuple[float, float]:
         """Give how moment and force on the upright body fall with a coordinate or a rate."""
@@ -163,7 +163,7 @@ class Support(ABC):
         ratio = 0.5 * self._slopes("vertical_velocity")[1] / rate
         rows = [(vertical, vibration_words("omega_v", rate, ratio))]
         if self.rocking_stiffness > 0.0:
-            rate = math.sqrt(self.rocking_stiffness / body.base_inertia)
+            rate = sqrt(self.rocking_stiffness / body.base_inertia)
             damping = body.mass * self._slopes("angular_velocity")[0]
             ratio = 0.5 * damping / (body.base_inertia * rate)
             rows.append((rocking, vibration_words("omega_r", rate, ratio)))

@@ -7,9 +7,9 @@ does no harm.
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from fractions import Fraction
+from decimal import Context, Decimal
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -157,6 +157,7 @@ RatioLike: TypeAlias = float | str | Quantity
 
 _GRAVITY: Final = ("g", "G", "g0")
 """What engineers write for the acceleration of gravity, which pint calls ``g_0``."""
+_EXACT: Final = Context(prec=64)
 _LONGEST_FACTOR: Final = 12
 """Letters of a unit's size that is a number of few digits, such as 0.45359237 kg or 1e-06 m."""
 
@@ -202,6 +203,9 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
         if len(items) == 2 and isinstance(items[1], str) and not isinstance(items[0], str):
             factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
             numbers = items[0] if isinstance(items[0], Iterable) else [items[0]]
+            several = _floats_times(numbers, factor)
+            if several is not None:
+                return several
             return [_times(number, factor, items[1], owner=owner, name=name) for number in numbers]
         return [to_si(item, measure, owner=owner, name=name) for item in items]
     return [to_si(value, measure, owner=owner, name=name)]
@@ -221,6 +225,15 @@ def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> f
         )
         raise UnitsError(msg)
     return _check_value(_product(_float(number), factor), number, None, owner=owner, name=name)
+
+
+def _floats_times(numbers: Any, factor: float) -> list[float] | None:
+    """Do so for many floats; None where there are other values, which may be wrong."""
+    found: list[Any] = numbers.tolist() if hasattr(numbers, "tolist") else list(numbers)
+    if not all(type(number) is float for number in found):
+        return None
+    products = _products(found, factor)
+    return products if all(map(math.isfinite, products)) else None
 
 
 def _float(number: Real) -> float:
@@ -249,10 +262,25 @@ def _product(number: float, factor: float) -> float:
     written = repr(factor)
     if not math.isfinite(number) or len(written) > _LONGEST_FACTOR:
         return number * factor
-    try:
-        return float(Fraction(repr(number)) * Fraction(written))
-    except OverflowError:
-        return math.copysign(math.inf, number)
+    return float(_EXACT.multiply(Decimal(repr(number)), Decimal(written))) + 0.0
+
+
+def _products(numbers: Sequence[float], factor: float) -> list[float]:
+    """Give the products of many numbers; of a power of ten it moves the point of each."""
+    if factor == 1.0:
+        return [number + 0.0 for number in numbers]
+    written = repr(factor)
+    _, digits, power = Decimal(written).as_tuple()
+    ten = "".join(map(str, digits)).rstrip("0") == "1"
+    if not ten or len(written) > _LONGEST_FACTOR or not isinstance(power, int):
+        return [_product(number, factor) for number in numbers]
+    tail = f"e{power + len(digits) - 1}"
+    return [
+        float(text + tail) + 0.0
+        if text[-1].isdigit() and "e" not in text
+        else _product(float(text), factor)
+        for text in map(repr, numbers)
+    ]
 
 
 def _each(given: Any) -> Iterable[Any]:

@@ -5,8 +5,10 @@ Usage: python tests/benchmarks/sweeps.py [record]
 Prints milliseconds of processor time per case on one processor, the least of several rounds, and
 the ratios; then cases per second of a sweep on all processors; then, of 10 000 cases, which share
 of the processor time is spent outside the compiled loops (planning, building scenes, labels), and
-how much faster two threads are than one. The record is a file; without one the motion has the
-length of El Centro and is drawn from a model.
+how much faster two threads are than one. Then the same of random tables, in which every case has a
+scene and a scale of its own: with scenes assembled together, and one by one; which share of the
+cases runs outside lanes; and how long a table of a million cases takes to plan. The record is a
+file; without one the motion has the length of El Centro and is drawn from a model.
 """
 
 import math
@@ -14,16 +16,28 @@ import os
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 
 import numpy as np
 
 import rockframe as rf
-from rockframe.studies.sweeps import side_by_side, study
+from rockframe.studies.sweeps import runs, side_by_side, study, together
+from rockframe.studies.sweeps.chunk import DRIVER, Driver, run_chunk
+from rockframe.studies.sweeps.planning import plan_study
 
 CASES, ROUNDS, MANY = 600, 5, 10_000
 BLOCK = rf.Block.from_size(radius="5 m", slenderness=4, mass="50 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
 SYSTEM = rf.System(BLOCK, PADS)
+SOIL = rf.WinklerSoil(stiffness="9 MPa", damping="220 kPa*s")
+TABLES = {
+    "pads": ((PADS,), {"frequency_ratio": (15.0, 30.0), "damping_ratio": (0.05, 0.2)}),
+    "rigid ground": ((), {}),
+    "soil": ((SOIL,), {"stiffness [MPa]": (5.0, 20.0), "damping [kPa*s]": (50.0, 300.0)}),
+}
+"""Scenes of random tables, and what varies in them beside width, height and scale."""
+DRAWN = 2_000
+PLANNED = 1_000_000
 
 
 def main() -> None:
@@ -55,6 +69,12 @@ def main() -> None:
     for name, axes in grids.items():
         print(f"fast, {name}: {share(motion, axes):.0%} of the processor time outside the lanes")
         print(f"fast, {name}: {gain(motion, axes):.2f} times as fast with two threads as with one")
+    for name in TABLES:
+        for accuracy in ("fast", "standard", "screen"):
+            print(f"{accuracy}, random table on {name}: {monte_carlo(motion, name, accuracy)}")
+    begun = time.process_time()
+    plan_study(SYSTEM, motion, {}, table("pads", PLANNED), accuracy="fast")
+    print(f"a table of {PLANNED} cases is planned in {time.process_time() - begun:.2f} s")
     print(f"load of the machine meanwhile: {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
 
 
@@ -70,7 +90,7 @@ def costs(motion, axes, accuracy) -> dict[str, float]:
             system = rf.System(BLOCK, PADS.replace(damping_ratio=float(ratio)))
             for factor in axes.get("scale", [1.0]):
                 moved = motion if factor == 1.0 else motion.scaled(float(factor))
-                system.simulate(moved, **options)
+                system.simulate(moved, **options, second_look=False)
 
     def swept(fewest):
         study.FEWEST_IN_LANES = fewest
@@ -93,8 +113,41 @@ def rate(motion, axes, accuracy) -> float:
     return MANY / (time.perf_counter() - begun)
 
 
-def share(motion, axes) -> float:
-    """Give the share of a sweep's processor time that is not spent in compiled loops."""
+def table(name, count) -> dict[str, np.ndarray]:
+    """Draw a table of cases."""
+    rng = np.random.default_rng(1)
+    spreads = {"Block.width [m]": (1.5, 3.0), "Block.height [m]": (7.0, 12.0), "scale": (0.3, 2.0)}
+    spreads |= TABLES[name][1]
+    return {column: rng.uniform(*bounds, count) for column, bounds in spreads.items()}
+
+
+def monte_carlo(motion, name, accuracy) -> str:
+    """Tell what a case of a random table costs [ms], and how many ran outside lanes."""
+    study.FEWEST_IN_LANES = 1
+    system, cases = rf.System(BLOCK, *TABLES[name][0]), table(name, DRAWN)
+    run_together = runs.run_together
+    ways = {"together": run_together, "one by one": lambda *_: iter(())}
+    least = dict.fromkeys(ways, math.inf)
+    job = plan_study(system, motion, {}, cases, accuracy=accuracy).job(range(DRAWN))
+    inside = math.inf
+    try:
+        for _ in range(ROUNDS):
+            for way, run in ways.items():
+                runs.run_together = run
+                with _loops_timed() as spent:
+                    least[way] = min(least[way], _once(lambda: run_chunk(job)))
+                inside = min(inside, spent[0]) if way == "together" else inside
+        runs.run_together = run_together
+        alone = 1.0 - float(np.mean(run_chunk(job).scalars[DRIVER] == Driver.IN_LANES))
+    finally:
+        runs.run_together = run_together
+    told = ", ".join(f"{way} {1e3 * seconds / DRAWN:.3f} ms" for way, seconds in least.items())
+    return f"{told} a case, {1e3 * inside / DRAWN:.3f} ms in lanes; {alone:.1%} outside lanes"
+
+
+@contextmanager
+def _loops_timed():
+    """Give the processor time that is spent in lanes [s]."""
     inside = [0.0]
     loops = side_by_side.integrate_lanes
 
@@ -105,11 +158,17 @@ def share(motion, axes) -> float:
         finally:
             inside[0] += time.thread_time() - begun
 
-    side_by_side.integrate_lanes = timed
+    side_by_side.integrate_lanes = together.integrate_lanes = timed
     try:
-        whole = _once(lambda: _swept(motion, axes, threads=1))
+        yield inside
     finally:
-        side_by_side.integrate_lanes = loops
+        side_by_side.integrate_lanes = together.integrate_lanes = loops
+
+
+def share(motion, axes) -> float:
+    """Give the share of a sweep's processor time that is not spent in compiled loops."""
+    with _loops_timed() as inside:
+        whole = _once(lambda: _swept(motion, axes, threads=1))
     return 1.0 - inside[0] / whole
 
 

@@ -5,6 +5,7 @@ import math
 import multiprocessing
 import subprocess
 import sys
+from fractions import Fraction
 
 import numpy as np
 import pint
@@ -12,6 +13,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.errors import ComponentError, RockframeError
+from rockframe.units import LENGTH, to_si, to_si_values
 
 pytestmark = pytest.mark.unit
 
@@ -602,3 +604,20 @@ assert rf.System.from_dataset(response).parts.block == after
         [sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=120
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("unit", ["m", "mm", "km", "dm", "Mm", "nautical_mile"])
+def test_columns_of_floats_are_converted_as_each_of_them(unit):
+    rng = np.random.default_rng(2)
+    numbers = [
+        *rng.uniform(-10.0, 10.0, 300).tolist(),
+        *(rng.integers(0, 999, 100) / 100).tolist(),
+        *(10.0 ** rng.uniform(-20, 20, 100)).tolist(),
+        0.0, -0.0, 1e22, 5e-324, -7.0,
+    ]  # fmt: skip
+    found = to_si_values((np.array(numbers), unit), LENGTH, owner="here", name="width")
+    size = Fraction(repr(to_si(f"1 {unit}", LENGTH, owner="here", name="width")))
+    assert found == [float(Fraction(repr(number)) * size) for number in numbers]
+    assert found == [
+        to_si((number, unit), LENGTH, owner="here", name="width") for number in numbers
+    ]

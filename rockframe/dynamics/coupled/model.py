@@ -1,6 +1,5 @@
 """Assembly of the model of a block on a base on a cap on a base."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Final, NamedTuple
@@ -32,6 +31,7 @@ from rockframe.dynamics.stacked import (
     UPPER,
 )
 from rockframe.dynamics.vibrations import ChainBody, fastest_vibration
+from rockframe.many import atan2, sqrt
 
 
 class StackRest(NamedTuple):
@@ -77,8 +77,8 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
         name="coupled",
         system=system,
         rotation_limits=(
-            math.atan2(body.left, body.height),
-            math.atan2(body.right, body.height),
+            atan2(body.left, body.height),
+            atan2(body.right, body.height),
         ),
         rotation_weights=np.array([1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
         scales=_scales(block, cap),
@@ -98,8 +98,8 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
 def _scales(block: ChainBody, cap: ChainBody) -> Vector:
     body, pads, soil = block.body, block.base, cap.base
     sway, rocking = radius_of(body) * body.angle, rocking_rate(body)
-    on_pads = math.sqrt(pads.vertical_stiffness)
-    on_soil = math.sqrt(soil.vertical_stiffness / (1.0 + cap.mass))
+    on_pads = sqrt(pads.vertical_stiffness)
+    on_soil = sqrt(soil.vertical_stiffness / (1.0 + cap.mass))
     sizes = np.array([body.angle, pads.settlement, body.angle, soil.settlement, sway, sway])
     rates = np.array([rocking, on_pads, rocking, on_soil, rocking, rocking])
     return np.concatenate([sizes, sizes * rates, pads.variable_scales, soil.variable_scales])

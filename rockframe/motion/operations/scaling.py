@@ -34,7 +34,7 @@ from rockframe.units import (
 )
 
 if TYPE_CHECKING:
-    from rockframe.signals import Signal
+    from rockframe.signals import Motion, Signal
 
 _OPPOSITE: Final = {UPWARDS: DOWNWARDS, DOWNWARDS: UPWARDS}
 _USUAL_DAMPING: Final = 0.05
@@ -122,18 +122,26 @@ def scaled(
     return _times(motion, ratio, f"scaled by {ratio!r} to {target.words}", target.arguments)
 
 
-def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
+def multiplied(motion: Motion, ratio: float) -> Motion:
+    """Multiply the accelerations of both components."""
+
     def times(signal: Signal) -> Signal:
         with np.errstate(over="ignore"):
             pieces = None if signal.polynomials is None else signal.polynomials * ratio
             return replace(signal, samples=signal.samples * ratio, polynomials=pieces)
 
+    return motion.each(times)
+
+
+def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
     added: dict[str, str] = {}
     sense = motion.metadata.get(SENSE)
     if ratio < 0.0 and sense in _OPPOSITE:  # mirrored: what was positive upwards is so downwards
         added[SENSE] = _OPPOSITE[str(sense)]
     operation = {"scaled": given}
-    return following(motion, motion.si.each(times), step, operation=operation, metadata=added)
+    return following(
+        motion, multiplied(motion.si, ratio), step, operation=operation, metadata=added
+    )
 
 
 class _Target(NamedTuple):

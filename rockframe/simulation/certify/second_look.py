@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 
-from rockframe.results.outcome import peak_of
+from rockframe.results.outcome import peak_share
 from rockframe.results.variables.runs import Direction
 from rockframe.simulation.certify.certificate import SAFETY
 from rockframe.simulation.plan import Plan
@@ -47,7 +47,7 @@ def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
     time = summary.verdict_time
     return Look(
         summary.overturned,
-        peak_of(summary, setting.overturning_angles).share,
+        peak_share(summary, setting.overturning_angles),
         summary.impact_count,
         time,
         duration - time,

@@ -7,9 +7,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.compiled import LANES, Matrix, bound_in_lanes, compiled_within, numbers_in
-from rockframe.compiled.bound import structure_of
+from rockframe.compiled import LANES, Matrix, bound_in_lanes, compiled_within
+from rockframe.compiled.bound import elements_of, structure_of
 from rockframe.dynamics.protocol import ContactModel, Ending
+from rockframe.many import Many
 from rockframe.signals import Motion
 from rockframe.solve import layout as at
 from rockframe.solve.equations import BoundEquations, equations_of
@@ -18,6 +19,8 @@ from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, BatchSizes, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of
 from rockframe.solve.lanes.steps import steps_in_lanes
+from rockframe.solve.layout import Status
+from rockframe.solve.trajectory import Summary, run_counts
 from rockframe.solve.workspace import (
     EventTable,
     Output,
@@ -34,10 +37,12 @@ Whole = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class LaneRun:
-    """A run that is to be made under some motions."""
+    """A run that is to be made under some motions, or many runs whose numbers differ."""
 
-    model: ContactModel  # the equations
+    model: ContactModel  # the equations, of many those of one
     begun: Begun  # where it starts, without outputs; all runs with steps of fixed length, or none
+    # of many runs, that of each, of which the numbers above are those of one; else it follows
+    rows: Matrix | None = None
 
 
 @dataclass(frozen=True)
@@ -47,7 +52,39 @@ class Outcomes:
     clock: Matrix  # ndarray, shape (runs, n)
     counters: Whole  # laid out in :mod:`rockframe.solve.layout`
     status: Whole  # how they ended, :class:`rockframe.solve.layout.Status`
-    endings: list[Ending]  # where they ended
+    modes: Whole  # of the model, where they ended
+    states: Matrix
+    memories: Matrix
+
+    def summary(self, k: int, substeps: int) -> Summary:
+        """Give what became of a run."""
+        ending = Ending(int(self.modes[k]), self.states[k].copy(), self.memories[k].copy())
+        return Summary(
+            status=Status(int(self.status[k])),
+            substeps=substeps,
+            ending=ending,
+            **run_counts(self.clock[k], self.counters[k]),
+        )
+
+    def summary_of_many(self, some: Whole, substeps: int) -> Summary:
+        """Give what became of runs that ended in the same way, in numbers of many."""
+
+        def each(rows: Any) -> Any:
+            return np.array([Many(row[some].astype(np.float64)) for row in rows.T], dtype=object)
+
+        mode = int(self.modes[some[0]])
+        return Summary(
+            status=Status(int(self.status[some[0]])),
+            substeps=substeps,
+            ending=Ending(mode, each(self.states), each(self.memories)),
+            **run_counts(each(self.clock), each(self.counters)),
+        )
+
+
+def joined(several: Sequence[Outcomes]) -> Outcomes:
+    """Put what became of runs one below the other."""
+    columns = [vars(one).values() for one in several]
+    return Outcomes(*(np.concatenate(each) for each in zip(*columns, strict=True)))
 
 
 def kind_of(model: ContactModel) -> Any:
@@ -80,12 +117,13 @@ def integrate_lanes(
     run_of: Whole,
     motion_of: Whole,
 ) -> Outcomes:
-    """Make many runs, whose systems are of one kind."""
+    """Make many runs, whose systems are of one kind; `run_of` counts each of many."""
     made = _Rows(runs)
     clock = np.empty((len(run_of), at.CLOCK))
     counters = np.empty((len(run_of), at.COUNTERS), dtype=np.int64)
     status = np.empty(len(run_of), dtype=np.int64)
-    endings: list[Ending] = []
+    modes = np.empty(len(run_of), dtype=np.int64)
+    states, memories = (np.empty((len(run_of), size)) for size in made.of_endings)
     for some in _batches(motions, motion_of):
         used, place = np.unique(motion_of[some], return_inverse=True)
         batch = made.batch([motions[k] for k in used.tolist()], run_of[some], place)
@@ -95,8 +133,8 @@ def integrate_lanes(
         clock[some] = rows[:, fields.CLOCK : fields.CLOCK + at.CLOCK]
         counters[some] = wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS]
         status[some] = wholes[:, fields.OWN_WHOLE + fields.STATUS]
-        endings += made.endings(rows)
-    return Outcomes(clock, counters, status, endings)
+        modes[some], states[some], memories[some] = made.endings(rows)
+    return Outcomes(clock, counters, status, modes, states, memories)
 
 
 def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
@@ -114,44 +152,56 @@ def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
     return [*found, slice(begin, len(motion_of))]
 
 
+def rows_of(model: ContactModel, begun: Begun, count: int = 1) -> Matrix:
+    """Give the row of a run, or those of many, whose numbers are :class:`Many`."""
+    there, numbers = places_of(model.system), list(elements_of(model.system))
+    memory = there.numbers + len(numbers)
+    tolerance = memory + len(begun.memory)
+    rows = np.zeros((count, tolerance + len(begun.tolerance)))
+    wholes = rows.view(np.int64)
+    for first, row in (
+        (fields.CLOCK, begun.clock),
+        (fields.CONTROLS, begun.controls),
+        (fields.LIMITS, begun.limits),
+        (there.reference, begun.reference),
+        (there.state, begun.state),
+        (there.numbers, numbers),
+        (memory, begun.memory),
+        (tolerance, begun.tolerance),
+    ):
+        for place, number in enumerate(row, start=first):
+            rows[:, place] = number.values if isinstance(number, Many) else number
+    wholes[:, fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = begun.counters
+    wholes[:, fields.OWN_WHOLE + fields.BUSY] = 1
+    return rows
+
+
 class _Rows:
     """Rows of runs, from which those of cases are copied."""
 
     def __init__(self, runs: Sequence[LaneRun]) -> None:
         model, first = runs[0].model, runs[0].begun
-        self._places = there = places_of(model.system)
+        self._places = places_of(model.system)
         fixed = first.substeps > 0
         self._equations = equations_of(model.system, fixed_steps=fixed)
         self.steps = bound_in_lanes(steps_in_lanes(model.system, fixed_steps=fixed), model.system)
         self._count = len(self._equations.numbers)
         self._memory = len(first.memory)
-        width = there.numbers + self._count + self._memory + len(first.tolerance)
-        self._rows = np.zeros((len(runs), width))
-        for k, one in enumerate(runs):
-            self._write(k, one)
+        self._rows = np.concatenate([
+            rows_of(one.model, one.begun) if one.rows is None else one.rows for one in runs
+        ])  # fmt: skip
 
-    def _write(self, k: int, run: LaneRun) -> None:
-        row, begun, there = self._rows[k], run.begun, self._places
-        whole = row.view(np.int64)
-        row[fields.CLOCK : fields.CLOCK + at.CLOCK] = begun.clock
-        whole[fields.COUNTERS : fields.COUNTERS + at.COUNTERS] = begun.counters
-        row[fields.CONTROLS : fields.CONTROLS + at.CONTROLS] = begun.controls
-        row[fields.LIMITS : there.reference] = begun.limits
-        row[there.reference : there.state] = begun.reference
-        row[there.state : there.first] = begun.state
-        behind = there.numbers + self._count
-        row[there.numbers : behind] = numbers_in(run.model.system)
-        row[behind : behind + self._memory] = begun.memory
-        row[behind + self._memory :] = begun.tolerance
-        whole[fields.OWN_WHOLE + fields.BUSY] = 1
+    @property
+    def of_endings(self) -> tuple[int, int]:
+        """The numbers of a state, and of what a system remembers."""
+        return self._places.first - self._places.state, self._memory
 
-    def endings(self, rows: Matrix) -> list[Ending]:
-        """Give where runs ended, from their rows."""
+    def endings(self, rows: Matrix) -> tuple[Whole, Matrix, Matrix]:
+        """Give modes, states and memories where runs ended, from their rows."""
         there, behind = self._places, self._places.numbers + self._count
-        states = rows[:, there.state : there.first].copy()
-        memories = rows[:, behind : behind + self._memory].copy()
-        modes = rows.view(np.int64)[:, fields.COUNTERS + at.MODE].tolist()
-        return [Ending(*one) for one in zip(modes, states, memories, strict=True)]
+        modes = rows.view(np.int64)[:, fields.COUNTERS + at.MODE]
+        memories = rows[:, behind : behind + self._memory]
+        return modes, rows[:, there.state : there.first], memories
 
     def batch(self, motions: Sequence[Motion | None], run_of: Whole, motion_of: Whole) -> Batch:
         """Give the rows of cases, and all that they need to run."""

@@ -66,10 +66,13 @@ def numbers_of(given: object, measure: Measure, name: str) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
     if measure.unit == Unit.ONE:
         example = measure.example
-        found = [
-            to_ratio(one, owner=OWNER, name=name, example=example)
-            for one in _plain(_items(_ratios(given)))
-        ]
+        items = _items(_plain(_ratios(given)))
+        floats = all(type(one) is float and math.isfinite(one) for one in items)
+        found = (
+            items
+            if floats
+            else [to_ratio(one, owner=OWNER, name=name, example=example) for one in items]
+        )
     else:
         _refuse_bare(given, measure, name)
         found = to_si_values(_plain(given), measure, owner=OWNER, name=name)

@@ -21,6 +21,7 @@ from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
 from rockframe.studies.sweeps.motions import motion_number, motion_of_case, named_motions
+from rockframe.studies.sweeps.runs import AGAIN
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,
@@ -28,7 +29,6 @@ from rockframe.studies.sweeps.scenes import (
     scene_of,
     started,
 )
-from rockframe.studies.sweeps.side_by_side import AGAIN
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 from rockframe.system.assembly import Assembly

@@ -1,16 +1,19 @@
 """The cases of a job: scene, motion and plan of each, made when first asked for."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias
 
 from rockframe.components import InitialState
 from rockframe.errors import AssemblyError, collected_warnings
+from rockframe.many import Many, Places
 from rockframe.motion import GroundMotion
+from rockframe.motion.operations.scaling import multiplied
+from rockframe.signals import Motion
 from rockframe.simulation.plan import Plan, fit_plan
 from rockframe.studies.sweeps.axes import OF_SCENES, Changes
-from rockframe.studies.sweeps.motions import motion_of_case
-from rockframe.studies.sweeps.scenes import started
+from rockframe.studies.sweeps.motions import FACTOR, motion_of_case
+from rockframe.studies.sweeps.scenes import SystemScene, started
 from rockframe.studies.sweeps.study import SweepJob
 from rockframe.system.assembly import Assembly
 
@@ -25,9 +28,12 @@ class CasesOfJob:
         self.job = job
         self._change = change
         axes = [(axis, each.tolist()) for axis, each in job.axes]
+        self._numbers = {axis.name: each for axis, each in job.axes if each.dtype.kind == "f"}
         self._scale = [(axis.name, each) for axis, each in axes if axis.changes is Changes.MOTION]
         self._start = [
-            (axis.parameter, each) for axis, each in axes if axis.changes is Changes.START
+            (axis.name, axis.parameter, each)
+            for axis, each in axes
+            if axis.changes is Changes.START
         ]
         self._of_scene = [(axis, each) for axis, each in axes if axis.changes in OF_SCENES]
         self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
@@ -49,7 +55,7 @@ class CasesOfJob:
 
     def start_key(self, case: int) -> tuple[float, ...]:
         """Give what cases of one start have in common, where it is not that of all."""
-        return tuple(each[case] for _, each in self._start)
+        return tuple(each[case] for _, _, each in self._start)
 
     def motion_key(self, case: int) -> tuple[int, float | None]:
         """Give what cases of one motion have in common, where it is not the scene's."""
@@ -66,10 +72,52 @@ class CasesOfJob:
                 found = self._scenes[key] = (self.job.scene.assembled(values), said)
         return found
 
+    @property
+    def go_together(self) -> bool:
+        """Whether scenes of many cases can be assembled at once: of parameters, not by a user."""
+        return isinstance(self.job.scene, SystemScene)
+
+    def word_key(self, case: int) -> tuple[Any, ...]:
+        """Give what differs between cases that is no number, but a word or a count."""
+        return tuple(each[case] for axis, each in self._of_scene if axis.name not in self._numbers)
+
+    def _of(self, name: str, values: list[Any], which: Places) -> Any:
+        """Give the value of an axis in many cases, which agree where it is no number."""
+        numbers = self._numbers.get(name)
+        return values[which[0]] if numbers is None else Many(numbers[which])
+
+    def scene_together(self, which: Places) -> tuple[Assembly, list[str]]:
+        """Give the scene of many cases; what is warned of is the same in all."""
+        values = {axis: self._of(axis.name, each, which) for axis, each in self._of_scene}
+        with collected_warnings() as said:
+            return self.job.scene.assembled(values), said
+
     def unscaled(self, case: int) -> GroundMotion | None:
         """Give the motion of a case before it is scaled; the scene's unless there are others."""
         motion = self.job.motions[self.job.motion_of_case[case]]
-        return self.scene(case)[0].parts.motion if motion is None else motion
+        if motion is None and not self.go_together:  # a function puts it into its systems
+            motion = self.scene(case)[0].parts.motion
+        return motion
+
+    def length_key(self, case: int) -> tuple[float, float, bool] | None:
+        """Give the time step and the length of the motion of a case, and whether it is vertical."""
+        motion = self.unscaled(case)
+        if motion is None:
+            return None
+        return motion.si.time_step, motion.si.duration, motion.si.vertical is not None
+
+    def has_vertical(self, case: int) -> bool:
+        """Tell whether the ground moves vertically, too."""
+        motion = self.unscaled(case)
+        return motion is not None and motion.si.vertical is not None
+
+    def ground(self, case: int) -> Motion | None:
+        """Give the motion of a case as numbers alone, which takes less."""
+        motion = self.unscaled(case)
+        if motion is None or [name for name, _ in self._scale] != [FACTOR]:
+            found = self.motion(case)
+            return None if found is None else found.si
+        return multiplied(motion.si, self._scale[0][1][case])
 
     def motion(self, case: int) -> GroundMotion | None:
         """Give the motion of a case; None where the ground stands still."""
@@ -88,12 +136,23 @@ class CasesOfJob:
     def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
         """Give the scene of a case, what is warned of when it is assembled, and the plan."""
         system, said = self.scene(case)
+        start = {name: each[case] for _, name, each in self._start}
+        return system, said, self._plan(system, start, self.motion(case))
+
+    def planned_together(self, which: Places) -> tuple[Assembly, list[str], Plan]:
+        """Give the same of many cases, with the motion of the first before it is scaled."""
+        system, said = self.scene_together(which)
+        start = {name: self._of(axis, each, which) for axis, name, each in self._start}
+        return system, said, self._plan(system, start, self.unscaled(int(which[0])))
+
+    def _plan(
+        self, system: Assembly, start: Mapping[str, float], motion: GroundMotion | None
+    ) -> Plan:
         faults: list[str] = []
         arguments = self.job.arguments
-        if self._start and isinstance(arguments.initial, InitialState):
-            values = {name: each[case] for name, each in self._start}
-            arguments = replace(arguments, initial=started(arguments.initial, values))
-        plan = fit_plan(arguments, system, self.motion(case), faults)
+        if start and isinstance(arguments.initial, InitialState):
+            arguments = replace(arguments, initial=started(arguments.initial, start))
+        plan = fit_plan(arguments, system, motion, faults)
         if faults:
             raise AssemblyError(faults)
-        return system, said, plan if self._change is None else self._change(system, plan)
+        return plan if self._change is None else self._change(system, plan)

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.errors import RockframeError
+from rockframe.many import Places
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.requests import POINT_TIME
@@ -18,15 +19,10 @@ from rockframe.simulation.certify.second_look import Look
 from rockframe.simulation.run import NONE, in_motion, scalars_of
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.side_by_side import (
-    Failed,
-    Finished,
-    each_run,
-    in_doubt,
-    look_at_case,
-    repeated,
-)
+from rockframe.studies.sweeps.runs import each_run, in_doubt, looks_of, repeated
+from rockframe.studies.sweeps.side_by_side import Failed, Finished
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
+from rockframe.studies.sweeps.together import FinishedTogether
 
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""
@@ -66,8 +62,8 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
     looks: dict[int, Look] = {}
     for run in each_run(cases, range(len(cases)), stopped, job.patience):
         collected.put(run)
-        if job.screened and isinstance(run, Finished):
-            looks[run.case] = look_at_case(cases, run)
+        if job.screened:
+            looks.update(looks_of(cases, run))
     if job.screened and not stopped():
         doubtful = in_doubt(cases, looks, stopped)
         collected.screen(looks, doubtful)
@@ -76,7 +72,7 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
             patience = job.patience * len(doubtful) / len(cases)
         for run in each_run(cases.changed(repeated), doubtful, stopped, patience):
             collected.put(run)
-            collected.compare(looks[run.case], run)
+            collected.compare(looks, looks_of(cases, run))
     return None if stopped() else collected.rows()
 
 
@@ -108,10 +104,13 @@ class _Collector:
         self._message = np.full(count, NO_TEXT, dtype=np.int32)
         self._texts: dict[str, int] = {NONE: NO_TEXT}
 
-    def put(self, run: Finished | Failed) -> None:
-        """Note a run; of one without a verdict only what is said of it."""
+    def put(self, run: Finished | FinishedTogether | Failed) -> None:
+        """Note runs; of one without a verdict only what is said of it."""
         if isinstance(run, Failed):
             self._refuse(run.case, run.problem)
+            return
+        if isinstance(run, FinishedTogether):
+            self._finish_together(run)
             return
         try:
             self._finish(run)
@@ -133,6 +132,15 @@ class _Collector:
         if self._kept is not None and response is not None and response.answers.values:
             self._put_histories(case, response.answers.values, self._kept)
 
+    def _finish_together(self, run: FinishedTogether) -> None:
+        if np.any(self._status[run.cases] != RunStatus.NOT_RUN):  # of a first run
+            self._clear(run.cases)
+        self._say(run.cases, "; ".join(run.said) or NONE)
+        self._status[run.cases] = run.status
+        self._put_scalars(run.cases, {DRIVER: Driver.IN_LANES})
+        kept = {name: each for name, each in run.scalars.items() if name != _STATUS}
+        self._put_scalars(run.cases, kept)
+
     def screen(self, every: Iterable[int], doubtful: Iterable[int]) -> None:
         """Note which cases were screened, and whose verdict was in doubt."""
         for case in every:
@@ -140,19 +148,18 @@ class _Collector:
         for case in doubtful:
             self._put_scalars(case, {REPEATED: 1.0})
 
-    def compare(self, first: Look, again: Finished | Failed) -> None:
-        """Note whether the verdict of a case is another one than at first."""
-        if isinstance(again, Failed):
-            return
-        verdict = again.summary.overturned
-        changed = verdict is not None and verdict is not first.overturned
-        self._put_scalars(again.case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
+    def compare(self, first: Mapping[int, Look], again: Iterable[tuple[int, Look]]) -> None:
+        """Note whether the verdicts of cases are others than at first."""
+        for case, look in again:
+            verdict = look.overturned
+            changed = verdict is not None and verdict is not first[case].overturned
+            self._put_scalars(case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
 
-    def _put_scalars(self, case: int, values: Mapping[str, Generic | float]) -> None:
-        columns = self._scalars
+    def _put_scalars(self, case: int | Places, values: Mapping[str, Generic | float]) -> None:
+        columns, of_case = self._scalars, np.ndim(case)
         for name, value in values.items():
             if name not in columns:
-                self._of(columns, name, np.shape(value))
+                self._of(columns, name, np.shape(value)[of_case:])
             columns[name][case] = value
 
     def _put_histories(self, case: int, values: dict[str, Generic], kept: Histories) -> None:
@@ -174,7 +181,7 @@ class _Collector:
         self._clear(case)
         self._status[case] = RunStatus.REFUSED
 
-    def _clear(self, case: int) -> None:
+    def _clear(self, case: int | Places) -> None:
         for column in (*self._scalars.values(), *self._histories.values()):
             column[case] = np.nan
 
@@ -183,7 +190,7 @@ class _Collector:
         texts = tuple(self._texts)
         return CaseResults(self._status, self._scalars, self._histories, self._message, texts)
 
-    def _say(self, case: int, text: str) -> None:
+    def _say(self, case: int | Places, text: str) -> None:
         self._message[case] = self._texts.setdefault(text, len(self._texts))
 
     def _of(self, columns: dict[str, Generic], name: str, shape: tuple[int, ...]) -> Generic:

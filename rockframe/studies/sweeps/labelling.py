@@ -20,8 +20,8 @@ from rockframe.results.variables.variable import TIME
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import Axis, Grid
 from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, Driver
+from rockframe.studies.sweeps.runs import SCREEN
 from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
-from rockframe.studies.sweeps.side_by_side import SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.studies.sweeps.words import SCREENED, summed_up, whole_verdict
 

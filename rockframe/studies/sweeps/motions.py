@@ -31,8 +31,9 @@ class MotionAxis:
 
 
 SPECTRAL: Final = "pseudo_spectral_acceleration"
+FACTOR: Final = "scale"
 TARGETS: Final = {
-    "scale": MotionAxis("factor", Measure("a pure ratio", Unit.ONE, "2")),
+    FACTOR: MotionAxis("factor", Measure("a pure ratio", Unit.ONE, "2")),
     "peak_ground_acceleration": MotionAxis("peak", ACCELERATION),
     "peak_ground_velocity": MotionAxis("peak_velocity", VELOCITY),
     SPECTRAL: MotionAxis("spectral_acceleration", ACCELERATION),

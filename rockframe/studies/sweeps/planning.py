@@ -44,8 +44,8 @@ from rockframe.studies.sweeps.motions import (
     motion_number,
     named_motions,
 )
+from rockframe.studies.sweeps.runs import FIRST, SCREEN
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, own_motion, scene_of
-from rockframe.studies.sweeps.side_by_side import FIRST, SCREEN
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
@@ -318,8 +318,10 @@ def _read(
         found.append(axis)
         if axis.values.size == 0:
             faults.append(f"axis {name!r} has no values")
+        if repeats:
+            continue
         kept, counts = np.unique(axis.values, return_counts=True)
-        if not repeats and (counts > 1).any():
+        if (counts > 1).any():
             faults.append(f"axis {name!r} has the value {kept[counts > 1][0]!s} twice")
     return found
 

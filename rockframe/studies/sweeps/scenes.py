@@ -311,7 +311,7 @@ def _declared_values(
 
 def _caution(one: Declared[Any, Any], values: Generic, owner: str) -> None:
     """Warn of unusual values, as the part itself would."""
-    if isinstance(one, Choice | Text):
+    if isinstance(one, Choice | Text) or type(one).caution is Declared.caution:
         return
     for value in values.tolist():
         words = one.caution(value)

@@ -1,22 +1,24 @@
-"""Cases whose runs go side by side, those that cannot one by one, and which of them run again."""
+"""Cases whose scenes are assembled one by one, and whose runs go side by side."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 
 from rockframe.compiled import compiling_for
-from rockframe.errors import PLEASE_REPORT, RockframeError
+from rockframe.errors import RockframeError
 from rockframe.signals import Motion
-from rockframe.simulation.certify.second_look import Look, is_sure, look_at, second_look
-from rockframe.simulation.plan import Plan, run_length, start_of
-from rockframe.simulation.run import Response, has_no_cautions, respond
-from rockframe.solve.accuracy import LEVELS, AccuracyLevel
+from rockframe.simulation.plan import Plan, start_of
+from rockframe.simulation.run import Response, has_no_cautions
 from rockframe.solve.integrate import STILL_INTERVAL, begun
-from rockframe.solve.lanes.integrate import LaneRun, integrate_lanes, kind_of, lanes_compiled
-from rockframe.solve.layout import Status
-from rockframe.solve.trajectory import Summary, run_counts
+from rockframe.solve.lanes.integrate import (
+    LaneRun,
+    integrate_lanes,
+    kind_of,
+    lanes_compiled,
+)
+from rockframe.solve.trajectory import Summary
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.system.assembly import Assembly
 
@@ -45,8 +47,8 @@ class Failed:
 
 
 @dataclass(frozen=True)
-class _Scene:
-    """A scene under motions of one length and time step."""
+class LaneScene:
+    """A scene under motions of one length and time step, ready for lanes."""
 
     system: Assembly
     said: list[str]
@@ -58,7 +60,7 @@ class _Scene:
 class _Group:
     """Cases whose systems are of one kind."""
 
-    scenes: list[_Scene] = field(default_factory=list)
+    scenes: list[LaneScene] = field(default_factory=list)
     motions: list[Motion | None] = field(default_factory=list)
     cases: list[int] = field(default_factory=list)
     scene_of: list[int] = field(default_factory=list)
@@ -66,7 +68,9 @@ class _Group:
     _scene_places: dict[int, int] = field(default_factory=dict)
     _motion_places: dict[Any, int] = field(default_factory=dict)
 
-    def add(self, case: int, scene: _Scene, key: Any, motion: Callable[[], Motion | None]) -> None:
+    def add(
+        self, case: int, scene: LaneScene, key: Any, motion: Callable[[], Motion | None]
+    ) -> None:
         """Take a case up."""
         place = self._scene_places.setdefault(id(scene), len(self.scenes))
         if place == len(self.scenes):
@@ -80,20 +84,28 @@ class _Group:
         self.motion_of.append(self._motion_places[key])
 
 
-def run_side_by_side(
-    cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool], patience: float
-) -> Iterator[Finished | Failed]:
-    """Run what can run side by side."""
-    scenes: dict[Any, _Scene | None] = {}
+def when_compiled(patience: float) -> Callable[[LaneScene], bool]:
+    """Tell of scenes whether there is machine code for them, compiled within some time [s]."""
     kinds: dict[Any, bool] = {}
 
-    def ready(scene: _Scene) -> bool:
+    def ready(scene: LaneScene) -> bool:
         if scene.kind not in kinds:
             kinds[scene.kind] = False  # unless it can be compiled
             with compiling_for(f"a sweep in lanes ({scene.system.setting.model})"):
                 kinds[scene.kind] = lanes_compiled(scene.run, patience)
         return kinds[scene.kind]
 
+    return ready
+
+
+def run_side_by_side(
+    cases: CasesOfJob,
+    which: Sequence[int],
+    stopped: Callable[[], bool],
+    ready: Callable[[LaneScene], bool],
+) -> Iterator[Finished | Failed]:
+    """Run what can run side by side."""
+    scenes: dict[Any, LaneScene | None] = {}
     for begin in range(0, len(which), TOGETHER):
         groups: dict[Any, _Group] = {}
         for case in which[begin : begin + TOGETHER]:
@@ -112,18 +124,15 @@ def run_side_by_side(
 def _take_up(
     cases: CasesOfJob,
     case: int,
-    scenes: dict[Any, _Scene | None],
+    scenes: dict[Any, LaneScene | None],
     groups: dict[Any, _Group],
-    ready: Callable[[_Scene], bool],
+    ready: Callable[[LaneScene], bool],
 ) -> None:
-    unscaled = cases.unscaled(case)
-    length = None if unscaled is None else (unscaled.si.time_step, unscaled.si.duration)
-    vertical = unscaled is not None and unscaled.si.vertical is not None
-    key = (cases.scene_key(case), cases.start_key(case), length, vertical)
+    key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
     if key not in scenes:
         scenes[key] = None  # unless it can be prepared
-        prepared = _prepared(cases, case, vertical)
-        scenes[key] = prepared if prepared is not None and ready(prepared) else None
+        found = prepared(*cases.planned(case), cases.has_vertical(case))
+        scenes[key] = found if found is not None and ready(found) else None
     scene = scenes[key]
     if scene is None:
         return
@@ -132,13 +141,12 @@ def _take_up(
         found = cases.motion(case)
         return None if found is None else found.si
 
-    moved = (id(unscaled), cases.motion_key(case)[1])
+    moved = (id(cases.unscaled(case)), cases.motion_key(case)[1])
     groups.setdefault(scene.kind, _Group()).add(case, scene, moved, motion)
 
 
-def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
+def prepared(system: Assembly, said: list[str], plan: Plan, vertical: bool) -> LaneScene | None:
     """Prepare a scene for lanes; None if its runs need a closer look."""
-    system, said, plan = cases.planned(case)
     if plan.output_step is not None:
         return None  # samples are looked at, for friction
     if not system.options.slope.level or (vertical and not system.setting.flies):
@@ -151,7 +159,7 @@ def _prepared(cases: CasesOfJob, case: int, vertical: bool) -> _Scene | None:
         duration=plan.duration, output_step=None, stop_at_overturning=plan.stop_at_overturning,
     )  # fmt: skip
     run = LaneRun(system.model, begin)
-    return _Scene(system, said, run, kind_of(system.model))
+    return LaneScene(system, said, run, kind_of(system.model))
 
 
 def _run(group: _Group) -> Iterator[Finished]:
@@ -161,76 +169,6 @@ def _run(group: _Group) -> Iterator[Finished]:
     )  # fmt: skip
     for k, case in enumerate(group.cases):
         scene = group.scenes[group.scene_of[k]]
-        summary = Summary(
-            status=Status(int(found.status[k])),
-            substeps=scene.run.begun.substeps,
-            ending=found.endings[k],
-            **run_counts(found.clock[k], found.counters[k]),
-        )
+        summary = found.summary(k, scene.run.begun.substeps)
         if has_no_cautions(scene.system, summary):
             yield Finished(case, scene.system, summary, scene.said)
-
-
-def each_run(
-    cases: CasesOfJob,
-    which: Sequence[int],
-    stopped: Callable[[], bool],
-    patience: float | None,
-) -> Iterator[Finished | Failed]:
-    """Run cases."""
-    alone = set(which)
-    faults: dict[int, Exception] = {}
-    if patience is not None:
-        for found in run_side_by_side(cases, which, stopped, patience):
-            if isinstance(found, Failed):
-                faults[found.case] = found.problem
-            else:
-                alone.discard(found.case)
-                yield found
-    for case in sorted(alone):
-        if stopped():
-            return
-        try:
-            system, said, plan = cases.planned(case)
-            response = respond(system, plan)
-            if case in faults:  # that it alone does not have
-                said = [*said, _not_beside_others(faults[case])]
-            yield Finished(case, system, response.trajectory, said, response)
-        except Exception as problem:  # whatever it is, it is this case's alone
-            yield Failed(case, problem)
-
-
-def _not_beside_others(problem: Exception) -> str:
-    """Say of a case that ran alone why it did not run in a lane."""
-    kind = type(problem).__name__
-    return f"its run beside others failed ({kind}: {problem}), and it ran alone: {PLEASE_REPORT}"
-
-
-SCREEN: Final = "screen"
-"""What stands for the accuracy of screened sweeps."""
-FIRST: Final = AccuracyLevel.FAST
-"""Level at which all cases run."""
-AGAIN: Final = AccuracyLevel.STANDARD
-"""Level at which cases run again whose verdict is in doubt."""
-
-
-def look_at_case(cases: CasesOfJob, run: Finished) -> Look:
-    """Take from a run of a case what tells of its verdict."""
-    duration = run_length(cases.job.arguments, cases.unscaled(run.case))
-    return look_at(run.system.setting, run.summary, duration)
-
-
-def in_doubt(
-    cases: CasesOfJob, first: Mapping[int, Look], stopped: Callable[[], bool]
-) -> list[int]:
-    """Run cases a second time, and give those whose verdict is not sure."""
-    doubtful = set(first)
-    for run in each_run(cases.changed(second_look), sorted(first), stopped, cases.job.patience):
-        if isinstance(run, Finished) and is_sure(first[run.case], look_at_case(cases, run)):
-            doubtful.discard(run.case)
-    return sorted(doubtful)
-
-
-def repeated(_: Assembly, plan: Plan) -> Plan:
-    """Give the same run by tolerance."""
-    return replace(plan, accuracy=LEVELS[AGAIN])

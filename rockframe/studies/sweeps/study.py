@@ -20,8 +20,10 @@ from rockframe.version import __version__
 LONG_ENOUGH: Final = 1.0
 """What a chunk should take, so that handing it out costs little [s]."""
 LARGEST_CHUNK: Final = 10_000
-FEWEST_IN_LANES: Final = 500
-"""Cases below which lanes, whose machine code has to be read, save next to nothing."""
+FEWEST_IN_LANES: Final = 16
+"""Cases below which lanes stand empty, and save next to nothing."""
+FEWEST_OF_LANES: Final = 64
+"""Cases of a chunk below which lanes stand empty."""
 COMPILING_SHARE: Final = 1.0
 """Longest time to compile what lanes need, over the time that they save in the sweep."""
 IN_LANES: Final = 0.25
@@ -159,6 +161,8 @@ class Study:
         """Give a number of cases that takes long enough, and leaves work for all workers."""
         size = LONG_ENOUGH / self.time_of_case(as_python=as_python)
         fair = -(-self.grid.count // (4 * workers))
+        if self.patience is not None and not as_python:
+            fair = max(fair, FEWEST_OF_LANES)
         return int(max(1, min(size, fair, LARGEST_CHUNK)))
 
     def _time_of_case(self) -> float:

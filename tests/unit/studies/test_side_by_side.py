@@ -292,7 +292,7 @@ def test_lanes_are_compiled_where_they_save_more_than_that_takes(monkeypatch):
         return planned.patience
 
     monkeypatch.setattr(study, "worker_count", lambda: 2)
-    assert patience(499, accuracy="fast") is None
+    assert patience(15, accuracy="fast") is None
     assert patience(500, accuracy="standard", outputs=["rotation"]) is None
     assert patience(500, accuracy="fast") < 1.0
     assert patience(500, accuracy="standard") < 2.0

@@ -1,0 +1,182 @@
+"""Cases whose scenes are assembled at once, and whose runs go side by side.
+
+What is worked out for each case stands in arrays over the cases; it is worked out by the code of a
+single case, :mod:`rockframe.many`.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rockframe.many import Many, OnlyAlone, Places, each_way, in_each
+from rockframe.results.outcome import Generic
+from rockframe.signals import Motion
+from rockframe.simulation.certify.second_look import Look, look_at
+from rockframe.simulation.plan import run_length
+from rockframe.simulation.run import has_no_cautions, in_motion, scalars_of
+from rockframe.simulation.soundness import STILL_MOVING
+from rockframe.solve.lanes.integrate import LaneRun, Outcomes, integrate_lanes, joined, rows_of
+from rockframe.solve.layout import Status
+from rockframe.solve.trajectory import Summary
+from rockframe.studies.sweeps.cases_of_job import CasesOfJob
+from rockframe.studies.sweeps.side_by_side import TOGETHER, Finished, LaneScene, prepared
+
+
+@dataclass(frozen=True)
+class FinishedTogether:
+    """Cases that have run and ended in the same way."""
+
+    cases: Places  # their numbers in the job
+    status: Status
+    said: list[str]  # what was warned of when their scenes were assembled, and of their runs
+    scalars: dict[str, Generic | float]  # of each, or of all
+    look: Look  # what tells of their verdicts, with arrays in the places of numbers
+
+    def looks(self) -> list[tuple[int, Look]]:
+        """Give what tells of the verdict of each."""
+        count = len(self.cases)
+        told = (
+            [each] * count if isinstance(each, bool) else in_each(each, count).tolist()
+            for each in vars(self.look).values()
+        )
+        rows = zip(*told, strict=True)
+        return [(case, Look(*row)) for case, row in zip(self.cases.tolist(), rows, strict=True)]
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Cases whose scenes have gone the same way."""
+
+    one: LaneScene  # that of the first
+    cases: Places
+    rows: Any
+
+
+def run_together(
+    cases: CasesOfJob,
+    which: Sequence[int],
+    stopped: Callable[[], bool],
+    ready: Callable[[LaneScene], bool],
+) -> Iterator[Finished | FinishedTogether]:
+    """Run what can be assembled together; cases are missing that cannot, or need a closer look."""
+    if not cases.go_together:
+        return
+    kinds: dict[Any, list[_Group]] = {}
+    for members in _alike(cases, which):
+        for _, group in each_way(lambda some: _assembled(cases, some), members):
+            if ready(group.one):
+                kinds.setdefault(group.one.kind, []).append(group)
+    for groups in kinds.values():
+        every = np.concatenate([group.cases for group in groups])
+        group_of = np.repeat(np.arange(len(groups)), [len(group.cases) for group in groups])
+        rows = np.concatenate([group.rows for group in groups])
+        order = np.argsort(every, kind="stable")  # neighbours share their motion
+        ran: list[Places] = []
+        found: list[Outcomes] = []
+        for begin in range(0, len(order), TOGETHER):
+            if stopped():
+                return
+            here = order[begin : begin + TOGETHER]
+            run, outcomes = _integrated(cases, groups[0].one, every[here], rows[here])
+            ran.append(here[run])
+            found.append(outcomes)
+        here = np.concatenate(ran)
+        yield from _told(cases, groups, group_of[here], every[here], joined(found))
+
+
+def _alike(cases: CasesOfJob, which: Sequence[int]) -> list[Places]:
+    """Divide cases by what is no number in their scenes, and by the length of their motions."""
+    found: dict[Any, list[int]] = {}
+    for case in which:
+        found.setdefault((cases.word_key(case), cases.length_key(case)), []).append(case)
+    return [np.array(members, dtype=np.intp) for members in found.values()]
+
+
+def _assembled(cases: CasesOfJob, some: Places) -> _Group:
+    """Assemble the scenes of cases; give the row of each for lanes."""
+    first = int(some[0])
+    vertical = cases.has_vertical(first)
+    several = prepared(*cases.planned_together(some), vertical)
+    one = prepared(*cases.planned(first), vertical)
+    if several is None or one is None:
+        raise OnlyAlone
+    rows = rows_of(several.run.model, several.run.begun, len(some))
+    if rows[0].tobytes() != rows_of(one.run.model, one.run.begun).tobytes():
+        raise OnlyAlone
+    return _Group(one, some, rows)
+
+
+def _integrated(
+    cases: CasesOfJob, one: LaneScene, some: Places, rows: Any
+) -> tuple[Places, Outcomes]:
+    """Run cases whose motions can be had; give which these are."""
+    motions: list[Motion | None] = []
+    places: dict[Any, int] = {}
+    ran: list[int] = []
+    motion_of: list[int] = []
+    for k, case in enumerate(some.tolist()):
+        key = cases.motion_key(case)
+        if key not in places:
+            try:
+                motions.append(cases.ground(case))
+            except Exception:  # noqa: S112 - of which the case tells where it runs alone
+                continue
+            places[key] = len(places)
+        ran.append(k)
+        motion_of.append(places[key])
+    run = LaneRun(one.run.model, one.run.begun, rows)
+    which = np.array(ran, dtype=np.intp)
+    return which, integrate_lanes([run], motions, which, np.array(motion_of, dtype=np.intp))
+
+
+def _told(
+    cases: CasesOfJob,
+    groups: Sequence[_Group],
+    group_of: Places,
+    ran: Places,
+    outcomes: Outcomes,
+) -> Iterator[Finished | FinishedTogether]:
+    """Tell what became of runs: of those together that ended in the same way."""
+    status, modes = outcomes.status, outcomes.modes
+    # the mode tells whether those that stand may overturn later, and which slips are over
+    asked = (status == Status.COMPLETED) | groups[0].one.system.setting.slides
+    way = np.column_stack([group_of, status, np.where(asked, modes, 0)])
+    ways, way_of = np.unique(way, axis=0, return_inverse=True)
+    alone = np.ones(len(ran), dtype=np.bool_)
+    for k, (number, *_) in enumerate(ways.tolist()):
+        substeps = groups[number].one.run.begun.substeps
+
+        def work(some: Places, substeps: int = substeps) -> FinishedTogether:
+            return _summed_up(cases, ran[some], outcomes.summary_of_many(some, substeps))
+
+        for some, found in each_way(work, np.flatnonzero(way_of == k)):
+            alone[some] = False
+            yield found
+    for k in np.flatnonzero(alone).tolist():
+        try:
+            system, said = cases.scene(int(ran[k]))
+        except Exception:  # noqa: S112 - the case tells of it where it runs alone
+            continue
+        summary = outcomes.summary(k, groups[group_of[k]].one.run.begun.substeps)
+        if has_no_cautions(system, summary):
+            yield Finished(int(ran[k]), system, summary, said)
+
+
+def _summed_up(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedTogether:
+    system, said = cases.scene_together(some)
+    missing: list[str] = []
+    if not has_no_cautions(system, summary):
+        raise OnlyAlone
+    scalars = scalars_of(system, summary, missing)
+    moving = in_motion(system, summary, missing)
+    duration = run_length(cases.job.arguments, cases.unscaled(int(some[0])))
+    look = look_at(system.setting, summary, duration)
+    if missing:
+        raise OnlyAlone
+    return FinishedTogether(
+        some, summary.status, [*said, *([STILL_MOVING] if moving else [])],
+        {name: each.values if isinstance(each, Many) else each for name, each in scalars.items()},
+        look,
+    )  # fmt: skip

@@ -1,0 +1,176 @@
+"""Cases that are assembled together give what each gives on its own, bit for bit.
+
+Random studies of each kind of scene, with every axis that its numbers follow from.
+"""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.compiled import COMPILED
+from rockframe.studies.sweeps import chunk, runs, study
+from rockframe.studies.sweeps.planning import plan_study
+from rockframe.studies.sweeps.together import FinishedTogether
+
+pytestmark = [
+    pytest.mark.skipif(not COMPILED, reason="lanes are compiled"),
+    pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning"),
+]
+
+COUNT = 120
+BLOCK = rf.Block(width="2.4 m", height="9.7 m", mass="50 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+STIFF = rf.TwoSpringSupport(stiffness="40 MN/m", damping="200 kN*s/m")
+SOIL = rf.WinklerSoil(stiffness="9 MPa", damping="220 kPa*s")
+CAP = rf.CushionCap(height="0.9 m", mass="36 t", width="3 m")
+SIZE = {"Block.width": (1.5, 3.0, "m"), "Block.height": (5.0, 12.0, "m")}
+SCALE = {"scale": (0.3, 2.5, None)}
+
+STUDIES = {
+    "pads": (
+        rf.System(BLOCK, PADS),
+        {"frequency_ratio": (8, 30, None), "damping_ratio": (0, 0.2, None)},
+    ),
+    "pads by stiffness": (
+        rf.System(BLOCK, STIFF, restraint="leading-corner"),
+        {"stiffness": (10, 90, "MN/m"), "mass": (20, 80, "t"), "gravity": (8, 11, "m/s^2")},
+    ),
+    "restitution on pads": (rf.System(BLOCK, PADS), {"restitution": (0.6, 0.85, None)}),
+    "inertia on pads": (
+        rf.System(BLOCK, PADS, rotation="small"),
+        {"shape_factor": (2.2, 4, None)},
+    ),
+    "rigid ground": (rf.System(BLOCK), {"mass": (20, 80, "t")}),
+    "restitution": (
+        rf.System(BLOCK, rf.RigidGround(restitution=0.8)),
+        {"restitution": (0.6, 0.85, None)},
+    ),
+    "sliding": (
+        rf.System(BLOCK, rf.RigidGround(friction=0.4)),
+        {"friction": (0.1, 0.9, None), "Block.width": (1.0, 2.0, "m")},
+    ),
+    "wall": (rf.System(BLOCK, rf.RearWall(side="left")), {"Block.mass": (20, 80, "t")}),
+    "eccentric": (rf.System(BLOCK), {"eccentricity": (-0.2, 0.2, "m")}),
+    "bed": (
+        rf.System(BLOCK, SOIL),
+        {"stiffness": (5, 20, "MPa"), "damping": (0, 300, "kPa*s")},
+    ),
+    "cap": (rf.System(BLOCK, CAP, SOIL), {"CushionCap.mass": (20, 50, "t")}),
+    "cascade": (
+        rf.System(BLOCK, PADS, CAP, SOIL, coupling="cascade"),
+        {"frequency_ratio": (15, 30, None)},
+    ),
+}
+
+
+def record(seed=5):
+    x = np.convolve(np.random.default_rng(seed).normal(size=200), np.ones(4) / 4, "same")
+    return rf.GroundMotion.from_arrays((6 * x, "m/s^2"), "0.02 s", name="drawn")
+
+
+def table(spreads, rng, count=COUNT):
+    return {
+        name if unit is None else f"{name} [{unit}]": rng.uniform(low, high, count)
+        for name, (low, high, unit) in spreads.items()
+    }
+
+
+def both(monkeypatch, scene, cases, motion, **options):
+    """Run a chunk together, and again with every scene on its own; tell how many ran together."""
+    monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
+    monkeypatch.setattr(study, "COMPILING_SHARE", float("inf"))
+    planned = plan_study(scene, motion, {}, cases, **options)
+    job = planned.job(range(planned.grid.count))
+    served, run_together = [0], runs.run_together
+
+    def counted(*arguments):
+        for found in run_together(*arguments):
+            served[0] += len(found.cases) if isinstance(found, FinishedTogether) else 1
+            yield found
+
+    monkeypatch.setattr(runs, "run_together", counted)
+    together = chunk.run_chunk(job)
+    monkeypatch.setattr(runs, "run_together", lambda *_: iter(()))
+    alone = chunk.run_chunk(job)
+    monkeypatch.setattr(runs, "run_together", run_together)
+    return together, alone, served[0]
+
+
+def assert_same(together, alone):
+    assert together.status.tolist() == alone.status.tolist()
+    assert together.scalars.keys() == alone.scalars.keys()
+    for name, column in alone.scalars.items():
+        assert together.scalars[name].tobytes() == column.tobytes(), name
+    told = [[each.texts[k] for k in each.message] for each in (together, alone)]
+    assert told[0] == told[1]
+
+
+@pytest.mark.parametrize("accuracy", ["fast", "standard"])
+@pytest.mark.parametrize("name", STUDIES)
+def test_random_studies_have_the_bits_of_scenes_on_their_own(monkeypatch, name, accuracy):
+    scene, spreads = STUDIES[name]
+    rng = np.random.default_rng([ord(letter) for letter in name])
+    cases = table({**SIZE, **SCALE, **spreads}, rng)
+    together, alone, served = both(monkeypatch, scene, cases, record(), accuracy=accuracy)
+    assert_same(together, alone)
+    assert served > 0.5 * COUNT
+
+
+def test_starts_and_words_and_several_motions(monkeypatch):
+    rng = np.random.default_rng(11)
+    cases = table({**SIZE, "initial_rotation": (0.001, 0.05, "rad")}, rng, 3 * COUNT)
+    cases["restraint"] = rng.choice(["centre", "contact-state"], 3 * COUNT)
+    cases["motion"] = rng.integers(0, 2, 3 * COUNT)
+    motions = [record(5), rf.GroundMotion.sine_pulse("-3 m/s^2", "1.5 Hz")]
+    together, alone, served = both(
+        monkeypatch, rf.System(BLOCK, PADS), cases, motions, accuracy="fast"
+    )
+    assert_same(together, alone)
+    assert served > COUNT
+
+
+def test_targets_other_than_a_factor_scale_the_motion(monkeypatch):
+    rng = np.random.default_rng(12)
+    cases = table({**SIZE, "peak_ground_acceleration": (1.0, 6.0, "m/s^2")}, rng)
+    together, alone, served = both(
+        monkeypatch, rf.System(BLOCK), cases, record(), accuracy="standard"
+    )
+    assert_same(together, alone)
+    assert served > 0.5 * COUNT
+
+
+def test_screened_studies(monkeypatch):
+    rng = np.random.default_rng(13)
+    monkeypatch.setattr(chunk, "FEWEST_IN_LANES", 1)
+    small = {"Block.width": (0.4, 0.8, "m"), "Block.height": (2.0, 5.0, "m")}
+    cases = table({**small, "scale": (0.5, 3.0, None)}, rng, 2 * COUNT)
+    together, alone, served = both(
+        monkeypatch, rf.System(BLOCK, PADS), cases, record(), accuracy="screen"
+    )
+    assert_same(together, alone)
+    assert 0.0 < together.scalars["repeated"].mean() < 1.0
+    assert served > COUNT
+
+
+def test_bad_cases_among_good_ones_say_what_they_say_alone(monkeypatch):
+    rng = np.random.default_rng(14)
+    cases = table({**SIZE, **SCALE, "restitution": (0.5, 1.0, None)}, rng)
+    heights = cases["Block.height [m]"]
+    heights[::7] = 0.5  # too squat to rock
+    heights[3] = 1e-200  # an inertia that vanishes
+    together, alone, _ = both(monkeypatch, rf.System(BLOCK, PADS), cases, record(), accuracy="fast")
+    assert_same(together, alone)
+    said = {together.texts[k] for k in together.message}
+    assert any("cannot rock" in text for text in said)
+    assert any("exceeds eps_max" in text for text in said)
+
+
+def test_functions_of_users_are_called_with_numbers(monkeypatch):
+    def scene(height):
+        assert isinstance(height.m_as("m"), float)
+        return rf.System(rf.Block(width="1 m", height=height, mass="1 t"))
+
+    cases = {"height [m]": np.linspace(3.0, 6.0, 40)}
+    together, alone, served = both(monkeypatch, scene, cases, record(), accuracy="fast")
+    assert_same(together, alone)
+    assert served == 0
