@@ -6,7 +6,7 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.protocol import ContactModel, Start
-from rockframe.dynamics.slide_rock import (
+from rockframe.dynamics.slide_motion import (
     COLUMNS,
     FULL,
     HELD,
@@ -14,8 +14,8 @@ from rockframe.dynamics.slide_rock import (
     ON_RIGHT,
     REMEMBERED,
     SLIPS,
-    SlideRock,
 )
+from rockframe.dynamics.slide_rock import SlideRock
 
 
 def ill_posed_friction(inertia: float, square: float) -> float:

@@ -75,7 +75,7 @@ class SlidingSetting(RigidGroundSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the block slipped."""
-        from rockframe.dynamics.slide_rock import FLIES_RIGHT, PEAK_LEFT, PEAK_RIGHT, SLIP, SLIPS
+        from rockframe.dynamics.slide_motion import FLIES_RIGHT, PEAK_LEFT, PEAK_RIGHT, SLIP, SLIPS
 
         residual = float(ending.state[SLIP])
         left, right = float(ending.memory[PEAK_LEFT]), float(ending.memory[PEAK_RIGHT])
