@@ -16,6 +16,7 @@ from rockframe.dynamics.protocol import (
     Column,
     Energies,
     Ground,
+    Numbers,
     Slope,
 )
 from rockframe.dynamics.trigonometry import sine_cosine
@@ -229,7 +230,7 @@ class SlideMotion:
         return state[SIZE + SLIP] + above * rate, state[SIZE + RISE] - beside * rate
 
     @inlined
-    def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
         """Give accelerations, what friction dissipates, and what the ground puts in."""
         if mode == HELD:
             return 0.0, 0.0, 0.0, 0.0, 0.0
@@ -306,15 +307,28 @@ class SlideMotion:
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
         """Give kinetic and gravity energy; nothing is elastic."""
+        return self.energies_alone(mode, state)
+
+    @inlined
+    def energies_alone(self, mode: int, state: Vector) -> Energies:
+        """Give the energies of the block by itself."""
         kinetic = self.kinetic_energy(mode, state)
         return Energies(kinetic, self.gravity * self.centre_rise(mode, state), 0.0, 0.0)
 
     @kernel
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
-    ) -> tuple[float, ...]:
+    ) -> Numbers:
         """Give the motion of the centre of mass, the reactions, and the slip."""
         return self.columns_under(mode, state, slope, self.loads(mode, state, ground))
+
+    @inlined
+    def centre_acceleration(self, mode: int, state: Vector, slope: Slope) -> tuple[float, float]:
+        """Give the acceleration of the centre of mass relative to the ground, from a slope."""
+        beside, above = self.reach(self.side(self.bears_in(mode)), state[ROTATION])
+        square = state[SIZE + ROTATION] * state[SIZE + ROTATION]
+        sway = slope[SLIP] + above * slope[ROTATION] - beside * square
+        return sway, slope[RISE] - beside * slope[ROTATION] - above * square
 
     @kernel
     def columns_under(
@@ -323,11 +337,9 @@ class SlideMotion:
         """Give the same under loads that are known."""
         bears, rotation, rate = self.bears_in(mode), state[ROTATION], state[SIZE + ROTATION]
         side = self.side(bears)
-        beside, above = self.reach(side, rotation)
+        beside, _ = self.reach(side, rotation)
         across, up = self.speeds(mode, state)
-        square = rate * rate
-        sway = slope[SLIP] + above * slope[ROTATION] - beside * square
-        rise = slope[RISE] - beside * slope[ROTATION] - above * square
+        sway, rise = self.centre_acceleration(mode, state, slope)
         shear, bearing = sway + loads.across, rise + loads.weight
         left, right = (0.0, bearing) if side > 0.0 else (bearing, 0.0)
         if bears == FULL:

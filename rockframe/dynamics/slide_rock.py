@@ -53,6 +53,13 @@ class SlideSwitches(SlideMotion):
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Give the mode after a guard has fallen; after an impact also the rates."""
+        return self.switch_contact(mode, guard, state, ground, memory)
+
+    @inlined
+    def switch_contact(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Give the same of a guard of bearing and slip."""
         bears = self.bears_in(mode)
         if bears < FLIES_RIGHT:
             memory[PEAK_LEFT] = max(memory[PEAK_LEFT], -state[SLIP])
