@@ -61,11 +61,12 @@ class SlideSwitches(SlideMotion):
     ) -> int:
         """Give the same of a guard of bearing and slip."""
         bears = self.bears_in(mode)
-        if bears < FLIES_RIGHT:
-            memory[PEAK_LEFT] = max(memory[PEAK_LEFT], -state[SLIP])
-            memory[PEAK_RIGHT] = max(memory[PEAK_RIGHT], state[SLIP])
         if bears >= FLIES_RIGHT:
-            return self.come_down(mode, guard, state, ground, memory)
+            new = self.come_down(mode, guard, state, ground, memory)
+            if self.bears_in(new) < FLIES_RIGHT:
+                self.keep_slip(state, memory)
+            return new
+        self.keep_slip(state, memory)
         if guard == LANDING:
             return self.roll_over(mode, state, ground, memory)
         if guard == STOPPING:
@@ -76,6 +77,12 @@ class SlideSwitches(SlideMotion):
         new = self.go_on(mode, state, ground, guard in (SLIPS_RIGHT, SLIPS_LEFT), tips)
         memory[LAST_EVENT] = self.kind_of(mode, new)
         return new
+
+    @inlined
+    def keep_slip(self, state: Vector, memory: Vector) -> None:
+        """Keep the largest slips to either side."""
+        memory[PEAK_LEFT] = max(memory[PEAK_LEFT], -state[SLIP])
+        memory[PEAK_RIGHT] = max(memory[PEAK_RIGHT], state[SLIP])
 
     @kernel
     def go_on(self, mode: int, state: Vector, ground: Ground, lets_go: bool, tips: int) -> int:
@@ -216,17 +223,20 @@ class SlideSwitches(SlideMotion):
             loads = self.loads(turned, state, ground)
             after = self.leaning(new, state, loads, False)
             slip, rate = state[SIZE + SLIP], state[SIZE + ROTATION]
-            leans = after
+            leans, stands = after, False
             if self.creeps(slip):
-                state[SIZE + SLIP], leans = 0.0, SLIPS * new + HELD
+                state[SIZE + SLIP] = 0.0
+                leans = after if self.bears_in(after) >= FLIES_RIGHT else SLIPS * new + HELD
             if self.rebounds_little(leans, state, loads):
                 state[SIZE + ROTATION] = 0.0
                 base = self.standing(state, self.loads(turned, state, ground), False, FULL)
                 # a ground that tips the block over either corner allows no rest
                 if base // SLIPS == FULL:
-                    after = base
                     memory[LAST_EVENT] = REST
-            if memory[LAST_EVENT] != REST:
+                bounces = self.bears_in(after) >= FLIES_RIGHT
+                stands = base // SLIPS == FULL or (bounces and base // SLIPS == bore)
+                after = base if stands else after
+            if not stands:
                 state[SIZE + SLIP], state[SIZE + ROTATION] = slip, rate
         memory[IMPACT_LOSS] += before - self.kinetic_energy(after, state)
         return self.with_contact(mode, after)
@@ -238,12 +248,15 @@ class SlideSwitches(SlideMotion):
 
     @inlined
     def rebounds_little(self, mode: int, state: Vector, loads: Loads) -> bool:
-        """Whether a rebound is too low to be told."""
+        """Whether the corner that has borne rises too little to be told before it comes back.
+
+        Links may lift the other one meanwhile.
+        """
         bears, rate = self.bears_in(mode), state[SIZE + ROTATION]
-        if bears not in (ON_RIGHT, ON_LEFT):
+        if bears == FULL:
             return False
-        side = self.side(bears)
-        restoring = -side * self.contact(mode, state, loads).rotation
+        side, found = self.side(bears), self.contact(mode, state, loads)
+        restoring = -side * found.rotation - found.rise / (self.left + self.right)
         most = REST_AMPLITUDE * math.atan2(self.distance(side), self.height)
         return restoring > 0.0 and rate * rate < 2.0 * restoring * most
 

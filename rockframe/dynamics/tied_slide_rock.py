@@ -47,6 +47,7 @@ from rockframe.dynamics.slide_rock import SlideRock, SlideSwitches
 from rockframe.dynamics.slide_rock_model import slide_rock
 from rockframe.dynamics.trigonometry import sine_cosine, versine
 
+OWN_COLUMNS: Final = len(COLUMNS)
 LINK_PLACE: Final = len(REMEMBERED)
 """Index into the memory: the link of the last event, counted from 1; 0 for none."""
 
@@ -93,7 +94,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     @inlined
     def own_columns(self) -> int:
         """Give the number of columns of the block."""
-        return len(COLUMNS)
+        return OWN_COLUMNS
 
     @inlined
     def link_place(self) -> int:
