@@ -86,8 +86,8 @@ def draw_on_base(rng):
     return Scene(system, motion, rotation, model_on_base(system, motion))
 
 
-def draw_ties(rng, block, fast=0.0):
-    """Draw one to three ties of a block of 1 t, whose base vibrates so fast, and their models."""
+def draw_ties(rng, block):
+    """Draw one to three ties of a block of 1 t, and their models."""
     body, parts, models = block.si, [], []
     width, rises = body.width, body.centre_height
     for number in range(int(rng.integers(1, 4))):
@@ -128,8 +128,21 @@ def draw_ties(rng, block, fast=0.0):
     return parts, models
 
 
+def draw_tied(rng, draw=draw):
+    """Draw a scene on level ground, or on a level base, with ties, in which the block stands."""
+    scene = None
+    while scene is None:
+        scene = with_ties(draw(rng), rng)
+    return scene
+
+
+def draw_tied_on_base(rng):
+    """Draw the same on pads or on a bed."""
+    return draw_tied(rng, draw_on_base)
+
+
 def with_ties(drawn, rng):
-    """Give a scene of a block on level ground or a level base with ties beside; None if it tips."""
+    """Give a scene with ties beside; None on a slope, or if they tip the block."""
     if not drawn.system.options.slope.level:
         return None
     block, *others = drawn.system.parts.structural()

@@ -276,10 +276,14 @@ class Block:
     def go(self, t, z, mode, piece, end, rtol):
         """Integrate up to the next event or the end of a piece."""
         names = list(self.margins(mode, z, self.ground(t, piece)))
+        last = [None, {}]
 
         def event(name):
             def margin(time, state):
-                return self.margins(mode, state, self.ground(time, piece))[name]
+                at = time, *state
+                if at != last[0]:  # all events ask at the same places
+                    last[:] = at, self.margins(mode, state, self.ground(time, piece))
+                return last[1][name]
 
             margin.terminal, margin.direction = True, -1.0
             return margin

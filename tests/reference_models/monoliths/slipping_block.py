@@ -367,9 +367,14 @@ class Block:
             end = min(self.times[piece + 1], duration)
             names = list(self.guards(z, self.ground(t, piece)))
 
-            def event(name, piece=piece):
+            last = [None, {}]
+
+            def event(name, piece=piece, last=last):
                 def guard(time, state):
-                    return self.guards(state, self.ground(time, piece))[name]
+                    at = time, *state
+                    if at != last[0]:  # all events ask at the same places
+                        last[:] = at, self.guards(state, self.ground(time, piece))
+                    return last[1][name]
 
                 guard.terminal, guard.direction = True, -1.0
                 return guard
