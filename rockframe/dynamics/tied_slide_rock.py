@@ -184,7 +184,8 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
         A link that breaks, or a wall that is touched, may leave friction more than it can hold.
         """
         new = self.switch_one(mode, guard, state, ground, memory)
-        if guard >= GUARDS:
+        # a slip that starts at once goes on
+        if guard >= GUARDS and (self.sense(new) == 0.0 or state[SIZE + SLIP] != 0.0):
             new = self.go_on(new, state, ground, False, FULL)
         return new
 

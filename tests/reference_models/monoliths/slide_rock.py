@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from . import ties
 
 TINY = 1e-9
+STOPPED = 1e-11
 REST = 1e-10  # rotation over that of unstable equilibrium
 MOST_EVENTS = 4000
 LONGEST = 0.005  # step, that no margin falls and rises again in one [s]
@@ -334,6 +335,8 @@ class Block:
             self.events.append((t, "OVERTURNING"))
             return t, z, mode, peak, max(slips), True
         name, ground = names[hit], self.ground(t, piece)
+        if name[-1] == "turn" and self.stops(mode, z, ground):
+            name = "slip"  # the tie turns since the block stops
         z = self.tidied(mode, z)
         if name[0] == "tie":
             tie, kind = self.tied[name[1]], name[2]
@@ -361,8 +364,15 @@ class Block:
             return t, self.tidied(new, z), new, peak, max(slips), False
         if name == "slip":
             z[3] -= self.rates(mode.corners[-1], z)[0]
-            return t, z, self.changed(t, mode, None, z, ground), peak, max(slips), False
+            new = self.changed(t, mode, None, z, ground)
+            return t, z, new, peak, max(slips), False
         return t, z, self.changed(t, mode, mode, z, ground), peak, max(slips), False
+
+    def stops(self, mode, z, ground):
+        """Whether a block that slides on its whole base comes to a stop."""
+        if mode.corners != "LR" or not mode.slip or abs(z[3]) > STOPPED:
+            return False
+        return mode.slip * self.forces(mode, z, ground)[0][0] < 0.0
 
     def tidied(self, mode, z):
         """Put the state back on the constraints that the steps have left by rounding."""

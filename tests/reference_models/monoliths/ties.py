@@ -14,6 +14,7 @@ import numpy as np
 from . import Guard
 
 CLEAR = 1e-14
+STILL = 1e-13
 SLACK, TAUT, YIELDING, PRESSED, BROKEN = "slack", "taut", "yielding", "pressed", "broken"
 
 
@@ -137,7 +138,7 @@ class Tie:
     def turned(self, z) -> bool:
         """Whether something has turned a tie that yields."""
         sign = {YIELDING: 1.0, PRESSED: -1.0}.get(self.state, 0.0)
-        return bool(sign * self.length(z)[2] < 0.0)
+        return bool(sign * self.length(z)[2] < -STILL)
 
 
 KINDS = ("taut", "slack", "yield", "press", "turn")
@@ -172,7 +173,9 @@ def guards_of(ties, z):
     for i, tie in enumerate(ties):
         length, _, rate, _ = tie.length(z)
         for guard in tie.guards(i):
-            found["tie", i, guard.kind] = tie.value(guard.kind, length, rate, 0.0)[0]
+            value = tie.value(guard.kind, length, rate, 0.0)[0]
+            # one that yields as its body stops has not turned yet
+            found["tie", i, guard.kind] = value + (STILL if guard.kind == "turn" else 0.0)
     return found
 
 
