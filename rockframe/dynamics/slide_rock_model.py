@@ -4,7 +4,7 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.protocol import ContactModel, Start
-from rockframe.dynamics.slide_rock import (
+from rockframe.dynamics.slide_motion import (
     COLUMNS,
     FULL,
     HELD,
@@ -12,8 +12,8 @@ from rockframe.dynamics.slide_rock import (
     ON_RIGHT,
     REMEMBERED,
     SLIPS,
-    SlideRock,
 )
+from rockframe.dynamics.slide_rock import SlideRock
 from rockframe.many import atan2, hypot, sqrt
 
 

@@ -100,10 +100,6 @@ def _misfits_of_links(parts: Parts) -> list[str]:
             "a body with a Restrainer stands on TwoSpringSupport, WinklerSoil or RigidGround, not "
             f"on {type(base).__name__}"
         )
-    if base is not None and getattr(base.si, "friction", None) is not None:
-        faults.append(
-            f"{type(base).__name__}: friction is not looked at in a scene with a Restrainer"
-        )
     return faults
 
 
@@ -183,7 +179,8 @@ def friction_under(part: Component, options: Options) -> tuple[float, float] | N
 
 def is_sliding(parts: Parts, options: Options) -> bool:
     """Whether a block stands on rigid ground on which it slides."""
-    if parts.block is None or parts.wall is not None or parts.ground is None:
+    behind_wall = parts.wall is not None and not parts.wall.elastic
+    if parts.block is None or behind_wall or parts.ground is None:
         return False
     return friction_under(parts.ground, options) is not None
 

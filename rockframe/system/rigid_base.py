@@ -90,6 +90,7 @@ class Pressed(NamedTuple):
     force: float
     to_left: float  # couple on what stands on it that lifts the right corner, to the left
     to_right: float
+    along: float  # force of links to the right, that the base must hold
 
     def bears(self, couple: float) -> bool:
         """Whether both corners press under a couple to the right."""
@@ -102,16 +103,17 @@ def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
     All above it, and what links pull where their points are upright.
     """
     load = setting.bases[k].load
-    force, couple = load.weight, 0.0
+    force, couple, along = load.weight, 0.0, 0.0
     level = setting.base_of(k)
     foot = level[0] + load.body.eccentricity  # below the centre of mass
     for one, pull in zip(setting.ties, tied, strict=True):
         for body, end, sign in ((one.on, one.ends[0], -1.0), (one.to, one.ends[1], 1.0)):
             if 0 <= body <= k:
                 x, y = sign * setting.body.mass * pull.force * pull.direction
-                force -= y
+                force, along = force - y, along + x
                 couple += x * (end[1] - level[1]) - y * (end[0] - foot)
-    return Pressed(force, force * load.body.left + couple, force * load.body.right - couple)
+    lifts = force * load.body.left + couple, force * load.body.right - couple
+    return Pressed(force, *lifts, along)
 
 
 def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> "tuple[float, list[Tied]]":

@@ -19,6 +19,7 @@ from rockframe.system.sliding_base import alone_on, stack_on
 from rockframe.system.sliding_ground import rigid_ground_setting
 from rockframe.system.stack import StackSetting, block_setting, stack_setting
 from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
+from rockframe.system.tied_sliding import tied_on_ground
 
 
 @dataclass(frozen=True)
@@ -91,10 +92,13 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
 def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
     """Put a stack, or a block with restrainers, on the base in a slot."""
     base = parts.components().get(slot, RigidGround())
-    if parts.stack is None:
-        return block_setting(parts.the_block, base, options, parts.links)
-    held = stack_setting(parts.stack, base, options, parts.links)
-    return stack_on((*parts.stack.interfaces, base), held, parts.links)
+    if parts.stack is not None:
+        held = stack_setting(parts.stack, base, options, parts.links)
+        return stack_on((*parts.stack.interfaces, base), held)
+    held = block_setting(parts.the_block, base, options, parts.links)
+    if isinstance(base, RigidGround):
+        return tied_on_ground(base, held)
+    return stack_on((base,), held)
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
-from rockframe.components import Component, Link, RigidGround
+from rockframe.components import Component, RigidGround
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.fitting import SMALL_SLIDING, friction_under
@@ -88,7 +88,7 @@ class SlidingStackSetting(StackSetting):
     @property
     def model(self) -> str:
         """Name of the model."""
-        return "stack-sliding"
+        return f"{super().model}-sliding"
 
     def words(self) -> Words:
         """Tell bodies and bases, and their friction."""
@@ -118,12 +118,14 @@ class SlidingStackSetting(StackSetting):
         return tuple(SlipRange(*system.slips(k, ending)) for k in range(len(self.bodies)))
 
 
-def stack_on(bases: Sequence[Component], held: StackSetting, links: Sequence[Link]) -> StackSetting:
-    """Give the setting of a stack: of one whose bodies slip where its bases have friction."""
+def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
+    """Give the setting of bodies with links: of those that slip where bases have friction."""
     if all(getattr(one.si, "friction", None) is None for one in bases):
         return held
     found = [friction_under(one, held.options) for one in bases]
     faults = list[str]()
+    if held.options.sliding is Sliding.CHECKED and len(held.bodies) == 1:
+        return held
     if held.options.sliding is Sliding.CHECKED:
         faults.append("friction in a Stack is computed: give no sliding='checked', or no friction")
     elif any(one is None for one in found):
@@ -133,8 +135,6 @@ def stack_on(bases: Sequence[Component], held: StackSetting, links: Sequence[Lin
             "the bodies of a Stack slide on TwoSpringSupport and WinklerSoil; where one of its "
             "bases is rigid, give no friction"
         )
-    if links:
-        faults.append("the bodies of a Stack with restrainers do not slide: give no friction")
     if held.options.small:
         faults.append(SMALL_SLIDING)
     if faults:

@@ -1,13 +1,14 @@
 """The scene of a block that slides on rigid ground: its numbers, its words and its model."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
 from rockframe.many import largest, plain
-from rockframe.system.bodies import load_of, resolve_restitution
+from rockframe.system.bodies import SupportedBody, load_of, resolve_restitution
 from rockframe.system.fitting import SMALL_SLIDING, friction_under
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
@@ -42,31 +43,10 @@ class SlidingSetting(RigidGroundSetting):
 
     def system(self) -> "SlideRock":
         """Give the equations."""
-        from rockframe.dynamics.slide_rock import SlideRock
-        from rockframe.dynamics.slide_rock_model import impulse_lever
-
-        body = self.body
-        left, right = (
-            impulse_lever(
-                restitution=restitution,
-                own=own,
-                width=2.0 * body.half_width,
-                about_foot=body.base_inertia / body.mass,
-            )
-            for own, restitution in zip((body.left, body.right), self.restitution, strict=True)
-        )
-        return SlideRock(
-            left=body.left,
-            right=body.right,
-            height=body.centre_height,
-            inertia=body.inertia / body.mass,
-            static=self.static,
-            kinetic=self.kinetic,
-            impulsive=math.inf if self.impact is Impact.STICK else self.kinetic,
-            left_lever=left,
-            right_lever=right,
-            gravity=self.slope.normal_gravity,
-        )
+        return slide_rock_of(
+            self.body, (self.static, self.kinetic), self.impact, self.restitution,
+            self.slope.normal_gravity,
+        )  # fmt: skip
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of slip, rotation and rise."""
@@ -76,13 +56,7 @@ class SlidingSetting(RigidGroundSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the block slipped."""
-        from rockframe.dynamics.slide_rock import FLIES_RIGHT, PEAK_LEFT, PEAK_RIGHT, SLIP, SLIPS
-
-        residual = plain(ending.state[SLIP])
-        left, right = plain(ending.memory[PEAK_LEFT]), plain(ending.memory[PEAK_RIGHT])
-        if ending.mode // SLIPS < FLIES_RIGHT:
-            left, right = largest(left, -residual), largest(right, residual)
-        return (SlipRange(residual, left, right),)
+        return (slips_on_ground(ending),)
 
     def cautions(self) -> list[str]:
         """Give warnings about the restitution, and of a block that its weight moves."""
@@ -98,17 +72,13 @@ class SlidingSetting(RigidGroundSetting):
     @property
     def friction_to_roll_over(self) -> float:
         """Coefficient from which no corner slips as it strikes, :eq:`eq-slide-housner`."""
-        body = self.body
-        square = body.base_inertia / body.mass
-        return max(body.centre_height * own / square for own in (body.left, body.right))
+        return friction_to_roll_over(self.body)
 
     def words(self) -> Words:
         """Tell the block that slides."""
         base = super().words()
         slips = "s = sgn(slip')"
-        law = "the corner that strikes slips as far as the kinetic friction lets it"
-        if self.impact is Impact.STICK:
-            law = "the corner that strikes is held"
+        law = impact_words(self.impact)
         onto = (
             "the block lands flat"
             if self.lands_flat
@@ -154,7 +124,7 @@ def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
 
 def _sliding(setting: SlidingSetting) -> SlidingSetting:
     """Refuse what has no answer."""
-    faults = _ill_posed(setting)
+    faults = ill_posed(setting.body, setting.kinetic)
     if setting.options.small:
         faults.append(SMALL_SLIDING)
     if faults:
@@ -162,11 +132,73 @@ def _sliding(setting: SlidingSetting) -> SlidingSetting:
     return setting
 
 
-def _ill_posed(setting: SlidingSetting) -> list[str]:
+def slide_rock_of(
+    body: SupportedBody, friction: tuple[float, float], impact: Impact,
+    restitutions: Sequence[float], gravity: float,
+) -> "SlideRock":  # fmt: skip
+    """Give the equations of a block that slides and rocks, with the restitutions of its corners."""
+    from rockframe.dynamics.slide_rock import SlideRock
+    from rockframe.dynamics.slide_rock_model import impulse_lever
+
+    left, right = (
+        impulse_lever(
+            restitution=restitution,
+            own=own,
+            width=2.0 * body.half_width,
+            about_foot=body.base_inertia / body.mass,
+        )
+        for own, restitution in zip((body.left, body.right), restitutions, strict=True)
+    )
+    static, kinetic = friction
+    return SlideRock(
+        left=body.left,
+        right=body.right,
+        height=body.centre_height,
+        inertia=body.inertia / body.mass,
+        static=static,
+        kinetic=kinetic,
+        impulsive=math.inf if impact is Impact.STICK else kinetic,
+        left_lever=left,
+        right_lever=right,
+        gravity=gravity,
+    )
+
+
+def slips_on_ground(ending: "Ending") -> SlipRange:
+    """Give how far a block slipped on rigid ground."""
+    from rockframe.dynamics.slide_motion import (
+        BEARINGS,
+        FLIES_RIGHT,
+        PEAK_LEFT,
+        PEAK_RIGHT,
+        SLIP,
+        SLIPS,
+    )
+
+    residual = plain(ending.state[SLIP])
+    left, right = plain(ending.memory[PEAK_LEFT]), plain(ending.memory[PEAK_RIGHT])
+    if ending.mode // SLIPS % BEARINGS < FLIES_RIGHT:
+        left, right = largest(left, -residual), largest(right, residual)
+    return SlipRange(residual, left, right)
+
+
+def friction_to_roll_over(body: SupportedBody) -> float:
+    """Give the coefficient from which no corner slips as it strikes, :eq:`eq-slide-housner`."""
+    square = body.base_inertia / body.mass
+    return max(body.centre_height * own / square for own in (body.left, body.right))
+
+
+def impact_words(impact: Impact) -> str:
+    """Tell the law of impacts."""
+    if impact is Impact.STICK:
+        return "the corner that strikes is held"
+    return "the corner that strikes slips as far as the kinetic friction lets it"
+
+
+def ill_posed(body: SupportedBody, kinetic: float) -> list[str]:
     """Refuse friction with which a corner that slips may jam, :eq:`eq-slide-painleve`."""
     from rockframe.dynamics.slide_rock_model import ill_posed_friction
 
-    body, kinetic = setting.body, setting.kinetic
     limit = ill_posed_friction(
         body.inertia / body.mass, max(body.left, body.right) ** 2 + body.centre_height**2
     )

@@ -9,7 +9,7 @@ from plainly import plainly
 import rockframe as rf
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.protocol import IMPACT_LOSS, Ground
-from rockframe.dynamics.slide_rock import REMEMBERED, SIZE, SLIP, SLIPS
+from rockframe.dynamics.slide_motion import REMEMBERED, SIZE, SLIP, SLIPS
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 
 pytestmark = pytest.mark.analytical

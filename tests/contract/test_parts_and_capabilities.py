@@ -1,4 +1,4 @@
-"""Walls, frames, tendons and loads in everything that is offered for a scene: a table."""
+"""Walls, frames, tendons, loads and ties of what slides, and all that scenes offer: a table."""
 
 import json
 from functools import cache
@@ -23,9 +23,18 @@ PLAN = {"duration": "1.6 s"}
 IN_FILE = {
     "block": '[block]\nwidth = "1 m"\nheight = "4 m"\nmass = "4 t"\n',
     "pads": "[pads]\nfrequency_ratio = 10\ndamping_ratio = 0.1\n",
+    "slippery ground": "[ground]\nfriction = 0.2\n",
+    "slippery pads": "[pads]\nfrequency_ratio = 10\ndamping_ratio = 0.1\nfriction = 0.2\n",
     "frame": '[frame]\ncolumns = 2\nbeam_mass = "6 t"\n'
     '[frame.column]\nwidth = "1 m"\nheight = "4 m"\nmass = "4 t"\n',
 }
+TIE = rf.Restrainer(
+    on=("-0.5 m", "3 m"), to=("-1.5 m", "3 m"), stiffness="0.2 MN/m", slack="0.5 mm"
+)
+TIE_IN_FILE = (
+    '[[restrainer]]\non = ["-0.5 m", "3 m"]\nto = ["-1.5 m", "3 m"]\n'
+    'stiffness = "0.2 MN/m"\nslack = "0.5 mm"\n'
+)
 SCENES = {
     "stiff wall": (
         (BLOCK, rf.RearWall(restitution=-0.3)), "restitution", [-0.5, -0.1],
@@ -53,7 +62,13 @@ SCENES = {
         ("block",), '[[restrainer]]\ntype = "Load"\nat = ["-0.4 m", "4 m"]\nvertical = "3 kN"\n',
     ),
 }  # fmt: skip
-HAS_LINK = {"elastic wall", "elastic wall on pads", "frame with tendons", "tendon"}
+for one, base in (("ground", rf.RigidGround()), ("pads", PADS)):
+    SCENES[f"tied on slippery {one}"] = (
+        (BLOCK, base.replace(friction=0.2), TIE), "Restrainer.slack", ["0.1 mm", "0.5 mm"],
+        ("block", f"slippery {one}"), TIE_IN_FILE,
+    )  # fmt: skip
+SLIPPERY = {"tied on slippery ground", "tied on slippery pads"}
+HAS_LINK = SLIPPERY | {"elastic wall", "elastic wall on pads", "frame with tendons", "tendon"}
 
 
 @pytest.fixture(autouse=True)
@@ -153,6 +168,7 @@ def links(name, folder):
     assert ("restrainer" in run_of(name).dims) is (name in HAS_LINK)
     if name in HAS_LINK:
         assert float(run_of(name).peak_restrainer_force.max()) > 0.0
+    assert ("peak_slip" in run_of(name)) is (name in SLIPPERY)
 
 
 CAPABILITIES = (

@@ -75,6 +75,12 @@ class SlippingChain(Chain):
         first = self.behind_chain() + FRICTIONS * self.body_count
         return stretch(self.rows, first, (COLUMNS + SLIP_COLUMNS) * self.body_count)
 
+    @inlined
+    def behind_friction(self) -> int:
+        """Give the place behind all these rooms."""
+        count = self.body_count
+        return self.behind_chain() + (FRICTIONS + COLUMNS + SLIP_COLUMNS) * count
+
     @kernel
     def modes(self) -> int:
         """Give the number of modes: of contacts and pivots, and of the senses of slips."""
@@ -364,6 +370,13 @@ class SlippingChain(Chain):
                     point = self.point_of(j, mode, state, memory)
                     mode = self.with_part(mode, j, Mode(standing.contact, standing.pivot, False))
                     memory[HELD_PLACE + j] = point
+        return self.let_slip(lets_go, mode, state, ground, memory)
+
+    @kernel
+    def let_slip(
+        self, lets_go: int, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Give the mode in which no body is held that friction cannot hold."""
         for _ in range(self.body_count):
             self.forces_from(mode, state, self.accelerate(mode, state, ground), ground)
             room, found, push = self.places(), -1, 0.0
@@ -402,18 +415,13 @@ class SlippingChain(Chain):
             contact = part.base.unpressed(contact, left)
         return self.with_part(mode, k, Mode(contact, now.pivot, now.slides))
 
-    @kernel
-    def observe(
-        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
-    ) -> Vector:
-        """Give motion and forces of each body and base, then slip and rate of slip of each."""
-        out = self.observe_bodies(mode, state, slope, ground, memory)
-        for k in range(self.body_count):
-            j = COLUMNS * self.body_count + SLIP_COLUMNS * k
-            out[j] = self.slip_of(k, mode, state, memory)
-            moves = self.on_base(k).is_free(self.part_mode(mode, k))
-            out[j + 1] = self.slip_rate(k, mode, state)[0] if moves else 0.0
-        return out
+    @inlined
+    def observe_slip(self, k: int, mode: int, state: Vector, memory: Vector, out: Vector) -> None:
+        """Write slip and rate of slip of a body, behind the columns of all bodies."""
+        j = COLUMNS * self.body_count + SLIP_COLUMNS * k
+        out[j] = self.slip_of(k, mode, state, memory)
+        moves = self.on_base(k).is_free(self.part_mode(mode, k))
+        out[j + 1] = self.slip_rate(k, mode, state)[0] if moves else 0.0
 
     def slips(self, k: int, ending: Ending) -> tuple[float, float, float]:
         """Give the slip of a body at the end of a run, and the most to the left and right."""

@@ -3,8 +3,7 @@
 import math
 from typing import Final, NamedTuple
 
-from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.body import BodyState
+from rockframe.compiled import Vector, inlined
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.link_rows import (
     ALONG_X,
@@ -30,7 +29,6 @@ from rockframe.dynamics.chain.link_rows import (
 )
 from rockframe.dynamics.chain.rows import PLACES
 from rockframe.dynamics.links import Stretch
-from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 MEET: Final = 1e3
 """Roundings of the elongation within which points of a link meet."""
@@ -58,42 +56,9 @@ class StretchedLink(NamedTuple):
 
 
 class LinkPoints(LinkRows):
-    """Where bodies and points of links are. A mixin of systems.
-
-    The horizontal coordinate of the lowest body moves wherever that is held, as those of all
-    others do, for links ask where it is.
-    """
+    """Where points of links are. A mixin of systems."""
 
     __slots__ = ()
-
-    @inlined
-    def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
-        """Give the horizontal place of the lowest body."""
-        return body.horizontal
-
-    @kernel
-    def lay(self, mode: int, state: Vector, room: Vector) -> None:
-        """Write how all bodies lie, from where they are given, after they are placed."""
-        lies, x, y, rate, angle = self.lies(), 0.0, 0.0, 0.0, 0.0
-        for k in range(self.body_count - 1, -1, -1):
-            i, j = k * PLACES, k * LIES
-            body = self.standing_state(k, self.part_mode(mode, k), state)
-            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-            y = self.rise_of(k, y, body.vertical, room)
-            if k + 1 < self.body_count:
-                across = room[i + at.ACROSS]
-                x += room[i + at.ARM] * sine + across - self.number(k, at.BESIDE)
-                x -= across * versine(sine, cosine)
-            else:
-                x = self.lowest_place(mode, body, state)
-            rate += body.angular_velocity
-            angle += body.rotation
-            if k > 0:  # what the next body stands on
-                sine, cosine = room[i - PLACES + at.SINE], room[i - PLACES + at.COSINE]
-            else:
-                sine, cosine = sine_cosine(angle)
-            lies[j + MOVED_X], lies[j + MOVED_Y], lies[j + OWN_RATE] = x, y, rate
-            lies[j + OWN_SINE], lies[j + OWN_VERSINE] = sine, versine(sine, cosine)
 
     @inlined
     def moved(self, k: int, x: float, y: float, room: Vector) -> Moved:

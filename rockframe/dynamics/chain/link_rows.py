@@ -1,21 +1,17 @@
-"""The links of a chain as numbers: a row for each, behind the rows of its bodies, and room.
+"""The links of bodies as numbers: a row for each, behind the rows of the bodies, and room.
 
 One machine code serves all links of a law, whatever their number.
 """
 
 import math
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, part_of, stretch
-from rockframe.dynamics.bodies import DEGREES
-from rockframe.dynamics.chain.rows import COLUMNS
-from rockframe.dynamics.chain.rows import GUARDS as BODY_GUARDS
-from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS, LinkNumbers
 from rockframe.dynamics.pads import ROUNDING
-from rockframe.dynamics.protocol import POWERS
+from rockframe.dynamics.protocol import POWERS, Energies, Ground, Guards, Slope
 
 GROUND: Final = -1
 """In place of a body."""
@@ -75,7 +71,79 @@ class LinkedLists(NamedTuple):
     rows: Vector  # those of a chain; then of the links, and room to work in
 
 
-class LinkRows(Chain):
+class Linkable:
+    """What bodies are to the links between them. A mixin of systems, which give all of it."""
+
+    __slots__ = ()
+    body_count: int
+    rows: Vector
+
+    if TYPE_CHECKING:
+
+        def coordinates(self) -> int:
+            """Give the number of coordinates."""
+            raise NotImplementedError
+
+        def places(self) -> Vector:
+            """Give the room for places, speeds, loads and accelerations of all bodies."""
+            raise NotImplementedError
+
+        def behind_bodies(self) -> int:
+            """Give the place behind all rows and rooms of the bodies."""
+            raise NotImplementedError
+
+        def own_guards(self) -> int:
+            """Give the number of their guards."""
+            raise NotImplementedError
+
+        def own_columns(self) -> int:
+            """Give the number of their columns."""
+            raise NotImplementedError
+
+        def lay(self, mode: int, state: Vector, room: Vector) -> None:
+            """Write how bodies lie, after they are placed."""
+            raise NotImplementedError
+
+        def set_out(self, mode: int, state: Vector, room: Vector) -> None:
+            """Write where all bodies are and how they move."""
+            raise NotImplementedError
+
+        def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
+            """Write the accelerations of all bodies, from a slope."""
+            raise NotImplementedError
+
+        def guards_of_bodies(
+            self, mode: int, state: Vector, slope: Slope, ground: Ground
+        ) -> Guards:
+            """Write their guards, and the rates of these."""
+            raise NotImplementedError
+
+        def switch_body(
+            self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+        ) -> int:
+            """Carry out the switch that a guard of theirs calls for; give the new mode."""
+            raise NotImplementedError
+
+        def begin_event(self, memory: Vector) -> None:
+            """Forget what the last event left."""
+            raise NotImplementedError
+
+        def link_place(self) -> int:
+            """Give the place of the last event's link in the memory."""
+            raise NotImplementedError
+
+        def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
+            """Give their energies, and leave where they are in the room."""
+            raise NotImplementedError
+
+        def observe_bodies(
+            self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+        ) -> Vector:
+            """Write their columns, and leave where they are in the room."""
+            raise NotImplementedError
+
+
+class LinkRows(Linkable):
     """What stands in the rows of links. A mixin of systems."""
 
     __slots__ = ()
@@ -90,12 +158,12 @@ class LinkRows(Chain):
     @inlined
     def behind_links(self) -> int:
         """Give the place behind the rows of links."""
-        return self.behind_chain() + self.link_count * self.link_width()
+        return self.behind_bodies() + self.link_count * self.link_width()
 
     @inlined
     def row_of_link(self, i: int) -> Vector:
         """Give the row of a link."""
-        return stretch(self.rows, self.behind_chain() + i * self.link_width(), self.link_width())
+        return stretch(self.rows, self.behind_bodies() + i * self.link_width(), self.link_width())
 
     @inlined
     def law_of(self, row: Vector) -> Any:
@@ -111,7 +179,7 @@ class LinkRows(Chain):
     def of_link(self, i: int, state: Vector) -> Vector:
         """Give the variables of a link."""
         each = self.law.variables()
-        return stretch(state, 2 * DEGREES * self.body_count + i * each, each)
+        return stretch(state, 2 * self.coordinates() + i * each, each)
 
     @inlined
     def lies(self) -> Vector:
@@ -122,12 +190,12 @@ class LinkRows(Chain):
     def slopes(self) -> Vector:
         """Give the room for accelerations, rates of the links' variables, and powers."""
         first = self.behind_links() + LIES * self.body_count
-        return stretch(self.rows, first, DEGREES * self.body_count + self.variables() + POWERS)
+        return stretch(self.rows, first, self.coordinates() + self.variables() + POWERS)
 
     @inlined
     def behind_slopes(self) -> int:
         """Give the place behind them."""
-        lies = (LIES + DEGREES) * self.body_count
+        lies = LIES * self.body_count + self.coordinates()
         return self.behind_links() + lies + self.variables() + POWERS
 
     @inlined
@@ -138,7 +206,7 @@ class LinkRows(Chain):
     @inlined
     def columns(self) -> int:
         """Give the number of columns."""
-        return COLUMNS * self.body_count + LINK_COLUMNS * self.link_count
+        return self.own_columns() + LINK_COLUMNS * self.link_count
 
     @inlined
     def column_room(self) -> Vector:
@@ -157,7 +225,7 @@ class LinkRows(Chain):
     @kernel
     def guards(self) -> int:
         """Give the number of guards, of each body and then of each link in turn."""
-        return BODY_GUARDS * self.body_count + GUARDS * self.link_count
+        return self.own_guards() + GUARDS * self.link_count
 
     @kernel
     def modes(self) -> int:

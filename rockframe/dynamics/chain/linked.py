@@ -1,16 +1,15 @@
-"""A chain of bodies of which points are linked: to one another, or to the ground.
+"""Bodies of which points are linked: to one another, or to the ground.
 
-Links load the bodies, :eq:`eq-link-loads`; all else is that of a chain. A chain without links
-knows nothing of them.
+Links load the bodies, :eq:`eq-link-loads`; all else is that of the bodies, which know nothing of
+them.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel, numbers_in, stretch
-from rockframe.dynamics.bodies import DEGREES
-from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.link_points import LinkPoints, Moved
 from rockframe.dynamics.chain.link_rows import (
@@ -27,18 +26,12 @@ from rockframe.dynamics.chain.link_rows import (
     STORED,
     TO,
     ChainLink,
-    LinkedLists,
     numbers_of_link,
     room_of_states,
 )
-from rockframe.dynamics.chain.motion import place_bodies
-from rockframe.dynamics.chain.rigid import RigidChain
-from rockframe.dynamics.chain.rows import COLUMNS, MODES, PLACES
-from rockframe.dynamics.chain.rows import GUARDS as BODY_GUARDS
-from rockframe.dynamics.chain.system import Chain
+from rockframe.dynamics.chain.rows import PLACES
 from rockframe.dynamics.links import GUARDS, one_of
 from rockframe.dynamics.protocol import (
-    HELD_PLACE,
     LAST_EVENT,
     LINK_LOSS,
     MOST_MODES,
@@ -51,14 +44,9 @@ from rockframe.errors import AssemblyError
 
 
 class Linked(LinkPoints):
-    """What bodies upon one another have of what links them. A mixin of systems."""
+    """What bodies have of what links them. A mixin of systems."""
 
     __slots__ = ()
-
-    @kernel
-    def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: all."""
-        return DEGREES * self.body_count
 
     @kernel
     def pull(self, mode: int, state: Vector, room: Vector) -> float:
@@ -79,7 +67,7 @@ class Linked(LinkPoints):
             each = law.variables()
             law.rates(
                 standing, link.stretch, own,
-                stretch(out, DEGREES * self.body_count + i * each, each),
+                stretch(out, self.coordinates() + i * each, each),
             )  # fmt: skip
         return lost
 
@@ -108,14 +96,14 @@ class Linked(LinkPoints):
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards of each body in turn, then of each link, and their rates."""
+        """Give the guards of the bodies, then of each link in turn, and their rates."""
         found = self.guards_of_bodies(mode, state, slope, ground)
         self.forces_from(mode, state, slope, ground)
         room, values, changes = self.places(), self.guard_room(0), self.guard_room(1)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
-            link, first = self.watched(row, room), BODY_GUARDS * self.body_count + GUARDS * i
+            link, first = self.watched(row, room), self.own_guards() + GUARDS * i
             for which in range(GUARDS):
                 value, change = law.guard(which, standing, link, own)
                 values[first + which], changes[first + which] = value, change
@@ -131,16 +119,14 @@ class Linked(LinkPoints):
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch of a body or of a link; give the new mode."""
-        shown, place = HELD_PLACE + self.body_count, self.link_place()
-        first = BODY_GUARDS * self.body_count
+        place, first = self.link_place(), self.own_guards()
         if guard < first:
             memory[place] = 0.0
             return self.switch_body(mode, guard, state, ground, memory)
         self.begin_event(memory)
         i = (guard - first) // GUARDS
         row, own, room = self.row_of_link(i), self.of_link(i, state), self.places()
-        place_bodies(self, mode, state, room)
-        self.lay(mode, state, room)
+        self.set_out(mode, state, room)
         on, to = self.points_of(row, room)
         standing, value = self.link_state(mode, row), int(row[PLACE_VALUE])
         found = self.law_of(row).switch(
@@ -148,7 +134,7 @@ class Linked(LinkPoints):
         )
         memory[LAST_EVENT] = found.event
         memory[LINK_LOSS] += found.lost
-        memory[shown], memory[place] = 0.0, i + 1.0
+        memory[place] = i + 1.0
         return mode + value * (found.state - standing)
 
     @kernel
@@ -175,14 +161,14 @@ class Linked(LinkPoints):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Give motion and forces of each body and base, then force and elongation of each link."""
+        """Give the columns of the bodies, then force, elongation and state of each link."""
         out, room = self.observe_bodies(mode, state, slope, ground, memory), self.places()
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
             on, to = self.points_of(row, room)
             link = self.drawn(row, on, to).stretch
-            j = COLUMNS * self.body_count + LINK_COLUMNS * i
+            j = self.own_columns() + LINK_COLUMNS * i
             out[j], out[j + 1] = law.force(standing, link, own), link.elongation
             out[j + 2] = law.shown(standing)
         return out
@@ -190,8 +176,7 @@ class Linked(LinkPoints):
     def keep_energies(self, mode: int, state: Vector) -> None:
         """Keep what links store at rest, from which energies are told."""
         room = self.places()
-        place_bodies(self, mode, state, room)
-        self.lay(mode, state, room)
+        self.set_out(mode, state, room)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             stretched = self.drawn(row, *self.points_of(row, room)).stretch
@@ -202,8 +187,7 @@ class Linked(LinkPoints):
     def start_links(self, mode: int, state: Vector) -> int:
         """Give the mode with the states in which links start; sets their variables."""
         room = self.places()
-        place_bodies(self, mode, state, room)
-        self.lay(mode, state, room)
+        self.set_out(mode, state, room)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             on, to = self.points_of(row, room)
@@ -212,71 +196,26 @@ class Linked(LinkPoints):
         return mode
 
 
-class LinkedChain(LinkedLists, Linked):  # pyright: ignore[reportGeneralTypeIssues]
-    """Bodies upon one another, and what links them: a system."""
+def rows_of_links(links: Sequence[ChainLink], modes: int, bodies: int) -> tuple[Any, list[Vector]]:
+    """Give the law of all links, with numbers to be replaced, and the row of each.
 
-    __slots__ = ()
-
-
-class LinkedRigidChain(LinkedLists, Linked, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
-    """The same where some bodies stand on rigid bases.
-
-    Forces of links are finite: impacts are those without them. While the lowest body is held on
-    rigid ground, its horizontal coordinate is the place of what holds it, and does not move.
+    Behind the modes of the bodies by themselves, of which there are so many.
     """
-
-    __slots__ = ()
-
-    @inlined
-    def rests_on_ground(self, mode: int) -> bool:
-        """Whether rigid ground holds the lowest body."""
-        k = self.body_count - 1
-        return self.is_rigid(k) and not self.on_base(k).is_free(self.part_mode(mode, k))
-
-    @kernel
-    def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move."""
-        return DEGREES * self.body_count - (1 if self.rests_on_ground(mode) else 0)
-
-    @inlined
-    def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
-        """Give the horizontal place of the lowest body: that follows from what holds it."""
-        if not self.rests_on_ground(mode):
-            return body.horizontal
-        k = self.body_count - 1
-        part = self.on_base(k)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
-        return float(body.horizontal + part.body.about_pin(pin, body.rotation))
-
-    @kernel
-    def keep_hold(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Write to the state where the lowest body is held, if rigid ground does."""
-        if self.rests_on_ground(mode):
-            k = self.body_count - 1
-            self.set_sway(k, memory[HELD_PLACE + k], 0.0, state)
-
-    @kernel
-    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode."""
-        new = self.switch_one(mode, guard, state, ground, memory)
-        self.keep_hold(new, state, memory)
-        return new
-
-
-def linked(chain: Chain, links: Sequence[ChainLink]) -> LinkedChain | LinkedRigidChain:
-    """Give a chain with links."""
     laws = [one.numbers.law for one in links]
     kinds = list({type(law): law for law in laws}.values())
     own = [one_of(kinds, law) for law in laws]
-    law = own[0].with_numbers(numbers_in(own[0]).tolist())
-    rows, value = list[Vector](), MODES**chain.body_count
+    rows, value = list[Vector](), modes
     for one, each in zip(links, own, strict=True):
         rows.append(numbers_of_link(one, each, value))
         value *= room_of_states(each.states())
     if value > MOST_MODES:
-        msg = f"{len(links)} links are more than {chain.body_count} bodies can have"
+        msg = f"{len(links)} links are more than {bodies} bodies can have"
         raise AssemblyError([msg])
-    kind = LinkedRigidChain if isinstance(chain, RigidChain) else LinkedChain
-    filled = np.concatenate([chain.rows, *rows])
-    bare = kind(chain.body_count, len(links), law, filled)
-    return bare._replace(rows=np.concatenate([filled, np.zeros(bare.behind_room() - len(filled))]))
+    return own[0].with_numbers(numbers_in(own[0]).tolist()), rows
+
+
+def with_room(system: Any, filled: Vector) -> Any:
+    """Give a system of which all but the room to work in is filled, with that."""
+    return system._replace(
+        rows=np.concatenate([filled, np.zeros(system.behind_room() - len(filled))])
+    )

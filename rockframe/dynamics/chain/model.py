@@ -20,7 +20,8 @@ from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain, with_friction
 from rockframe.dynamics.chain.link_rows import ChainLink
-from rockframe.dynamics.chain.linked import Linked, LinkedRigidChain, linked
+from rockframe.dynamics.chain.linked import Linked
+from rockframe.dynamics.chain.linked_chain import ChainLinks, LinkedRigidChain, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
 from rockframe.dynamics.chain.system import Chain
@@ -99,18 +100,17 @@ def chain(
     """
     top, count = links[0].body, len(links)
     bare = chain_of(links, ties)
-    system = linked(bare, ties) if ties else with_friction(bare, frictions) if frictions else bare
+    alone = with_friction(bare, frictions) if frictions else bare
+    system = linked(alone, ties) if ties else alone
     fastest, damping_rate = fastest_vibration(links, ties)
     rigid = some_rigid(links)
     carried = np.cumsum([one.mass for one in links])
     starts = Starts(links, rest, held)
-    if isinstance(system, Linked):
+    if isinstance(system, ChainLinks):
         mode, state, _ = _initial(system, starts, Start())
         system.keep_energies(mode, state)
-    tied = sum(not isinstance(one.numbers.law, SteadyForce) for one in ties)  # loads are the last
-    # links of several laws have as many variables each as that which has the most
-    each = system.law.variables() if isinstance(system, Linked) else 0
-    scales = [size for one in ties for size in (*one.numbers.variable_scales, *[1.0] * each)[:each]]
+    tied = links_shown(ties)
+    scales = scales_of_links(system, ties) if isinstance(system, ChainLinks) else []
     return ContactModel(
         name="stack",
         system=system,
@@ -119,25 +119,26 @@ def chain(
         scales=np.append(_scales(links), scales),
         guard_tolerance=np.concatenate([
             *(_tolerance(one.base, on / one.mass) for one, on in zip(links, carried, strict=True)),
-            *(_tie_tolerance(one) for one in ties),
+            *(tie_tolerance(one) for one in ties),
         ]),
         columns=(
             *(column for k in range(count) for column in _columns(links[k].base, k)),
-            *(column for i in range(len(ties)) for column in _tie_columns(i, shown=i < tied)),
             *(
                 Column(column_of(name, k))
                 for k in range(count if frictions else 0)
                 for name in ("slip", "slip_velocity")
             ),
+            *(column for i in range(len(ties)) for column in tie_columns(i, shown=i < tied)),
         ),
         memory=(
             *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
-            *(KEPT if rigid else ()), *(("link_of_event",) if ties else ()),
+            *(KEPT if rigid else ()),
             *(
                 f"{name}_of_{k}"
                 for k in range(count if frictions else 0)
                 for name in ("slip_offset", "peak_slip_left", "peak_slip_right")
             ),
+            *(("link_of_event",) if ties else ()),
         ),
         shows_bodies=count > 1,
         links=tied,
@@ -196,12 +197,26 @@ def reach_of(tie: ChainLink) -> float:
     return math.hypot(*tie.apart) + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
 
 
-def _tie_tolerance(tie: ChainLink) -> Vector:
+def links_shown(ties: Sequence[ChainLink]) -> int:
+    """Give how many links results show; loads, which are the last, they do not."""
+    return sum(not isinstance(one.numbers.law, SteadyForce) for one in ties)
+
+
+def scales_of_links(system: Linked, ties: Sequence[ChainLink]) -> list[float]:
+    """Give typical sizes of the variables of links.
+
+    Links of several laws have as many variables each as that which has the most.
+    """
+    each = system.law.variables()
+    return [size for one in ties for size in (*one.numbers.variable_scales, *[1.0] * each)[:each]]
+
+
+def tie_tolerance(tie: ChainLink) -> Vector:
     """Give the rounding noise of a link's guards."""
     return np.full(GUARDS_OF_LINK, ROUNDING * reach_of(tie))
 
 
-def _tie_columns(i: int, *, shown: bool) -> tuple[Column, ...]:
+def tie_columns(i: int, *, shown: bool) -> tuple[Column, ...]:
     """Name the columns of a link; users do not see those of a load."""
     kind = "restrainer" if shown else "unused_load"
     return (
@@ -246,7 +261,7 @@ class Starts(NamedTuple):
 def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
     """Start a run: all at rest but the first body, which is as told."""
     count, rest = len(starts.links), starts.rest
-    tied = isinstance(system, Linked)
+    tied = isinstance(system, ChainLinks)
     n = DEGREES * count
     placed = list(rest or [AtRest(0.0, 0.0)] * count)
     below = sum(one.rotation for one in placed[1:])
@@ -302,10 +317,10 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
         system.write_contacts(mode, state, memory)
     if isinstance(system, LinkedRigidChain):
         system.keep_hold(mode, state, memory)
-    if isinstance(system, Linked):
-        memory = np.append(memory, 0.0)
-        mode = system.start_links(mode, state)
     if isinstance(system, SlippingChain):
         places = memory[HELD_PLACE : HELD_PLACE + count]
         memory = np.concatenate([memory, *([-place, 0.0, 0.0] for place in places)])
+    if isinstance(system, ChainLinks):
+        memory = np.append(memory, 0.0)
+        mode = system.start_links(mode, state)
     return mode, state, memory

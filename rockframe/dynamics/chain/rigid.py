@@ -47,6 +47,7 @@ class RigidChain(RigidCorners):
     @inlined
     def begin_event(self, memory: Vector) -> None:
         """Forget what the last event left: unless told, one set of corners was admissible."""
+        memory[HELD_PLACE + self.body_count] = 0.0
         memory[HELD_PLACE + self.body_count + ADMISSIBLE] = 1.0
 
     @inlined

@@ -298,7 +298,8 @@ class Chain(Rows):
 
     @inlined
     def begin_event(self, memory: Vector) -> None:
-        """Forget what the last event left: nothing here."""
+        """Forget what the last event left: whose it was."""
+        memory[HELD_PLACE + self.body_count] = 0.0
 
     @inlined
     def link_place(self) -> int:
@@ -391,7 +392,12 @@ class Chain(Rows):
             out[j + 10], out[j + 11] = room[i + at.THRUST], room[i + at.PRESS]
             out[j + 12], out[j + 13] = body.rotation, body.vertical
             put(self.observed_base(k, standing, body), j + COLUMNS - OBSERVED, out)
+            self.observe_slip(k, mode, state, memory, out)
         return out
+
+    @inlined
+    def observe_slip(self, k: int, mode: int, state: Vector, memory: Vector, out: Vector) -> None:
+        """Write how far a body has slipped on its base: none does here."""
 
     @inlined
     def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:

@@ -11,7 +11,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from . import ties
+
 TINY = 1e-9
+STOPPED = 1e-11
 REST = 1e-10  # rotation over that of unstable equilibrium
 MOST_EVENTS = 4000
 LONGEST = 0.005  # step, that no margin falls and rises again in one [s]
@@ -47,6 +50,11 @@ class Block:
     normal: np.ndarray
     limits: tuple  # rotations to the left and to the right at which it overturns
     events: list = field(default_factory=list)
+    tied: list = field(default_factory=list)  # a `ties.Tie` each
+
+    def seen_by_ties(self, z):
+        """Rotation, height and place as ties have them, and their rates."""
+        return z[2], z[1] - self.height, z[0], z[5], z[4], z[3]
 
     def ground(self, t, piece):
         t0, t1 = self.times[piece], self.times[piece + 1]
@@ -77,6 +85,8 @@ class Block:
         m[0, 0] = m[1, 1] = 1.0
         m[2, 2] = self.inertia
         f[:2] = -ground[0], -self.gravity - ground[1]
+        turning, up, across = ties.forces(self.tied, self.seen_by_ties(z), math)
+        f[:3] += across, up, turning
         w2 = z[5] * z[5]
         for k, which in enumerate(mode.corners):
             r, dr = self.corner(which, z[2])
@@ -103,6 +113,7 @@ class Block:
     def margins(self, mode, z, ground):
         """Functions that are positive as long as the mode lasts, by name."""
         found = {f"gap {c}": self.gap(c, z) for c in "RL" if c not in mode.corners}
+        found |= ties.guards_of(self.tied, self.seen_by_ties(z))
         if not mode.corners:
             return found
         _, normal, friction = self.forces(mode, z, ground)
@@ -175,16 +186,25 @@ class Block:
             new = np.array([z[0], self.height, 0.0, vx, 0.0, 0.0])
             return new, self.next_mode(new, ground, None, "LR"), False
         new_mode = self.next_mode(new, ground, None, which)
-        if both and new_mode.corners == which and mode.corners == other:
+        if both and new_mode.corners in (which, "") and mode.corners == other:
             angle = math.atan2(self.right if which == "R" else self.left, self.height)
-            a = self.forces(new_mode, new, ground)[0][2]
-            held = self.forces(mode, z, ground)[0][2]
-            side = 1.0 if which == "R" else -1.0
-            if -side * a > 0.0 and new[5] ** 2 < -2.0 * side * a * REST * angle:
-                flat = np.array([z[0], self.height, 0.0, new[3] - new[5] * self.height, 0.0, 0.0])
-                resting = self.next_mode(flat, ground, None, "LR")
+            slip, leans, still = new[3] - new[5] * self.height, new_mode, new.copy()
+            if slip**2 < REST * self.gravity * self.height:  # too low to be told
+                still[3], slip = still[3] - slip, 0.0
+                leans = Mode(which, 0) if new_mode.corners else new_mode
+            a = self.forces(leans, still, ground)[0]
+            falls = -self.corner_acceleration(other, still, a)[1] / (self.left + self.right)
+            if falls > 0.0 and new[5] ** 2 < 2.0 * falls * REST * angle:
+                flat = np.array([z[0], self.height, 0.0, slip, 0.0, 0.0])
+                resting, side = (
+                    self.next_mode(flat, ground, None, "LR"),
+                    1.0 if which == "R" else -1.0,
+                )
+                held = self.forces(mode, flat, ground)[0][2]
                 if resting.corners == "LR" and -side * held <= 0.0:
                     return flat, resting, True
+                if not new_mode.corners and resting.corners == other:  # it bounces on both
+                    return flat, resting, False
         return new, new_mode, False
 
     def simulate(self, rotation, duration, rtol=1e-11, stop=True):
@@ -196,6 +216,8 @@ class Block:
         z = np.array([d - r[0], -r[1], a, 0.0, 0.0, 0.0])
         if a == 0.0:
             z = np.array([0.0, self.height, 0.0, 0.0, 0.0, 0.0])
+        for tie in self.tied:
+            tie.begin(self.height, self.seen_by_ties(z))
         mode = None
         t, piece, peak, peak_slip = 0.0, 0, abs(a), 0.0
         while t < duration - 1e-12:
@@ -205,11 +227,16 @@ class Block:
             touching = "LR" if z[2] == 0.0 and mode is None else which if mode is None else None
             if mode is None:
                 mode = self.next_mode(z, ground, None, touching)
-                if mode.slip:
+                if not mode.corners:
+                    self.events.append((t, "SEPARATION"))
+                elif mode.corners != touching:
+                    self.events.append((t, "UPLIFT"))
+                elif mode.slip:
                     self.events.append((t, "SLIP"))
             else:  # the ground may have jumped
                 margins = self.margins(mode, z, ground)
-                if min(margins.values()) < -1e-7:
+                own = [one for name, one in margins.items() if "tie" not in name]
+                if min(own, default=0.0) < -1e-7:
                     mode = self.changed(t, mode, None, z, ground)
             end = min(self.times[piece + 1], duration)
             t, z, mode, found, slipped, fell = self.go(t, z, mode, piece, end, rtol)
@@ -250,10 +277,14 @@ class Block:
     def go(self, t, z, mode, piece, end, rtol):
         """Integrate up to the next event or the end of a piece."""
         names = list(self.margins(mode, z, self.ground(t, piece)))
+        last = [None, {}]
 
         def event(name):
             def margin(time, state):
-                return self.margins(mode, state, self.ground(time, piece))[name]
+                at = time, *state
+                if at != last[0]:  # all events ask at the same places
+                    last[:] = at, self.margins(mode, state, self.ground(time, piece))
+                return last[1][name]
 
             margin.terminal, margin.direction = True, -1.0
             return margin
@@ -270,6 +301,9 @@ class Block:
         ground = self.ground(t, piece)
         a = self.forces(mode, z, ground)[0]
         longest = LONGEST
+        if self.tied:  # nor of a tie
+            stiffest = max(math.sqrt(tie.stiffness) for tie in self.tied)
+            longest = min(longest, 0.1 / stiffest)
         for c in "RL":  # a corner that has just left comes back
             if c not in mode.corners:
                 opens, closing = self.rates(c, z)[1], self.corner_acceleration(c, z, a)[1]
@@ -301,7 +335,20 @@ class Block:
             self.events.append((t, "OVERTURNING"))
             return t, z, mode, peak, max(slips), True
         name, ground = names[hit], self.ground(t, piece)
+        if name[-1] == "turn" and self.stops(mode, z, ground):
+            name = "slip"  # the tie turns since the block stops
         z = self.tidied(mode, z)
+        if name[0] == "tie":
+            tie, kind = self.tied[name[1]], name[2]
+            self.events.append((t, ties.event_of(tie, kind)))
+            tie.switch(kind, self.seen_by_ties(z))
+            turned = ties.turn_others(self.tied, self.seen_by_ties(z))
+            self.events += [(t, one) for one in turned]
+            if tie.state == ties.BROKEN and mode.corners:
+                shown = len(self.events)
+                mode = self.changed(t, mode, None, z, ground)
+                del self.events[shown:]  # it is the tie's
+            return t, z, mode, peak, max(slips), False
         if name.startswith("gap"):
             which = name[-1]
             other = "L" if which == "R" else "R"
@@ -312,11 +359,20 @@ class Block:
                 z[1] -= self.gap(which, z)
             z, new, rests = self.land(mode, which, z, ground)
             self.events.append((t, "REST" if rests else "IMPACT"))
+            turned = ties.turn_others(self.tied, self.seen_by_ties(z))
+            self.events += [(t, one) for one in turned]
             return t, self.tidied(new, z), new, peak, max(slips), False
         if name == "slip":
             z[3] -= self.rates(mode.corners[-1], z)[0]
-            return t, z, self.changed(t, mode, None, z, ground), peak, max(slips), False
+            new = self.changed(t, mode, None, z, ground)
+            return t, z, new, peak, max(slips), False
         return t, z, self.changed(t, mode, mode, z, ground), peak, max(slips), False
+
+    def stops(self, mode, z, ground):
+        """Whether a block that slides on its whole base comes to a stop."""
+        if mode.corners != "LR" or not mode.slip or abs(z[3]) > STOPPED:
+            return False
+        return mode.slip * self.forces(mode, z, ground)[0][0] < 0.0
 
     def tidied(self, mode, z):
         """Put the state back on the constraints that the steps have left by rounding."""

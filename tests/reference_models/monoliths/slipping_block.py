@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from . import ties
+
 MOST_EVENTS = 500
 
 
@@ -173,6 +175,11 @@ class Block:
     side: int = 0  # of the leading corner
     offset: float = 0.0
     events: list = field(default_factory=list)
+    tied: list = field(default_factory=list)  # a `ties.Tie` each
+
+    def seen_by_ties(self, z):
+        """Rotation, height and place as ties have them, and their rates."""
+        return z[2], z[1], z[0], z[5], z[4], z[3]
 
     def ground(self, t, piece):
         share = (t - self.times[piece]) / (self.times[piece + 1] - self.times[piece])
@@ -220,20 +227,21 @@ class Block:
         forces = self.base.forces(self, z)
         pressing = sum(one for one, _ in forces)
         moment = sum(one * lever for one, lever in forces)
-        up = pressing - self.gravity - ground[1]
+        turning, lift, across = ties.forces(self.tied, self.seen_by_ties(z), math)
+        up, moment = pressing - self.gravity - ground[1] + lift, moment + turning
         if self.flies():
-            return (-ground[0], up, moment / self.inertia), 0.0, 0.0
+            return (across - ground[0], up, moment / self.inertia), 0.0, 0.0
         r, bend = self.arm(z)
         if self.slip:
             h = -self.slip * self.kinetic * max(pressing, 0.0)
-            return (h - ground[0], up, (moment - r * h) / self.inertia), h, pressing
+            return (h + across - ground[0], up, (moment - r * h) / self.inertia), h, pressing
         # x'' = r a'' + bend a'^2, x'' = H - ground, I a'' = moment - r H
         matrix = np.array([[1.0, -r, 0.0], [1.0, 0.0, -1.0], [0.0, self.inertia, r]])
-        x, turning, h = np.linalg.solve(matrix, [bend * z[5] ** 2, -ground[0], moment])
+        x, turning, h = np.linalg.solve(matrix, [bend * z[5] ** 2, across - ground[0], moment])
         return (x, up, turning), h, pressing
 
     def guards(self, z, ground):
-        found = self.base.guards(self, z)
+        found = self.base.guards(self, z) | ties.guards_of(self.tied, self.seen_by_ties(z))
         if self.rule == "leading-corner" and self.side and not self.flies():
             found["pivot", ""] = self.side * z[2]
         if self.flies():
@@ -289,6 +297,14 @@ class Block:
             v -= inverse * tangent * (tangent @ v) / (tangent * inverse @ tangent)
         z[3:] = v
 
+    def tie_ends(self, i, kind, z, ground, t):
+        """Go on to the next state of a tie."""
+        tie = self.tied[i]
+        self.events.append((t, ties.event_of(tie, kind)))
+        tie.switch(kind, self.seen_by_ties(z))
+        if tie.state == ties.BROKEN:
+            self.decide(z, ground)
+
     def fell(self, kind, side, z, ground, t):
         """What a fallen guard changes."""
         was, before = self.slip, self.place(z)
@@ -323,6 +339,8 @@ class Block:
         """Integrate from a state at rest; gives peaks of rotation and slip, and the events."""
         z = np.array(z, dtype=float)
         self.side = 0 if z[2] == 0.0 else int(math.copysign(1, z[2]))
+        for tie in self.tied:
+            tie.begin(self.height, self.seen_by_ties(z))
         for one in "LR":
             self.base.contact[one] = self.base.starting(*self.corner(one, z)[:2], one)
         self.offset = -self.place(z)
@@ -349,9 +367,14 @@ class Block:
             end = min(self.times[piece + 1], duration)
             names = list(self.guards(z, self.ground(t, piece)))
 
-            def event(name, piece=piece):
+            last = [None, {}]
+
+            def event(name, piece=piece, last=last):
                 def guard(time, state):
-                    return self.guards(state, self.ground(time, piece))[name]
+                    at = time, *state
+                    if at != last[0]:  # all events ask at the same places
+                        last[:] = at, self.guards(state, self.ground(time, piece))
+                    return last[1][name]
 
                 guard.terminal, guard.direction = True, -1.0
                 return guard
@@ -386,7 +409,12 @@ class Block:
                     overturned = True
                     self.events.append((t, "OVERTURNING"))
                     break
-                self.fell(*names[hit], z, self.ground(t, piece), t)
+                if names[hit][0] == "tie":
+                    self.tie_ends(*names[hit][1:], z, self.ground(t, piece), t)
+                else:
+                    self.fell(*names[hit], z, self.ground(t, piece), t)
+                turned = ties.turn_others(self.tied, self.seen_by_ties(z))
+                self.events += [(t, one) for one in turned]
             pieces += 1
             if pieces > MOST_EVENTS:
                 msg = "too many events"

@@ -13,6 +13,8 @@ import numpy as np
 
 from . import Guard
 
+CLEAR = 1e-14
+STILL = 1e-13
 SLACK, TAUT, YIELDING, PRESSED, BROKEN = "slack", "taut", "yielding", "pressed", "broken"
 
 
@@ -43,9 +45,11 @@ class Tie:
         x = self.length(z)[0] - self.natural
         # a tie that has yielded on the way to the start is about to be unloaded there
         if x > self.most:
-            self.state, self.set = (BROKEN, 0.0) if self.brittle else (TAUT, x - self.most)
+            left = x - self.most + CLEAR * self.natural
+            self.state, self.set = (BROKEN, 0.0) if self.brittle else (TAUT, left)
         elif self.compression and x < -self.most:
-            self.state, self.set = (BROKEN, 0.0) if self.brittle else (TAUT, x + self.most)
+            left = x + self.most - CLEAR * self.natural
+            self.state, self.set = (BROKEN, 0.0) if self.brittle else (TAUT, left)
         else:
             self.state = TAUT if x > 0.0 or self.compression else SLACK
 
@@ -120,7 +124,9 @@ class Tie:
         """Go on to the next state."""
         x = self.length(z)[0] - self.natural - self.set
         if kind == "turn":
-            self.set += x - (self.most if self.state == YIELDING else -self.most)
+            sign = 1.0 if self.state == YIELDING else -1.0
+            # clear of its strength, that rounding does not let it yield again
+            self.set += x - sign * self.most + sign * CLEAR * self.natural
             self.state = TAUT
         elif kind in ("yield", "press") and self.brittle:
             self.loss += 0.5 * self.stiffness * x * x
@@ -132,10 +138,45 @@ class Tie:
     def turned(self, z) -> bool:
         """Whether something has turned a tie that yields."""
         sign = {YIELDING: 1.0, PRESSED: -1.0}.get(self.state, 0.0)
-        return bool(sign * self.length(z)[2] < 0.0)
+        return bool(sign * self.length(z)[2] < -STILL)
 
 
 KINDS = ("taut", "slack", "yield", "press", "turn")
+EVENTS = {
+    "slack": "RESTRAINER_SLACK",
+    "taut": "RESTRAINER_TAUT",
+    "yield": "RESTRAINER_YIELD",
+    "press": "RESTRAINER_YIELD",
+    "turn": "RESTRAINER_UNLOADING",
+}
+"""What results call the end of a state of a tie that does not break."""
+
+
+def event_of(tie, kind):
+    """Give what results call the end of a state, before the switch."""
+    return "RESTRAINER_FRACTURE" if kind in ("yield", "press") and tie.brittle else EVENTS[kind]
+
+
+def turn_others(ties, z):
+    """Unload ties that something has turned; give what results call that, once for each."""
+    found = []
+    for tie in ties:
+        if tie.turned(z):
+            found.append(event_of(tie, "turn"))
+            tie.switch("turn", z)
+    return found
+
+
+def guards_of(ties, z):
+    """Give the guards of all ties at a state of rotation, height and place, and their rates."""
+    found = {}
+    for i, tie in enumerate(ties):
+        length, _, rate, _ = tie.length(z)
+        for guard in tie.guards(i):
+            value = tie.value(guard.kind, length, rate, 0.0)[0]
+            # one that yields as its body stops has not turned yet
+            found["tie", i, guard.kind] = value + (STILL if guard.kind == "turn" else 0.0)
+    return found
 
 
 def forces(ties, z, xp=np):

@@ -1,0 +1,353 @@
+"""How a block slides, rocks and flies on rigid ground with friction, page "Sliding".
+
+One set of equations, :eq:`eq-slide-planar`, of slip, rotation and rise: the mode says which of
+them move, and whether friction holds or opposes the slip. All quantities per unit mass.
+"""
+
+import math
+from typing import Final, NamedTuple
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics import events
+from rockframe.dynamics.base import Guards
+from rockframe.dynamics.protocol import (
+    BODY_COLUMNS,
+    MEMORY,
+    Column,
+    Energies,
+    Ground,
+    Numbers,
+    Slope,
+)
+from rockframe.dynamics.trigonometry import sine_cosine
+
+# what bears: both corners, one, or none; a mode is three times this, and the slip
+FULL: Final = 0
+ON_RIGHT: Final = 1
+ON_LEFT: Final = 2
+FLIES_RIGHT: Final = 3  # coordinates are those of the right corner
+FLIES_LEFT: Final = 4
+BEARINGS: Final = 5
+HELD: Final = 0
+TO_RIGHT: Final = 1
+TO_LEFT: Final = 2
+SLIPS: Final = 3
+MODES: Final = BEARINGS * SLIPS
+
+# the state: slip and rise of the corner that bears, from its place at rest, and the rotation
+SLIP: Final = 0
+ROTATION: Final = 1
+RISE: Final = 2
+SIZE: Final = 3
+
+# guards
+LANDING: Final = 0  # of the other corner while one bears, of the own one in flight
+STOPPING: Final = 1  # of the slip; in flight landing of the other corner
+PRESSING: Final = 2  # on the right corner: at rest, it tips over it; of the corner that slips
+TIPS_LEFT: Final = 3
+SLIPS_RIGHT: Final = 4
+SLIPS_LEFT: Final = 5
+GUARDS: Final = 6
+
+PEAK_LEFT: Final = len(MEMORY)
+PEAK_RIGHT: Final = PEAK_LEFT + 1
+REMEMBERED: Final = (*MEMORY, "peak_slip_left", "peak_slip_right")
+"""Behind what every system keeps: the largest slips. A slip turns round at events alone."""
+
+ROUNDING: Final = 1e-12
+"""Accelerations over gravity, and heights over the block's size, that are rounding."""
+
+COLUMNS: Final = (
+    *BODY_COLUMNS,
+    Column("left_reaction", per_mass=True),
+    Column("right_reaction", per_mass=True),
+    Column("slip"),
+    Column("slip_velocity"),
+)
+
+
+class Contact(NamedTuple):
+    """Accelerations of slip, rotation and rise, and force of the ground on the block."""
+
+    slip: float
+    rotation: float
+    rise: float
+    along: float
+    normal: float
+
+
+class Loads(NamedTuple):
+    """What acts on the block beside the ground's forces: seen from the moving ground."""
+
+    across: float  # force along the ground that keeps the block from sliding, if it stands
+    weight: float  # force normal to it that keeps the block from sinking
+    turning: float  # moment about the centre of mass, over the mass
+
+
+class SlideMotion:
+    """Motion, guards, energies and columns of a block. A mixin of named tuples."""
+
+    __slots__ = ()
+    left: float  # from the foot of the centre of mass to both corners
+    right: float
+    height: float  # of the centre of mass
+    inertia: float  # about the centre of mass
+    static: float  # coefficients of friction
+    kinetic: float
+    gravity: float
+
+    @inlined
+    def bodies(self) -> int:
+        """Give 1, the number of bodies."""
+        return 1
+
+    @kernel
+    def coordinates(self) -> int:
+        """Give 3: slip, rotation, rise."""
+        return SIZE
+
+    @kernel
+    def variables(self) -> int:
+        """Give 0."""
+        return 0
+
+    @kernel
+    def guards(self) -> int:
+        """Give the number of guards."""
+        return GUARDS
+
+    @kernel
+    def modes(self) -> int:
+        """Give the number of modes."""
+        return MODES
+
+    @inlined
+    def moving_in(self, mode: int) -> int:
+        """Give how many of slip, rotation and rise change, in this order."""
+        bears = self.bears_in(mode)
+        if bears == FULL:
+            return 0 if mode % SLIPS == HELD else 1
+        return SIZE if bears >= FLIES_RIGHT else 2
+
+    @inlined
+    def contact_state_of(self, mode: int, k: int) -> int:
+        """Give which corner bears."""
+        bears = self.bears_in(mode)
+        if bears == FULL:
+            return events.FULL
+        if bears >= FLIES_RIGHT:
+            return events.FLIGHT
+        return events.RIGHT if bears == ON_RIGHT else events.LEFT
+
+    @inlined
+    def relaxation_in(self, mode: int) -> float:
+        """Give 0: no constraint decays."""
+        return 0.0
+
+    @kernel
+    def some_end_slides(self, mode: int) -> bool:
+        """Give False: of ends on springs, of which there are none."""
+        return False
+
+    @inlined
+    def without_sliding(self, mode: int) -> int:
+        """Give the mode itself."""
+        return mode
+
+    @inlined
+    def bears_in(self, mode: int) -> int:
+        """Give what bears in a mode, in which may stand more than that and the slip."""
+        return mode // SLIPS % BEARINGS
+
+    @inlined
+    def with_contact(self, mode: int, contact: int) -> int:
+        """Give the mode in which bearing and slip are others."""
+        return mode - mode % MODES + contact
+
+    @inlined
+    def side(self, bears: int) -> float:
+        """Give 1 where coordinates are those of the right corner, -1 of the left one."""
+        return -1.0 if bears in (ON_LEFT, FLIES_LEFT) else 1.0
+
+    @inlined
+    def sense(self, mode: int) -> float:
+        """Give the sign of the slip, 0 where friction holds."""
+        slip = mode % SLIPS
+        return 0.0 if slip == HELD else 1.0 if slip == TO_RIGHT else -1.0
+
+    @inlined
+    def distance(self, side: float) -> float:
+        """Give how far a corner is from the foot of the centre of mass."""
+        return self.right if side > 0.0 else self.left
+
+    @inlined
+    def reach(self, side: float, rotation: float) -> tuple[float, float]:
+        """Give the place of the centre of mass to the right of a corner, and above it."""
+        sine, cosine = sine_cosine(rotation)
+        away = side * self.distance(side)
+        return self.height * sine - away * cosine, self.height * cosine + away * sine
+
+    @inlined
+    def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
+        """Give what acts on the block: weight and inertia, whatever its state."""
+        return Loads(ground.x, self.gravity + ground.y, 0.0)
+
+    @inlined
+    def contact(self, mode: int, state: Vector, loads: Loads) -> Contact:
+        """Give the motion in a mode, :eq:`eq-slide-planar` under its constraints.
+
+        Of a corner that slips it is :eq:`eq-slide-rocking`.
+        """
+        bears, sense = self.bears_in(mode), self.sense(mode)
+        across, weight, turning = loads
+        if bears == FULL:
+            along = across if sense == 0.0 else -sense * self.kinetic * weight
+            return Contact(along - across, 0.0, 0.0, along, weight)
+        beside, above = self.reach(self.side(bears), state[ROTATION])
+        square = state[SIZE + ROTATION] * state[SIZE + ROTATION]
+        pressing = weight - above * square
+        if bears >= FLIES_RIGHT:
+            turns = turning / self.inertia
+            slip = beside * square - across - above * turns
+            return Contact(slip, turns, beside * turns - pressing, 0.0, 0.0)
+        if sense == 0.0:
+            inertia = self.inertia + beside * beside + above * above
+            turns = (weight * beside - across * above + turning) / inertia
+            along = across + above * turns - beside * square
+            return Contact(0.0, turns, 0.0, along, pressing - beside * turns)
+        arm = beside + sense * self.kinetic * above
+        turns = (pressing * arm + turning) / (self.inertia + beside * arm)
+        normal = pressing - beside * turns
+        along = -sense * self.kinetic * normal
+        slip = along - across - above * turns + beside * square
+        return Contact(slip, turns, 0.0, along, normal)
+
+    @inlined
+    def speeds(self, mode: int, state: Vector) -> tuple[float, float]:
+        """Give the velocity of the centre of mass relative to the ground."""
+        beside, above = self.reach(self.side(self.bears_in(mode)), state[ROTATION])
+        rate = state[SIZE + ROTATION]
+        return state[SIZE + SLIP] + above * rate, state[SIZE + RISE] - beside * rate
+
+    @inlined
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
+        """Give accelerations, what friction dissipates, and what the ground puts in."""
+        if mode == HELD:
+            return 0.0, 0.0, 0.0, 0.0, 0.0
+        return self.accelerations(mode, state, ground, self.loads(mode, state, ground))
+
+    @inlined
+    def accelerations(
+        self, mode: int, state: Vector, ground: Ground, loads: Loads
+    ) -> tuple[float, float, float, float, float]:
+        """Give the same under loads that are known."""
+        found = self.contact(mode, state, loads)
+        across, up = self.speeds(mode, state)
+        supplied = -ground.x * across - ground.y * up
+        lost = -found.along * state[SIZE + SLIP]
+        return found.slip, found.rotation, found.rise, lost, supplied
+
+    @inlined
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the powers of :meth:`accelerate` alone, which the compiler merges with it."""
+        found = self.accelerate(mode, state, ground)
+        return found[SIZE], found[SIZE + 1]
+
+    @inlined
+    def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Give the guards, :eq:`eq-slide-guards`."""
+        return self.guards_under(mode, state, slope, self.loads(mode, state, ground))
+
+    @inlined
+    def guards_under(self, mode: int, state: Vector, slope: Slope, loads: Loads) -> Guards:
+        """Give the same under loads that are known."""
+        scale, size = 1.0 / self.gravity, 1.0 / (self.left + self.right)
+        bears, sense, rate = self.bears_in(mode), self.sense(mode), state[SIZE + ROTATION]
+        side = self.side(bears)
+        landing = falling = stopping = slowing = pressing = left = to_right = to_left = 1.0
+        if bears >= FLIES_RIGHT:
+            sine, cosine = sine_cosine(state[ROTATION])
+            landing, falling = size * state[RISE], size * state[SIZE + RISE]
+            stopping, slowing = landing + side * sine, falling + side * cosine * rate
+        else:
+            if bears != FULL:
+                landing, falling = side * state[ROTATION], side * rate
+            found = self.contact(mode, state, loads)
+            if sense != 0.0:
+                speed = 1.0 / math.sqrt(self.gravity * self.height)
+                # a slip that starts is not stopped by rounding
+                slowing = speed * (sense * slope[SLIP] + ROUNDING * self.gravity)
+                stopping = speed * sense * state[SIZE + SLIP]
+                pressing = scale * found.normal
+            else:
+                most = self.static * found.normal
+                to_right, to_left = scale * (most + found.along), scale * (most - found.along)
+            if bears == FULL:
+                tips = found.along - loads.turning / self.height
+                pressing = scale * (self.right / self.height * found.normal + tips)
+                left = scale * (self.left / self.height * found.normal - tips)
+        values = landing, stopping, pressing, left, to_right, to_left
+        return Guards(values, (falling, slowing, 0.0, 0.0, 0.0, 0.0))
+
+    @kernel
+    def kinetic_energy(self, mode: int, state: Vector) -> float:
+        """Give the kinetic energy relative to the ground."""
+        across, up = self.speeds(mode, state)
+        rate = state[SIZE + ROTATION]
+        return 0.5 * (across * across + up * up + self.inertia * rate * rate)
+
+    @kernel
+    def centre_rise(self, mode: int, state: Vector) -> float:
+        """Give the rise of the centre of mass, to all digits."""
+        sine, _ = sine_cosine(state[ROTATION])
+        half, _ = sine_cosine(0.5 * state[ROTATION])
+        side = self.side(self.bears_in(mode))
+        return state[RISE] + side * self.distance(side) * sine - 2.0 * self.height * half * half
+
+    @kernel
+    def energies(self, mode: int, state: Vector) -> Energies:
+        """Give kinetic and gravity energy; nothing is elastic."""
+        return self.energies_alone(mode, state)
+
+    @inlined
+    def energies_alone(self, mode: int, state: Vector) -> Energies:
+        """Give the energies of the block by itself."""
+        kinetic = self.kinetic_energy(mode, state)
+        return Energies(kinetic, self.gravity * self.centre_rise(mode, state), 0.0, 0.0)
+
+    @kernel
+    def observe(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> Numbers:
+        """Give the motion of the centre of mass, the reactions, and the slip."""
+        return self.columns_under(mode, state, slope, self.loads(mode, state, ground))
+
+    @inlined
+    def centre_acceleration(self, mode: int, state: Vector, slope: Slope) -> tuple[float, float]:
+        """Give the acceleration of the centre of mass relative to the ground, from a slope."""
+        beside, above = self.reach(self.side(self.bears_in(mode)), state[ROTATION])
+        square = state[SIZE + ROTATION] * state[SIZE + ROTATION]
+        sway = slope[SLIP] + above * slope[ROTATION] - beside * square
+        return sway, slope[RISE] - beside * slope[ROTATION] - above * square
+
+    @kernel
+    def columns_under(
+        self, mode: int, state: Vector, slope: Slope, loads: Loads
+    ) -> tuple[float, ...]:
+        """Give the same under loads that are known."""
+        bears, rotation, rate = self.bears_in(mode), state[ROTATION], state[SIZE + ROTATION]
+        side = self.side(bears)
+        beside, _ = self.reach(side, rotation)
+        across, up = self.speeds(mode, state)
+        sway, rise = self.centre_acceleration(mode, state, slope)
+        shear, bearing = sway + loads.across, rise + loads.weight
+        left, right = (0.0, bearing) if side > 0.0 else (bearing, 0.0)
+        if bears == FULL:
+            width = self.left + self.right
+            tips = self.height * shear - loads.turning
+            left = (self.right * bearing + tips) / width
+            right = (self.left * bearing - tips) / width
+        place = state[SLIP] + (side * self.distance(side) + beside)
+        lift = self.centre_rise(mode, state)
+        body = rotation, rate, lift, up, place, shear, across, slope[ROTATION], sway, rise
+        return body + (shear, bearing, left, right, state[SLIP], state[SIZE + SLIP])

@@ -1,0 +1,255 @@
+"""A block that slides, rocks and flies on rigid ground, with links: its equations and its model.
+
+Links act on the block as weight and inertia do, :eq:`eq-slide-tied`: motion and switches are those
+of :mod:`rockframe.dynamics.slide_motion` and :mod:`rockframe.dynamics.slide_rock`. The state of
+each link stands in the mode beside bearing and slip.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from rockframe.compiled import Vector, inlined, kernel, put, stretch
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.link_rows import (
+    MOVED_X,
+    MOVED_Y,
+    OWN_RATE,
+    OWN_SINE,
+    OWN_VERSINE,
+    ChainLink,
+)
+from rockframe.dynamics.chain.linked import Linked, rows_of_links, with_room
+from rockframe.dynamics.chain.model import (
+    links_shown,
+    scales_of_links,
+    tie_columns,
+    tie_tolerance,
+)
+from rockframe.dynamics.chain.rows import PLACES
+from rockframe.dynamics.protocol import ContactModel, Energies, Ground, Guards, Slope, Start
+from rockframe.dynamics.slide_motion import (
+    COLUMNS,
+    FULL,
+    GUARDS,
+    MODES,
+    REMEMBERED,
+    RISE,
+    ROTATION,
+    SIZE,
+    SLIP,
+    Loads,
+)
+from rockframe.dynamics.slide_rock import SlideRock, SlideSwitches
+from rockframe.dynamics.slide_rock_model import slide_rock
+from rockframe.dynamics.trigonometry import sine_cosine, versine
+
+OWN_COLUMNS: Final = len(COLUMNS)
+LINK_PLACE: Final = len(REMEMBERED)
+"""Index into the memory: the link of the last event, counted from 1; 0 for none."""
+
+
+class TiedNumbers(NamedTuple):
+    """The numbers of a block with links: first those of :class:`SlideRock`."""
+
+    left: float
+    right: float
+    height: float
+    inertia: float
+    static: float
+    kinetic: float
+    impulsive: float
+    left_lever: float
+    right_lever: float
+    gravity: float
+    body_count: int  # 1
+    link_count: int
+    law: Any  # of the class of all links; its numbers are those of one of them
+    rows: Vector  # room for the block; then rows of the links, and room to work in
+
+
+class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[reportGeneralTypeIssues]
+    """A block on rigid ground with friction and links, per unit mass: a system."""
+
+    __slots__ = ()
+
+    @inlined
+    def places(self) -> Vector:
+        """Give the room for speeds, loads and accelerations of the block."""
+        return stretch(self.rows, 0, PLACES)
+
+    @inlined
+    def behind_bodies(self) -> int:
+        """Give the place behind the room of the block."""
+        return PLACES
+
+    @inlined
+    def own_guards(self) -> int:
+        """Give the number of guards of the block."""
+        return GUARDS
+
+    @inlined
+    def own_columns(self) -> int:
+        """Give the number of columns of the block."""
+        return OWN_COLUMNS
+
+    @inlined
+    def link_place(self) -> int:
+        """Give the place of the last event's link in the memory."""
+        return LINK_PLACE
+
+    @inlined
+    def begin_event(self, memory: Vector) -> None:
+        """Forget what the last event left: nothing but its link."""
+
+    @kernel
+    def lay(self, mode: int, state: Vector, room: Vector) -> None:
+        """Write where the block is, from where it is given, and how it moves."""
+        lies, side = self.lies(), self.side(self.bears_in(mode))
+        sine, cosine = sine_cosine(state[ROTATION])
+        lacks = versine(sine, cosine)
+        aside = self.height * sine + side * self.distance(side) * lacks
+        lies[MOVED_X], lies[MOVED_Y] = state[SLIP] + aside, self.centre_rise(mode, state)
+        lies[OWN_SINE], lies[OWN_VERSINE] = sine, lacks
+        lies[OWN_RATE] = state[SIZE + ROTATION]
+        room[at.SPEED_X], room[at.SPEED_Y] = self.speeds(mode, state)
+
+    @inlined
+    def set_out(self, mode: int, state: Vector, room: Vector) -> None:
+        """Write the same: all of it follows from the state."""
+        self.lay(mode, state, room)
+
+    @inlined
+    def pulled(self, mode: int, state: Vector, ground: Ground) -> tuple[Loads, float]:
+        """Give what acts on the block, :eq:`eq-slide-tied`, and what links dissipate."""
+        room = self.places()
+        room[at.LOAD_X] = room[at.LOAD_Y] = room[at.LOAD_MOMENT] = 0.0
+        lost = self.pull(mode, state, room)
+        across, weight = ground.x - room[at.LOAD_X], self.gravity + ground.y - room[at.LOAD_Y]
+        return Loads(across, weight, room[at.LOAD_MOMENT]), lost
+
+    @kernel
+    def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
+        """Give what acts on the block: weight, inertia, and the forces of links."""
+        return self.pulled(mode, state, ground)[0]
+
+    @kernel
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
+        """Give accelerations, rates of the links' variables, and powers."""
+        out = self.slopes()
+        loads, lost = self.pulled(mode, state, ground)
+        found = self.accelerations(mode, state, ground, loads)
+        out[SLIP], out[ROTATION], out[RISE] = found[SLIP], found[ROTATION], found[RISE]
+        powers = SIZE + self.variables()
+        out[powers], out[powers + 1] = found[SIZE] + lost, found[SIZE + 1]
+        return out
+
+    @kernel
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the power dissipated at the rates of the slope, and that put in at those given."""
+        across, up = self.speeds(mode, state)
+        return slope[SIZE + self.variables()], -ground.x * across - ground.y * up
+
+    @kernel
+    def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
+        """Write the guards of the block, and their rates."""
+        values, changes = self.guard_room(0), self.guard_room(1)
+        found = self.guards_under(mode, state, slope, self.loads(mode, state, ground))
+        put(found.values, 0, values)
+        put(found.changes, 0, changes)
+        return Guards(values, changes)
+
+    @kernel
+    def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
+        """Write the acceleration of the block, from a slope."""
+        room = self.places()
+        self.lay(mode, state, room)
+        sway, rise = self.centre_acceleration(mode, state, slope)
+        room[at.X], room[at.Y], room[at.ROTATION] = sway, rise, slope[ROTATION]
+
+    @inlined
+    def switch_body(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Carry out the switch that a guard of the block calls for; give the new mode."""
+        return self.switch_contact(mode, guard, state, ground, memory)
+
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Carry out the switch that a guard calls for; give the new mode.
+
+        A link that breaks, or a wall that is touched, may leave friction more than it can hold.
+        """
+        new = self.switch_one(mode, guard, state, ground, memory)
+        # a slip that starts at once goes on
+        if guard >= GUARDS and (self.sense(new) == 0.0 or state[SIZE + SLIP] != 0.0):
+            new = self.go_on(new, state, ground, False, FULL)
+        return new
+
+    @kernel
+    def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
+        """Give the energies of the block."""
+        return self.energies_alone(mode, state)
+
+    @kernel
+    def observe_bodies(
+        self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
+    ) -> Vector:
+        """Write motion, reactions and slip of the block."""
+        out = self.column_room()
+        put(self.columns_under(mode, state, slope, self.loads(mode, state, ground)), 0, out)
+        return out
+
+
+def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) -> ContactModel:
+    """Assemble the model of a block that slides and rocks with links, of some mass [kg]."""
+    alone = slide_rock(bare, mass=mass)
+    law, rows = rows_of_links(ties, MODES, 1)
+    filled = np.concatenate([np.zeros(PLACES), *rows])
+    system: TiedSlideRock = with_room(TiedSlideRock(*bare, 1, len(ties), law, filled), filled)
+    upright, at_rest, _ = alone.initial(Start())
+    none = np.zeros(system.variables())
+    system.keep_energies(system.start_links(upright, state := np.append(at_rest, none)), state)
+
+    def initial(start: Start) -> tuple[int, Vector, Vector]:
+        mode, state, memory = alone.initial(start)
+        state = np.append(state, none)
+        return system.start_links(mode, state), state, np.append(memory, 0.0)
+
+    frequency, damping = fastest_pull(bare, ties)
+    tied = links_shown(ties)
+    return replace(
+        alone,
+        system=system,
+        scales=np.append(alone.scales, scales_of_links(system, ties)),
+        guard_tolerance=np.concatenate([alone.guard_tolerance, *map(tie_tolerance, ties)]),
+        columns=(
+            *alone.columns,
+            *(column for i in range(len(ties)) for column in tie_columns(i, shown=i < tied)),
+        ),
+        memory=(*alone.memory, "link_of_event"),
+        links=tied,
+        selects=True,
+        fastest_frequency=math.hypot(alone.fastest_frequency, frequency),
+        damping_rate=damping,
+        initial=initial,
+    )
+
+
+def fastest_pull(bare: SlideRock, ties: Sequence[ChainLink]) -> tuple[float, float]:
+    """Give bounds of angular frequency and damping rate of a block that links alone hold."""
+    stiffness, damping = np.zeros((3, 3)), np.zeros((3, 3))
+    for tie in ties:
+        sign = 1.0 if tie.on == 0 else -1.0
+        x, y = tie.on_point if tie.on == 0 else tie.to_point
+        way = sign * np.array([[1.0, 0.0, y], [0.0, 1.0, -x]])
+        stiffness += tie.numbers.stiffness * way.T @ way
+        damping += tie.numbers.damping * way.T @ way
+    per_inertia = np.diag([1.0, 1.0, 1.0 / bare.inertia])
+    most, slowed = (
+        float(np.linalg.eigvals(per_inertia @ one).real.max()) for one in (stiffness, damping)
+    )
+    return math.sqrt(max(most, 0.0)), max(slowed, 0.0)

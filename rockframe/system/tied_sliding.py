@@ -1,0 +1,118 @@
+"""The scene of a block with links that slides on rigid ground: its numbers, words and model."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from rockframe.components import RigidGround, Tendon
+from rockframe.components.ground import Impact
+from rockframe.errors import AssemblyError
+from rockframe.system.fitting import friction_under
+from rockframe.system.rigid_base import pressed
+from rockframe.system.setting import SlipRange
+from rockframe.system.sliding_ground import (
+    friction_to_roll_over,
+    ill_posed,
+    impact_words,
+    slide_rock_of,
+    slips_on_ground,
+)
+from rockframe.system.stack import StackSetting
+from rockframe.system.words import SLIPS, Words
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.protocol import ContactModel, Ending
+
+
+@dataclass(frozen=True)
+class TiedSlidingSetting(StackSetting):
+    """A block with links on rigid ground, on which it slides."""
+
+    impact: Impact = Impact.COULOMB  # law of its impacts
+    slides = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "rigid-restrained-sliding"
+
+    def cautions(self) -> list[str]:
+        """Give warnings, also of a block that its restrainers move at once."""
+        held = pressed(self, 0, self._tied_at_rest)
+        static = self.frictions[0][0]
+        if abs(held.along) <= static * held.force:
+            return super().cautions()
+        slides = (
+            f"the block slides under its restrainers and loads: at rest it needs a friction of "
+            f"{abs(held.along) / held.force:.4g}, and has {static:.4g}"
+        )
+        return [*super().cautions(), slides]
+
+    def words(self) -> Words:
+        """Tell the block, its links and its friction."""
+        told = super().words()
+        ((static, kinetic),) = self.frictions
+        return Words(
+            equations=[
+                ("full", "at rest while friction holds the base, and until it tips; else it slides "
+                 "on its whole base"),
+                ("left, right", "it rocks about the corner that bears while friction holds that, "
+                 "and slips on it otherwise"),
+                SLIPS,
+                ("flight", "nothing bears: N = 0"),
+                ("impact", f"{self.impact}: {impact_words(self.impact)}; restrainers, whose forces "
+                 "are finite, have no part in it"),
+                *(one for one in told.equations if one[0] == "restrainers"),
+            ],
+            restraint="friction at the corner that bears, or on the whole base (the restraint "
+            "options make no difference)",
+            numbers=[
+                *told.numbers,
+                ("friction at rest, and of slip", f"{static:.6g}, {kinetic:.6g}"),
+                ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
+            ],
+            left_out=[one for one in told.left_out if one != "sliding"],
+        )  # fmt: skip
+
+    @cached_property
+    def _sliding_model(self) -> "ContactModel":
+        """The equations of slip, rotation and rise, with links."""
+        from rockframe.dynamics.slide_rock_model import slide_rock
+        from rockframe.dynamics.tied_slide_rock import tied_slide_rock
+
+        self._rest  # noqa: B018 - refuses a block that its links tip over
+        bare = slide_rock_of(
+            self.body, self.frictions[0], self.impact, self.body.maximum_restitution,
+            self.gravity,
+        )  # fmt: skip
+        if not self.chain_ties:  # of loads that are masses
+            return slide_rock(bare, mass=self.body.mass)
+        return tied_slide_rock(bare, self.chain_ties, mass=self.body.mass)
+
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of slip, rotation and rise, with links."""
+        return self._sliding_model
+
+    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+        """Tell how far the block slipped."""
+        return (slips_on_ground(ending),)
+
+
+def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
+    """Give the setting of a block with links: of one that slides where the ground has friction."""
+    found = friction_under(ground, held.options)
+    if found is None:
+        return held
+    faults = [
+        f"{one.name}: a Tendon is bent over the edges of a duct that goes through, and a block "
+        "that slides shears it there: give the depth below the base at which it is held"
+        for one in held.ties
+        if isinstance(one.part, Tendon) and one.part.si.depth == 0.0
+    ]
+    faults += ill_posed(held.body, found[1])
+    if faults:
+        raise AssemblyError(faults)
+    return TiedSlidingSetting(
+        held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties, (found,),
+        impact=ground.si.impact,
+    )  # fmt: skip

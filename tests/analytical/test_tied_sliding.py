@@ -1,0 +1,262 @@
+"""Blocks that slide with ties: limits, closed forms, mirror images, energies, and what is told."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.errors import AssemblyError
+
+pytestmark = [pytest.mark.analytical, pytest.mark.filterwarnings("ignore")]
+
+BLOCK = rf.Block(width="1 m", height="3 m", mass="1 t")
+LOW = rf.Block(width="2 m", height="1 m", mass="1 t")
+GROUND = rf.RigidGround()
+PADS = rf.TwoSpringSupport(frequency_ratio=12, damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="2 MPa", damping_ratio=0.1)
+BASES = pytest.mark.parametrize("base", [GROUND, PADS, SOIL], ids=["ground", "pads", "soil"])
+TIMES = np.arange(0.0, 1.01, 0.05)
+ACROSS, UP = 3.8 * np.sin(9.0 * TIMES), 2.0 * np.sin(14.0 * TIMES)
+GRAVITY = 9.80665
+
+
+def ties(sign=1.0, **changed):
+    """A slack tie at mid-height, and an anchor that yields, on either side."""
+    upper = rf.Restrainer(
+        on=(f"{-0.5 * sign} m", "2 m"), to=(f"{-1.2 * sign} m", "2 m"), name="upper",
+        **{"stiffness": "60 kN/m", "slack": "5 mm", "damping": "200 N s/m", **changed},
+    )  # fmt: skip
+    anchor = rf.Restrainer(
+        on=(f"{0.5 * sign} m", "0.1 m"), to=(f"{0.7 * sign} m", "0 m"), stiffness="90 kN/m",
+        strength="1.2 kN", brittle=False, name="anchor",
+    )  # fmt: skip
+    return upper, anchor
+
+
+def run(base, *others, sign=1.0, block=BLOCK, accuracy="reference", **options):
+    motion = rf.GroundMotion.from_arrays(
+        (sign * ACROSS, "m/s^2"), "0.05 s", vertical=(UP, "m/s^2")
+    )  # fmt: skip
+    return rf.System(block, base, *others, **options).simulate(
+        motion, free_vibration="0.3 s", accuracy=accuracy, outputs=("energy",)
+    )
+
+
+def kinds_of(found):
+    names = found.event_kind.attrs["flag_meanings"].split()
+    return [names[kind - 1] for kind in found.event_kind.values]
+
+
+@BASES
+def test_friction_without_end_holds_the_base(base):
+    """To rounding; on rigid ground the equations are others, and what happens at once is so."""
+    endless = {"friction": 1e9}
+    if base is GROUND:
+        endless |= {"kinetic_friction": 0.5, "impact": "stick"}
+    held = run(base, *ties(), restraint="leading-corner")
+    far = run(base.replace(**endless), *ties(), restraint="leading-corner")
+    assert held.peak_rotation > 1e-3
+    assert far.attrs["verdict"].startswith("Did not slide")
+    assert abs(far.rotation - held.rotation).max() < 1e-11 * held.peak_rotation
+    # up to rest, from which a tie that has no length to spare is taut or slack by rounding
+    last = kinds_of(held).index("rest") if "rest" in kinds_of(held) else None
+    first = [one.event_time.values[:last] for one in (far, held)]
+    np.testing.assert_allclose(*first, rtol=0.0, atol=1e-8)
+    assert sorted(kinds_of(far)[:last]) == sorted(kinds_of(held)[:last])
+
+
+@BASES
+@pytest.mark.parametrize("stiffness", ["60 kN/m", "1 GN/m"])
+def test_a_tie_that_is_never_taut_changes_nothing(base, stiffness):
+    base = base.replace(friction=0.15, kinetic_friction=0.12)
+    free = run(base)
+    slack = run(base, ties(slack="100 m", damping=None, stiffness=stiffness)[0])
+    assert free.peak_slip > 1e-3
+    for name in ("slip", "rotation"):
+        assert abs(slack[name] - free[name]).max() <= 1e-12 * abs(free[name]).max()
+    assert kinds_of(slack) == kinds_of(free)
+    assert slack.peak_restrainer_force == 0.0
+
+
+@BASES
+def test_mirror_images_are_the_same(base):
+    one, other = (
+        run(base.replace(friction=0.1), *ties(sign), sign=sign, accuracy="standard")
+        for sign in (1.0, -1.0)
+    )
+    assert one.peak_slip > 1e-3
+    np.testing.assert_allclose(one.slip, -other.slip, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(one.rotation, -other.rotation, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(one.restrainer_force, other.restrainer_force, rtol=0.0, atol=1e-6)
+
+
+@BASES
+def test_energies_balance_with_those_of_ties_and_friction(base):
+    found = run(base.replace(friction=0.15, kinetic_friction=0.1), *ties())
+    assert found.peak_slip > 1e-3
+    assert {"slip", "restrainer_taut", "restrainer_yield"} <= set(kinds_of(found))
+    assert found.energy_residual < 1e-8
+    assert (np.diff(found.dissipated_energy) >= -1e-9 * found.dissipated_energy.max().item()).all()
+    assert found.elastic_energy.max() > found.elastic_energy[0]
+
+
+def bar(stiffness, **changed):
+    """A bar at the height of the centre of mass of the low block, which stays level."""
+    at = {"on": ("1 m", "0.5 m"), "to": ("3 m", "0.5 m")}
+    return rf.Restrainer(stiffness=f"{stiffness!r} N/m", compression=True, **at, **changed)
+
+
+def steady(acceleration, duration=2.0):
+    count = round(duration / 0.02) + 1
+    return rf.GroundMotion.from_arrays((np.full(count, acceleration), "m/s^2"), "0.02 s")
+
+
+def test_a_tied_slide_decays_as_coulomb_has_it():
+    """Each half of a vibration ends 2 mu g/omega^2 nearer to where the spring balances the push."""
+    stiffness, friction, push = 2e4, 0.1, 6.0
+    rate, grip = math.sqrt(stiffness / 1e3), friction * GRAVITY
+    system = rf.System(LOW, rf.RigidGround(friction=friction), bar(stiffness))
+    found = system.simulate(steady(-push, 2.5), duration="2.5 s", accuracy="reference")
+    turns = found.event_kind.values == rf.dynamics.events.EventKind.SLIP_REVERSAL
+    half = math.pi / rate
+    expected = half * np.arange(1, 1 + turns.sum())
+    np.testing.assert_allclose(found.event_time.values[turns], expected, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(found.peak_slip, 2.0 * (push - grip) / rate**2, rtol=1e-9)
+    # of the place of balance: push - grip, less 2 grip at each turn, until friction holds it
+    swing, place, sense = (push - grip) / rate**2, 0.0, 1.0
+    while True:
+        place += sense * 2.0 * swing
+        sense, left = -sense, abs(rate**2 * place - push)
+        if left <= grip:
+            break
+        swing = (left - grip) / rate**2
+    np.testing.assert_allclose(found.residual_slip, place, rtol=1e-9)
+
+
+def test_what_is_slipped_before_a_tie_breaks_is_newmarks_after():
+    stiffness, friction, push, strength = 5e4, 0.2, 5.0, 1.5e3
+    system = rf.System(
+        LOW, rf.RigidGround(friction=friction),
+        bar(stiffness, strength=f"{strength!r} N", brittle=True),
+    )  # fmt: skip
+    found = system.simulate(steady(-push, 0.5), duration="0.4 s", accuracy="reference")
+    ((breaks,),) = (found.event_time.values[np.array(kinds_of(found)) == "restrainer_fracture"],)
+    rate, pull = math.sqrt(stiffness / 1e3), push - friction * GRAVITY
+    broken_at = strength / stiffness
+    when = math.acos(1.0 - broken_at * rate**2 / pull) / rate
+    speed = pull / rate * math.sin(rate * when)
+    np.testing.assert_allclose(breaks, when, rtol=1e-9)
+    after = 0.4 - when
+    np.testing.assert_allclose(
+        found.residual_slip, broken_at + speed * after + 0.5 * pull * after**2, rtol=1e-9
+    )
+
+
+def test_friction_that_a_tie_relieves_lets_go_as_it_breaks():
+    """A tie that presses the block down on its corner takes its grip with it."""
+    tie = rf.Restrainer(
+        on=("-0.5 m", "3 m"), to=("-0.5 m", "-2 m"), stiffness="40 kN/m", strength="3 kN",
+        brittle=True,
+    )  # fmt: skip
+    ground = rf.RigidGround(friction=0.55, kinetic_friction=0.5)
+    system = rf.System(BLOCK, ground, tie)
+    found = system.simulate(steady(-6.5, 1.0), duration="1 s", accuracy="reference")
+    assert "restrainer_fracture" in kinds_of(found)
+    assert found.energy_residual < 1e-8
+    broken = found.event_time.values[kinds_of(found).index("restrainer_fracture")]
+    free = rf.System(BLOCK, ground).simulate(steady(-6.5, 1.0), duration="1 s")
+    assert broken > free.first_uplift_time
+
+
+@pytest.mark.parametrize("stiffness", [1e6, 1e8])
+def test_a_very_stiff_tie_holds_the_corner_that_slides(stiffness):
+    """By half the slip that a spring of that stiffness allows, at each stiffness."""
+    start = rf.InitialState(rotation="0.1 rad")
+    options = {"duration": "0.15 s", "initial": start, "accuracy": "reference"}
+    held = rf.System(BLOCK, rf.RigidGround(friction=10.0, kinetic_friction=0.5)).simulate(**options)
+    stiff = rf.Restrainer(
+        on=("0.5 m", "0 m"), to=("1.5 m", "0 m"), stiffness=f"{stiffness!r} N/m", compression=True
+    )
+    found = rf.System(BLOCK, rf.RigidGround(friction=0.0), stiff).simulate(**options)
+    shear = abs(held.base_shear).max().item()
+    assert 0.0 < found.peak_slip < 3.0 * shear / stiffness
+    assert abs(found.rotation - held.rotation).max() < 30.0 * shear / stiffness
+    assert found.energy_residual < 1e-8
+
+
+def test_a_preload_that_friction_cannot_hold_is_told():
+    pulls = rf.Restrainer(
+        on=("-0.5 m", "0.5 m"), to=("-2 m", "0.5 m"), stiffness="10 kN/m", preload="2 kN"
+    )
+    with pytest.warns(rf.errors.ModelWarning, match="at rest it needs a friction of 0.2039, and"):
+        weak = rf.System(BLOCK, rf.RigidGround(friction=0.15), pulls)
+    found = weak.simulate(duration="1 s", accuracy="reference")
+    assert found.residual_slip < -0.01
+    assert "Slid" in found.attrs["verdict"]
+    strong = rf.System(BLOCK, rf.RigidGround(friction=0.25), pulls).simulate(duration="1 s")
+    assert strong.peak_slip == 0.0
+
+
+def test_a_wall_and_a_load_join_in():
+    wall = rf.RearWall(side="left", stiffness="2 MN/m", damping="10 kN s/m", gap="10 mm")
+    load = rf.Load(at=("0.1 m", "3 m"), vertical="2 kN", horizontal="0.2 kN")
+    found = run(rf.RigidGround(friction=0.2), wall, load)
+    assert found.peak_slip > 1e-3
+    assert found.peak_restrainer_force > 0.0
+    assert found.energy_residual < 1e-8
+    heavier = rf.Load(at=("0 m", "1.5 m"), moving_mass="1 t")
+    alone = run(rf.RigidGround(friction=0.2), heavier)
+    assert "restrainer" not in alone.dims
+    assert alone.peak_slip > 1e-3
+
+
+def test_a_stack_slides_with_ties():
+    joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=0.2)
+    upper = rf.Block(width="0.8 m", height="1.5 m", mass="500 kg")
+    lower = BLOCK.replace(height="1 m")
+    stack = rf.Stack(upper, lower, interfaces=[joint])
+    tie = rf.Restrainer(
+        on=("-0.4 m", "1 m"), to=("-1 m", "1 m"), on_body=1, to_body=2, stiffness="30 kN/m",
+        slack="2 mm",
+    )  # fmt: skip
+    to_ground = rf.Restrainer(
+        on=("0.5 m", "0.9 m"), to=("1.5 m", "0.9 m"), on_body=2, stiffness="200 kN/m"
+    )
+    found = run(PADS.replace(friction=0.3), tie, to_ground, block=stack)
+    assert (abs(found.body_slip).max("time") > 1e-4).all()
+    assert found.energy_residual < 1e-8
+    # an impact with a restitution acts on bases that friction holds, and otherwise on held ones
+    full = {"restitution": 1.0}
+    bare, held = (
+        run(
+            PADS.replace(friction=friction, **full), tie, to_ground, restraint="leading-corner",
+            block=rf.Stack(upper, lower, interfaces=[joint.replace(friction=friction, **full)]),
+        )
+        for friction in (None, 1e9)
+    )  # fmt: skip
+    # up to a flight, from which a body that friction takes hold of comes to rest in a while
+    apart = abs(held.rotation - bare.rotation).sel(time=slice(0.0, 1.1)).max()
+    assert apart < 1e-12 * bare.peak_rotation
+
+
+def test_what_has_no_answer_is_refused():
+    bent = rf.Tendon(stiffness="5 MN/m", preload="2 kN")
+    with pytest.raises(AssemblyError, match="shears it there: give the depth"):
+        rf.System(BLOCK, rf.RigidGround(friction=0.5), bent).describe()
+    deep = rf.Tendon(stiffness="5 MN/m", preload="2 kN", depth="1 m")
+    assert "slip" in rf.System(BLOCK, rf.RigidGround(friction=0.5), deep).describe()
+    with pytest.raises(AssemblyError, match="may jam"):
+        rf.System(BLOCK, rf.RigidGround(friction=1.5), *ties()).describe()
+    with pytest.raises(AssemblyError, match="rotation='finite'"):
+        rf.System(BLOCK, rf.RigidGround(friction=0.5), *ties(), rotation="small").describe()
+
+
+@BASES
+def test_friction_that_is_checked_holds_and_tells(base):
+    scene = rf.System(BLOCK, base.replace(friction=0.05), *ties(), sliding="checked")
+    found = scene.simulate(duration="1 s", motion=rf.GroundMotion.from_arrays(
+        (ACROSS, "m/s^2"), "0.05 s"
+    ))  # fmt: skip
+    assert bool(found.would_slide)
+    assert "slip" not in found
