@@ -16,7 +16,13 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests")]
 
-from reference_models.sliding import compare, draw, draw_on_base  # noqa: E402
+from reference_models.sliding import (  # noqa: E402
+    compare,
+    draw,
+    draw_on_base,
+    draw_tied,
+    draw_tied_on_base,
+)
 
 import rockframe as rf  # noqa: E402
 
@@ -128,17 +134,27 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=300)
     parser.add_argument("--on-bases", type=int, default=60, help="scenes on pads and beds")
+    parser.add_argument("--tied", type=int, default=200, help="scenes on rigid ground with ties")
+    parser.add_argument("--tied-on-bases", type=int, default=100, help="on pads and beds")
     parser.add_argument("--runs", type=int, default=20_000)
     parser.add_argument("--json", type=Path, default=ROOT / "docs" / "data" / "sliding.json")
     given = parser.parse_args()
     warnings.simplefilter("ignore")
-    found = {"seed": SEED}
+    # what is not asked for stays
+    found = json.loads(given.json.read_text()) if given.json.exists() else {}
+    found |= {"seed": SEED}
     if given.runs:
         found["until the end"] = until_the_end(given.runs)
     if given.scenes:
         found["against a monolith"] = against_monolith(given.scenes)
     if given.on_bases:
         found["on pads and beds"] = against_monolith(given.on_bases, draw_on_base, SEED + 1)
+    if given.tied:
+        found["with ties"] = against_monolith(given.tied, draw_tied, SEED + 10)
+    if given.tied_on_bases:
+        found["with ties on pads and beds"] = against_monolith(
+            given.tied_on_bases, draw_tied_on_base, SEED + 11
+        )
     text = json.dumps(found, indent=1, default=int)  # counts of NumPy among them
     given.json.write_text(text + "\n", encoding="utf-8")
     print(text)

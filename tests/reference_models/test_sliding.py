@@ -2,7 +2,13 @@
 
 import numpy as np
 import pytest
-from reference_models.sliding import compare, draw, draw_on_base
+from reference_models.sliding import (
+    compare,
+    draw,
+    draw_on_base,
+    draw_tied,
+    draw_tied_on_base,
+)
 
 pytestmark = [pytest.mark.reference_models, pytest.mark.filterwarnings("ignore")]
 
@@ -12,6 +18,27 @@ SCENES = (2, 4, 8, 11, 15, 21, 33)
 
 # pads and beds under each rule of restraint, with landings, flights, a slope, and overturning
 ON_BASES = (1, 2, 8, 10, 13, 18, 20)
+
+
+# with ties that become taut and slack, yield and break, preloaded ones and bars
+TIED = (0, 7, 16, 30)
+TIED_ON_BASES = (1, 2, 3)
+
+
+@pytest.mark.parametrize("number", TIED)
+def test_random_scenes_with_ties(number):
+    check(compare(draw_tied(np.random.default_rng([40, number]))))
+
+
+@pytest.mark.parametrize("number", TIED_ON_BASES)
+def test_random_scenes_with_ties_on_pads_and_beds(number):
+    check(compare(draw_tied_on_base(np.random.default_rng([41, number]))))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("number", [5, 12, 14, 18, 20, 22, 24])
+def test_more_random_scenes_with_ties(number):
+    check(compare(draw_tied(np.random.default_rng([40, number]))))
 
 
 @pytest.mark.parametrize("number", SCENES)
