@@ -10,7 +10,7 @@ from rockframe.command.shared import motion_from
 from rockframe.command.streams import STREAM, tell
 from rockframe.errors import FileError
 from rockframe.serve import Server
-from rockframe.serve.controls import Record
+from rockframe.serve.controls import NamedRecord
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
@@ -26,7 +26,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     return 0
 
 
-def _record(arguments: argparse.Namespace) -> Record:
+def _record(arguments: argparse.Namespace) -> NamedRecord:
     if arguments.record == STREAM:
         words = "a scene's file names its record; give a file in the place of '-'"
         raise FileError(STREAM, [(None, words)])
@@ -36,4 +36,4 @@ def _record(arguments: argparse.Namespace) -> Record:
         for name in ("component", "unit", "time_step")
         if getattr(arguments, name) is not None
     }
-    return Record(motion_from(arguments.record, arguments), keys)
+    return NamedRecord(motion_from(arguments.record, arguments), keys)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import hinted, one_of_words, whole_number
 from rockframe.components import (
     Block,
     FrameEquivalent,
@@ -57,6 +57,7 @@ class SpringsOfBase(NamedTuple):
     words: str  # what they are, and what to expect
 
 
+@hinted()
 def to_opensees(
     system: System,
     motion: GroundMotion,

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.measures.common import (
     GroundComponent,
     build_over,
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 _PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}
 
 
+@hinted()
 def velocity_and_displacement(
     motion: "GroundMotion", *, component: str = "horizontal"
 ) -> xr.Dataset:
@@ -87,6 +89,7 @@ def velocity_and_displacement(
 _OWNER: Final = "fourier_spectrum"
 
 
+@hinted()
 def fourier_spectrum(
     motion: "GroundMotion",
     *,

@@ -51,7 +51,7 @@ FREE_VIBRATION: Final = "5 s"
 
 
 @dataclass(frozen=True)
-class Record:
+class NamedRecord:
     """The record that was handed to the server, and the keys that read it."""
 
     motion: GroundMotion
@@ -59,7 +59,7 @@ class Record:
 
 
 @dataclass(frozen=True)
-class Choice:
+class Tried:
     """What was chosen on the page."""
 
     numbers: Mapping[str, float]
@@ -86,7 +86,7 @@ class Choice:
         }  # fmt: skip
         return System(*(kinds[name](**table) for name, table in self.parts.items()))
 
-    def ground(self, record: Record | None) -> GroundMotion:
+    def ground(self, record: NamedRecord | None) -> GroundMotion:
         """Make the motion."""
         if self.motion == RECORD and record is not None:
             motion = record.motion
@@ -97,7 +97,7 @@ class Choice:
         scale = self.numbers["scale"]
         return motion if scale == 1.0 else motion.scaled(scale)
 
-    def toml(self, record: Record | None) -> str:
+    def toml(self, record: NamedRecord | None) -> str:
         """Write the scene as a file for the command line."""
         if self.motion == RECORD and record is not None:
             motion = dict(record.keys)
@@ -120,13 +120,13 @@ class Choice:
         return next(one for one in CONTROLS if one.name == name).quantity(self.numbers[name])
 
 
-def motions_with(record: Record | None) -> dict[str, str]:
+def motions_with(record: NamedRecord | None) -> dict[str, str]:
     """Give the motions that can be chosen, the record first where there is one."""
     own = {} if record is None else {RECORD: f"Record: {record.motion.name}"}
     return {**own, **PULSES, EXAMPLE: "Example record (Loma Prieta 1989)"}
 
 
-def read_choice(given: Mapping[str, str], record: Record | None) -> tuple[Choice, list[str]]:
+def read_choice(given: Mapping[str, str], record: NamedRecord | None) -> tuple[Tried, list[str]]:
     """Read what the address of the page says; what is wrong keeps its default, and is told."""
     faults = [*_unknown(given)]
     numbers = dict[str, float]()
@@ -146,7 +146,7 @@ def read_choice(given: Mapping[str, str], record: Record | None) -> tuple[Choice
                 f"{name}: found {shown(words[name])}; expected one of {', '.join(known)}{near}"
             )
             words[name] = next(iter(known))
-    return Choice(numbers, words["base"], words["motion"]), faults
+    return Tried(numbers, words["base"], words["motion"]), faults
 
 
 def _unknown(given: Mapping[str, str]) -> Iterator[str]:

@@ -8,14 +8,14 @@ from urllib.parse import urlencode
 
 from rockframe.reports.page import banner
 from rockframe.reports.values import powers_in_html
-from rockframe.serve.controls import BASES, CONTROLS, PULSES, Choice, Control
+from rockframe.serve.controls import BASES, CONTROLS, PULSES, Control, Tried
 
 STYLE: Final = "/page.css"
 SCRIPT: Final = "/page.js"
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ToldOutcome:
     """What a choice came to."""
 
     title: str
@@ -26,7 +26,7 @@ class Outcome:
     player: str  # a page
 
 
-def whole(choice: Choice, motions: Mapping[str, str], outcome: str) -> str:
+def trial_page(choice: Tried, motions: Mapping[str, str], outcome: str) -> str:
     """Give the page."""
     groups = [
         _group("Body", "", _numbers(choice, "", without=("scale",))),
@@ -51,7 +51,7 @@ def whole(choice: Choice, motions: Mapping[str, str], outcome: str) -> str:
     )
 
 
-def told(outcome: Outcome, query: Mapping[str, str]) -> str:
+def told(outcome: ToldOutcome, query: Mapping[str, str]) -> str:
     """Give the part of the page that tells what became of the body."""
     address = escape(urlencode(query))
     cautions = "".join(banner("To be used with care", one, "doubt") for one in outcome.warnings)
@@ -88,7 +88,7 @@ def _choices(name: str, known: Mapping[str, str], chosen: str) -> str:
     return f'<label>{title}<select name="{name}">{options}</select></label>'
 
 
-def _numbers(choice: Choice, of: str, *, only: str = "", without: Sequence[str] = ()) -> list[str]:
+def _numbers(choice: Tried, of: str, *, only: str = "", without: Sequence[str] = ()) -> list[str]:
     return [
         _number(one, choice.numbers[one.name])
         for one in CONTROLS

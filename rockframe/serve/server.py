@@ -15,8 +15,14 @@ from rockframe import plot
 from rockframe.errors import PLEASE_REPORT, ComponentError, RockframeError, collected_warnings
 from rockframe.results.outcome import verdict_of
 from rockframe.serve import page
-from rockframe.serve.controls import FREE_VIBRATION, Choice, Record, motions_with, read_choice
-from rockframe.serve.page import Outcome
+from rockframe.serve.controls import (
+    FREE_VIBRATION,
+    NamedRecord,
+    Tried,
+    motions_with,
+    read_choice,
+)
+from rockframe.serve.page import ToldOutcome
 
 LOOPBACK: Final = "127.0.0.1"
 _MOVING: Final = "The run as it moves"
@@ -46,7 +52,7 @@ class Server(ThreadingHTTPServer):
     ----------
     port : int
         Of the loopback address; 0 takes one that is free.
-    record : Record, optional
+    record : NamedRecord, optional
         That can be chosen beside pulses and the example.
 
     Raises
@@ -58,7 +64,7 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = sys.platform != "win32"
 
-    def __init__(self, port: int = 0, record: Record | None = None) -> None:
+    def __init__(self, port: int = 0, record: NamedRecord | None = None) -> None:
         try:
             super().__init__((LOOPBACK, port), _Handler)
         except (OSError, OverflowError) as problem:
@@ -70,14 +76,14 @@ class Server(ThreadingHTTPServer):
         self.record = record
         self.hosts = {f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost")}
         self._lock = threading.Lock()  # one run at a time, and one user of matplotlib
-        self._outcomes = OrderedDict[str, Outcome]()
+        self._outcomes = OrderedDict[str, ToldOutcome]()
 
     @property
     def address(self) -> str:
         """The address of the page."""
         return f"http://{LOOPBACK}:{self.server_port}/"
 
-    def outcome(self, choice: Choice) -> Outcome:
+    def outcome(self, choice: Tried) -> ToldOutcome:
         """Simulate a choice, or remember what it came to."""
         toml = choice.toml(self.record)
         with self._lock:
@@ -88,13 +94,13 @@ class Server(ThreadingHTTPServer):
             self._outcomes.move_to_end(toml)
             return self._outcomes[toml]
 
-    def _simulated(self, choice: Choice, toml: str) -> Outcome:
+    def _simulated(self, choice: Tried, toml: str) -> ToldOutcome:
         with collected_warnings() as said:
             motion = choice.ground(self.record)
             run = choice.system().simulate(motion, free_vibration=FREE_VIBRATION)
             player = plot.player(run, title=_MOVING).to_html()
         title, kind = _TITLES[verdict_of(run)]
-        return Outcome(title, str(run.attrs["verdict"]), kind, tuple(said), toml, player)
+        return ToldOutcome(title, str(run.attrs["verdict"]), kind, tuple(said), toml, player)
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -140,7 +146,7 @@ class _Handler(BaseHTTPRequestHandler):
             and self.headers.get("Sec-Fetch-Site") not in ("cross-site", "same-site")
         )
 
-    def _found(self, query: Mapping[str, str]) -> tuple[Choice, Outcome | None, list[str]]:
+    def _found(self, query: Mapping[str, str]) -> tuple[Tried, ToldOutcome | None, list[str]]:
         choice, faults = read_choice(query, self.server.record)
         if faults:
             return choice, None, faults
@@ -155,7 +161,9 @@ class _Handler(BaseHTTPRequestHandler):
     def _page(self, query: Mapping[str, str]) -> None:
         choice, outcome, faults = self._found(query)
         part = page.refused(faults) if outcome is None else page.told(outcome, query)
-        self._send(HTTPStatus.OK, _HTML, page.whole(choice, motions_with(self.server.record), part))
+        self._send(
+            HTTPStatus.OK, _HTML, page.trial_page(choice, motions_with(self.server.record), part)
+        )
 
     def _outcome(self, query: Mapping[str, str]) -> None:
         _, outcome, faults = self._found(query)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, Final, Self, cast
 
 import xarray as xr
 
-from rockframe.arguments import by_words, checked_dataset
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import by_words, checked_dataset, hinted
+from rockframe.errors import ComponentError, nearest, shown
 from rockframe.measures import (
     average_spectral_acceleration,
     intensity_measures,
@@ -105,7 +105,11 @@ class MotionSuite(Mapping[str, GroundMotion]):
     # a mapping ------------------------------------------------------------------------------
 
     def __getitem__(self, label: str) -> GroundMotion:
-        return self._motions[label]
+        try:
+            return self._motions[label]
+        except KeyError:  # as mappings have it
+            msg = f"no motion of the suite is called {shown(label)}{nearest(label, self._motions)}"
+            raise KeyError(msg) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._motions)
@@ -221,6 +225,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
             raise ComponentError(msg)
         return self._with({label: self._motions[label] for label in labels})
 
+    @hinted()
     def sort(self, by: str, *, descending: bool = False) -> Self:
         """Order the motions by a column; those of which it is not known stand last.
 
@@ -312,6 +317,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
         """
         return intensity_measures(self, **arguments)
 
+    @hinted()
     def response_spectrum(
         self,
         periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
@@ -335,6 +341,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
             self, periods, damping_ratios, component=component, interpolation=interpolation
         )
 
+    @hinted()
     def rotated_spectrum(
         self,
         periods: "ArrayLike | Iterable[QuantityLike] | None" = None,
@@ -354,6 +361,7 @@ class MotionSuite(Mapping[str, GroundMotion]):
         """
         return rotated_spectrum(self.pairs, periods, damping_ratios)
 
+    @hinted()
     def average_spectral_acceleration(
         self, periods: "ArrayLike | Iterable[QuantityLike]", damping_ratio: "RatioLike" = 0.05
     ) -> xr.Dataset:

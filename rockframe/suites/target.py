@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, hinted
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
@@ -59,6 +59,7 @@ class TargetSpectrum:
     limits: tuple[float, float] = (0.0, math.inf)
 
     @classmethod
+    @hinted()
     def from_table(
         cls,
         periods: "ArrayLike | Iterable[QuantityLike]",
@@ -134,6 +135,7 @@ class TargetSpectrum:
         )
 
     @classmethod
+    @hinted()
     def from_spectrum(cls, dataset: xr.Dataset, *, name: str = "spectrum") -> Self:
         """Take a target from response spectra: of one motion, or the median of several.
 
@@ -175,6 +177,7 @@ class TargetSpectrum:
         )
 
     @classmethod
+    @hinted()
     def eurocode_8(
         cls,
         ground_acceleration: "QuantityLike",
@@ -227,6 +230,7 @@ class TargetSpectrum:
         return cls(words, shape, None, damping)
 
     @classmethod
+    @hinted()
     def asce_7(
         cls,
         short_period_acceleration: "QuantityLike",
@@ -270,6 +274,7 @@ class TargetSpectrum:
             )
         )  # fmt: skip
 
+    @hinted()
     def at(self, periods: "ArrayLike | Iterable[QuantityLike]") -> Array:
         """Give the accelerations at periods.
 
@@ -362,6 +367,7 @@ class TargetSpectrum:
             self, name=f"{self.name}, times {ratio:g}", shape=_Multiple(ratio, self.shape)
         )
 
+    @hinted()
     def with_deviation(self, standard_deviation: "RatioLike") -> Self:
         """Give a set the same spread at all periods.
 

@@ -14,7 +14,7 @@ import rockframe as rf
 from rockframe.command.files.scenes import read_scene
 from rockframe.errors import ComponentError
 from rockframe.serve import Server
-from rockframe.serve.controls import BASES, CONTROLS, PULSES, Record, motions_with, read_choice
+from rockframe.serve.controls import BASES, CONTROLS, PULSES, NamedRecord, motions_with, read_choice
 
 pytestmark = pytest.mark.unit
 
@@ -24,7 +24,7 @@ def record(tmp_path_factory):
     path = tmp_path_factory.mktemp("records") / 'a "record".AT2'
     shaking = 4.0 * np.sin(np.linspace(0.0, 12.0, 200))
     rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.01 s").to_at2(path)
-    return Record(rf.GroundMotion.read(path), {"file": str(path)})
+    return NamedRecord(rf.GroundMotion.read(path), {"file": str(path)})
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import hinted, one_of_words
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 from rockframe.writing import FileKind, checked_path, write_file
@@ -31,6 +31,7 @@ class WrittenComponent(StrEnum):
     VERTICAL = "vertical"
 
 
+@hinted()
 def to_at2(
     motion: MotionValue,
     path: str | os.PathLike[str],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from rockframe.arguments import truth
+from rockframe.arguments import hinted, truth
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.shared_arguments import documented_by
 from rockframe.solve.accuracy import AccuracyLevel
@@ -165,6 +165,7 @@ def sweep(
         return run_study(study, bar, store=store, executor=executor, chunk=chunk, known=several)
 
 
+@hinted()
 def open_study(path: "str | PathLike[str]", *, lazy: bool = False) -> xr.Dataset:
     """Read what a sweep has kept so far, also while it runs.
 
