@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from analysis_figures import office_contents
+from free_bodies import coupled_forces, two_pads_forces, winkler_bed_forces
 from granite_figures import granite_calibration, granite_fit
 from matplotlib import pyplot
 from matplotlib.axes import Axes
@@ -102,6 +103,9 @@ FIGURES = (
     diagrams,
     suite_spectra,
     conventions,
+    two_pads_forces,
+    winkler_bed_forces,
+    coupled_forces,
     cycloidal_pulses,
     wavelets,
     velocity_pulse,

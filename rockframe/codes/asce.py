@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
+from rockframe.arguments import hinted
 from rockframe.codes.check import (
     CheckedLine,
     CheckedVerdict,
@@ -25,6 +26,7 @@ _RESISTING: Final = 0.9
 """Share of the weight that counts against tipping."""
 
 
+@hinted()
 def asce_7_22(
     block: Block | System,
     floor_motions: GroundMotion | Mapping[str, GroundMotion] | None = None,

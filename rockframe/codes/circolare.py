@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from rockframe.arguments import hinted
 from rockframe.codes.check import (
     CheckedLine,
     CheckedVerdict,
@@ -32,6 +33,7 @@ _SHORTEST: Final = 0.2
 """Of the periods at which the spectra of motions are looked at [s]."""
 
 
+@hinted()
 def circolare_2019(
     system: System,
     demand: TargetSpectrum | GroundMotion | Mapping[str, GroundMotion],

@@ -366,6 +366,29 @@ COMMANDS: Final = (
         ),
     ),
     Command(
+        "serve",
+        "try a scene on a page with sliders",
+        "Serve a page to the browsers of this machine: sliders for the body, its base and the "
+        "motion, the verdict, the run as it moves, and the scene as a file to take away. Ctrl-C "
+        "ends it.",
+        """\
+  rockframe serve
+  rockframe serve record.AT2 --browse
+  rockframe serve --port 8123""",
+        (
+            path("record", nargs="?", metavar="FILE", help="a record that can be chosen, too"),
+            *READING,
+            word(
+                "--port",
+                type=whole_typed,
+                default=8000,
+                metavar="N",
+                help="of this machine; 0 takes a free one (default: 8000)",
+            ),
+            word("--browse", action="store_true", help="open the page in the browser"),
+        ),
+    ),
+    Command(
         "completion",
         "write what a shell needs to complete commands",
         "Write a script with which a shell completes commands, options and names of files.",

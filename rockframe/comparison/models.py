@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from rockframe.arguments import hinted
 from rockframe.components import Component
 from rockframe.components.block_numbers import squat
 from rockframe.errors import ComponentError, ModelWarning
@@ -42,6 +43,7 @@ def check_system(given: object, owner: str) -> None:
         raise ComponentError(msg)
 
 
+@hinted()
 def model_ladder(system: System) -> dict[str, System]:
     """Give the models of a scene, from the simplest to the scene itself.
 

@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.units import POSITIVE, to_ratio
 
@@ -38,6 +39,7 @@ class Recommendation:
         return self.sentence
 
 
+@hinted()
 def recommend(
     dataset: xr.Dataset, tolerance: float = 0.01, *, error: str = "peak_error"
 ) -> Recommendation:

@@ -3,6 +3,7 @@
 from collections.abc import Collection
 from typing import Any, ClassVar, Final, Self, cast
 
+from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.block_numbers import (
@@ -241,6 +242,7 @@ class Block(Component):
         return [Polygon("block", outline), Polygon("block", [(si.eccentricity, si.centre_height)])]
 
     @classmethod
+    @hinted()
     def from_density(
         cls,
         *,
@@ -279,6 +281,7 @@ class Block(Component):
         return cls(width=width, height=height, mass=mass, shape_factor=shape_factor)
 
     @classmethod
+    @hinted()
     def from_size(
         cls,
         *,

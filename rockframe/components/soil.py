@@ -122,6 +122,7 @@ class WinklerSoil(Component):
         return check_frictions("WinklerSoil", given)
 
     @classmethod
+    @hinted()
     def from_subgrade_modulus(
         cls,
         modulus: QuantityLike,

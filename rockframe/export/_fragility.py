@@ -11,7 +11,7 @@ from typing import Any, Final
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, hinted
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
@@ -42,6 +42,7 @@ _OPENQUAKE_MEASURES: Final = {
 }
 
 
+@hinted()
 def to_pelicun(
     fragility: xr.Dataset,
     component: str,
@@ -118,6 +119,7 @@ def to_pelicun(
     return pd.DataFrame([row], index=pd.Index([component], name="ID"))
 
 
+@hinted()
 def to_openquake(
     fragilities: Mapping[str, xr.Dataset],
     path: str | PathLike[str],

@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import hinted, one_of_words, whole_number
 from rockframe.components import (
     Block,
     FrameEquivalent,
@@ -55,6 +55,7 @@ class SpringsOfBase(NamedTuple):
     words: str  # what they are, and what to expect
 
 
+@hinted()
 def to_opensees(
     system: System,
     motion: GroundMotion,

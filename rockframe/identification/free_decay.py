@@ -5,7 +5,7 @@ from typing import Final
 
 import xarray as xr
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import hinted, one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.identification.fitting import fit_history, fit_peaks
 from rockframe.identification.measured import (
@@ -29,6 +29,7 @@ _OWNER: Final = "fit_free_decay"
 _CONFIDENCE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 
 
+@hinted()
 def fit_free_decay(
     system: System,
     measured: xr.DataArray | tuple[object, object] | None = None,

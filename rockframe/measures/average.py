@@ -6,6 +6,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError
 from rockframe.measures.directions import rotated_spectrum
 from rockframe.measures.response import checked_periods, response_spectrum
@@ -23,6 +24,7 @@ _OF_PAIRS: Final = {
 }
 
 
+@hinted()
 def average_spectral_acceleration(
     motion: GroundMotion | HorizontalPair | Mapping[str, GroundMotion | HorizontalPair],
     periods: ArrayLike | Iterable[QuantityLike],

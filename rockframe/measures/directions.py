@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import hinted, whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, check_some
 from rockframe.measures.response import (
@@ -42,6 +42,7 @@ _REFERENCES: Final = (
 _MOST_DIRECTIONS: Final = 3600
 
 
+@hinted()
 def rotated_spectrum(
     pair: HorizontalPair | Mapping[str, HorizontalPair],
     periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -141,6 +142,7 @@ def rotated_spectrum(
     return looked.labelled(dataset)
 
 
+@hinted()
 def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Dataset:
     """Find the axes along which the horizontal components are uncorrelated.
 

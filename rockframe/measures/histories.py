@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.measures.common import (
     GroundComponent,
     build_over,
@@ -21,6 +22,7 @@ from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 _PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}
 
 
+@hinted()
 def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizontal") -> xr.Dataset:
     """Integrate a motion to velocity and displacement of the ground.
 
@@ -81,6 +83,7 @@ def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizon
 _OWNER: Final = "fourier_spectrum"
 
 
+@hinted()
 def fourier_spectrum(
     motion: GroundMotion,
     *,

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
@@ -35,6 +36,7 @@ _OWNER: Final = "intensity_measures"
 _STANDARDIZED_THRESHOLD: Final = 0.025  # g, EPRI (1991)
 
 
+@hinted()
 def intensity_measures(
     motion: GroundMotion | Mapping[str, GroundMotion],
     *,

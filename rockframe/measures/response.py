@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import hinted, one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, read_inputs
 from rockframe.motion import GroundMotion
@@ -28,6 +28,7 @@ _OWNER: Final = "response_spectrum"
 _REMEDY: Final = "interpolation='band-limited' refines records"
 
 
+@hinted()
 def response_spectrum(
     motion: GroundMotion | Mapping[str, GroundMotion],
     periods: ArrayLike | Iterable[QuantityLike] | None = None,

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from rockframe.arguments import hinted
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, RecordError, RecordWarning, shown
 from rockframe.motion.ground_motion import GroundMotion
@@ -83,6 +84,7 @@ class HorizontalPair:
                 raise ComponentError(msg)
 
     @classmethod
+    @hinted()
     def read(cls, path: RecordLike, format: str | None = None) -> HorizontalPair:  # noqa: A002
         """Read both horizontal components of one file, and the vertical one if it is there.
 
@@ -147,6 +149,7 @@ class HorizontalPair:
         """Direction of the major principal axis, from the first component to the second [rad]."""
         return with_quantity(axis_and_intensities(self)[0], ANGLE)
 
+    @hinted()
     def rotated(
         self, angle: QuantityLike | None = None, *, azimuth: QuantityLike | None = None
     ) -> GroundMotion:
@@ -172,6 +175,7 @@ class HorizontalPair:
         turned = self.first.rotated(self.second, angle, azimuth=azimuth)
         return turned if self.vertical is None else turned.with_vertical(self.vertical)
 
+    @hinted()
     def velocity_pulse(
         self, *, shortest_period: QuantityLike = SHORTEST, longest_period: QuantityLike = LONGEST
     ) -> VelocityPulse[GroundMotion]:
@@ -203,6 +207,7 @@ class HorizontalPair:
         )
         return replace(pulse, angle=with_quantity(direction, ANGLE))
 
+    @hinted()
     def in_axes(self, angle: QuantityLike) -> HorizontalPair:
         """Give the components along axes that are turned.
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RockframeWarning, SchemaError
 from rockframe.shared_arguments import Argument, completed, with_raises
 from rockframe.units.shown import KINDS as SHOWN_KINDS
@@ -170,7 +171,7 @@ def draws(function: str = "", *, ax: str = "Axes", title: str = "") -> Callable[
     def decorate(drawing: Drawing) -> Drawing:
         text = completed(drawing.__doc__ or "", signature(drawing).parameters, shared)
         drawing.__doc__ = with_raises(text, refused) if function else text
-        return drawing
+        return hinted()(drawing)
 
     return decorate
 

@@ -104,7 +104,9 @@ def scene_section(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
             if name != "coupling" or system.scene.coupling is not None
         )
     yield page.subtitle("Model")
-    yield page.verbatim(str(dataset.attrs.get("model_description", "not described")))
+    # analyses do not keep the words that a run keeps
+    told = "not described" if system is None else system.describe()
+    yield page.verbatim(str(dataset.attrs.get("model_description", told)))
 
 
 def motion_section(

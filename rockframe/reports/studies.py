@@ -14,7 +14,7 @@ from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.project import Project
-from rockframe.reports.values import table_of, value_of
+from rockframe.reports.values import powers_in_html, table_of, value_of
 from rockframe.results.outcome import overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
@@ -103,7 +103,7 @@ def _is_sweep(dataset: xr.Dataset) -> bool:
 
 def _banner(dataset: xr.Dataset, sentence: str) -> str:
     if "status" not in dataset:
-        return page.banner("Result", sentence, "")
+        return page.banner("Result", powers_in_html(sentence), "")
     fallen = overturned_by(dataset["status"].to_numpy())
     if (fallen == 1.0).any():
         return page.banner("Some cases overturned", sentence, "bad")
@@ -139,7 +139,7 @@ def _cases(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
         rows.append([f"{words} of {count}", *[""] * len(dims[1:]), "",
                      *(_number(float(values(dataset[name].to_numpy())), name, dataset, units)
                        for name in names)])  # fmt: skip
-    yield page.columns(rows, [*(dim.replace("_", " ") for dim in dims), "", *heads])
+    yield page.columns(rows, [*(dim.replace("_", " ") for dim in dims), "verdict", *heads])
 
 
 def _row(
@@ -164,7 +164,7 @@ def _number(value: float, name: str, dataset: xr.Dataset, units: ReaderUnits) ->
 def _head(dataset: xr.Dataset, name: str, units: ReaderUnits) -> str:
     unit = units.of(str(dataset[name].attrs.get("units", "1"))).words
     words = name.replace("_", " ")
-    return words if unit == "1" else f"{words} [{unit}]"
+    return words if unit == "1" else f"{words} [{powers_in_html(unit)}]"
 
 
 def _from_worst(dataset: xr.Dataset) -> np.ndarray:

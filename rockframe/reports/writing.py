@@ -9,7 +9,7 @@ from typing import Final
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, text, truth
+from rockframe.arguments import checked_dataset, hinted, text, truth
 from rockframe.errors import RecordWarning, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.reports import page, sections, studies
@@ -23,6 +23,7 @@ _OWNER: Final = "report"
 _KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"))
 
 
+@hinted()
 def report(
     response: xr.Dataset,
     path: "str | PathLike[str]",

@@ -6,7 +6,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, hinted
 from rockframe.errors import SchemaError, shown
 from rockframe.results.dataset import dated
 from rockframe.results.schema import SCHEMA
@@ -42,6 +42,7 @@ CASE_COUNT: Final = "case_count"
 _OWNER: Final = "concat"
 
 
+@hinted()
 def concat(
     runs: Iterable[xr.Dataset],
     dim: str = "run",

@@ -7,7 +7,7 @@ from typing import Any, Final, cast
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, one_of_words
+from rockframe.arguments import checked_dataset, hinted, one_of_words
 from rockframe.errors import SchemaError
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
@@ -35,6 +35,7 @@ _MISSING: Final = {
 }
 
 
+@hinted()
 def table(
     runs: xr.Dataset | Iterable[xr.Dataset] | Mapping[Any, xr.Dataset],
     contents: str = Contents.SCALARS,

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import Final
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import hinted, whole_number
 from rockframe.components import InitialState
 from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import LEADING_CORNER
@@ -29,6 +29,7 @@ _FARTHEST: Final = 100
 _TOLERANCE: Final = Condition("from 0 to 0.1", lambda value: 0.0 <= value <= 0.1)
 
 
+@hinted()
 def prove(
     system: System,
     motion: GroundMotion | None = None,
@@ -144,6 +145,7 @@ class ProvedBracket:
         return abs(self.overturns - self.safe) / max(self.overturns, self.safe)
 
 
+@hinted()
 def prove_critical_scale(
     system: System,
     motion: GroundMotion | None = None,

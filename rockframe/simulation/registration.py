@@ -5,6 +5,7 @@ from typing import Any, Final, cast
 
 import pint
 
+from rockframe.arguments import hinted
 from rockframe.components import Block, Component
 from rockframe.errors import ComponentError, shown
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
@@ -24,6 +25,7 @@ _OF_A_RUN: Final = (*TIME, *EVENT)
 """Dimensions that every run has."""
 
 
+@hinted()
 def register(
     kind: "type[OwnBase] | type[OwnScene] | type[OwnLink] | Diagnostic | Callable[..., Any]",
     *,

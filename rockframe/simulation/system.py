@@ -356,6 +356,7 @@ class System:
 
         return frequencies(self._assembly)
 
+    @hinted()
     def moment_rotation(self, angles: object) -> xr.Dataset:
         """Give the moments that hold the body at given rotations, in vertical equilibrium.
 

@@ -6,7 +6,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, hinted
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import MOTION
@@ -19,6 +19,7 @@ _OWNER: Final = "ensemble_statistics"
 _SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 
 
+@hinted()
 def ensemble_statistics(
     runs: xr.Dataset | xr.DataArray,
     name: str = "peak_relative_rotation",

@@ -173,7 +173,10 @@ def _made(pulse: object, frequency: float) -> GroundMotion:
         }
         return GroundMotion.from_dict({**described, **changed})
     if not callable(pulse):
-        msg = f"{_OWNER}: pulse must be a GroundMotion or a function, got {shown(pulse)}"
+        msg = (
+            f"{_OWNER}: pulse must be a GroundMotion or a function such as "
+            f"rf.GroundMotion.sine_pulse, got {shown(pulse)}"
+        )
         raise ComponentError(msg)
     made = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
     if not isinstance(made, GroundMotion):

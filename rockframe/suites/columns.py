@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import peak_words
 from rockframe.notebook import CELL, TABLE, card, curve
@@ -103,7 +103,8 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
     """Refuse the name of a column that no motion knows."""
     known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
     if name not in known:
-        msg = f"{owner}: there is no column {shown(name)}; known are {', '.join(known)}"
+        asked = f"{shown(name)}{nearest(name, known)}"
+        msg = f"{owner}: there is no column {asked}; known are {', '.join(known)}"
         raise ComponentError(msg)
 
 

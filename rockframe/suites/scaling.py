@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.results.dataset import build_dataset
@@ -28,6 +29,7 @@ USUAL_BOUNDS: Final = (0.25, 4.0)
 _ROUNDING: Final = 1e-9
 
 
+@hinted()
 def scaling_to(
     suite: LabelledMotions,
     target: TargetSpectrum,

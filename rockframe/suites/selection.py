@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import hinted, whole_number
 from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.results.dataset import build_dataset
@@ -31,6 +31,7 @@ _REFERENCES: Final = (
 )
 
 
+@hinted()
 def selection_for(
     suite: LabelledMotions,
     target: TargetSpectrum,

@@ -5,7 +5,7 @@ from typing import Any, Self
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, hinted
 from rockframe.measures import (
     average_spectral_acceleration,
     intensity_measures,
@@ -76,6 +76,7 @@ class MotionSuite(LabelledMotions):
         """
         return intensity_measures(self, **arguments)
 
+    @hinted()
     def response_spectrum(
         self,
         periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -99,6 +100,7 @@ class MotionSuite(LabelledMotions):
             self, periods, damping_ratios, component=component, interpolation=interpolation
         )
 
+    @hinted()
     def rotated_spectrum(
         self,
         periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -118,6 +120,7 @@ class MotionSuite(LabelledMotions):
         """
         return rotated_spectrum(self.pairs, periods, damping_ratios)
 
+    @hinted()
     def average_spectral_acceleration(
         self, periods: ArrayLike | Iterable[QuantityLike], damping_ratio: RatioLike = 0.05
     ) -> xr.Dataset:

@@ -8,7 +8,7 @@ from typing import Any, Final, Self
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, hinted
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.signals.arrays import Array
@@ -57,6 +57,7 @@ class TargetSpectrum:
     limits: tuple[float, float] = (0.0, math.inf)
 
     @classmethod
+    @hinted()
     def from_table(
         cls,
         periods: ArrayLike | Iterable[QuantityLike],
@@ -132,6 +133,7 @@ class TargetSpectrum:
         )
 
     @classmethod
+    @hinted()
     def from_spectrum(cls, dataset: xr.Dataset, *, name: str = "spectrum") -> Self:
         """Take a target from response spectra: of one motion, or the median of several.
 
@@ -173,6 +175,7 @@ class TargetSpectrum:
         )
 
     @classmethod
+    @hinted()
     def eurocode_8(
         cls,
         ground_acceleration: QuantityLike,
@@ -225,6 +228,7 @@ class TargetSpectrum:
         return cls(words, shape, None, damping)
 
     @classmethod
+    @hinted()
     def asce_7(
         cls,
         short_period_acceleration: QuantityLike,

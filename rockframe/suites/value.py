@@ -6,8 +6,8 @@ from typing import Any, Final, Self, cast
 
 import pandas as pd
 
-from rockframe.arguments import by_words
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import by_words, hinted
+from rockframe.errors import ComponentError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.results.dataset import build_dataset
@@ -55,7 +55,11 @@ class LabelledMotions(Mapping[str, GroundMotion]):
     # a mapping ------------------------------------------------------------------------------
 
     def __getitem__(self, label: str) -> GroundMotion:
-        return self._motions[label]
+        try:
+            return self._motions[label]
+        except KeyError:  # as mappings have it
+            msg = f"no motion of the suite is called {shown(label)}{nearest(label, self._motions)}"
+            raise KeyError(msg) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._motions)
@@ -171,6 +175,7 @@ class LabelledMotions(Mapping[str, GroundMotion]):
             raise ComponentError(msg)
         return self._with({label: self._motions[label] for label in labels})
 
+    @hinted()
     def sort(self, by: str, *, descending: bool = False) -> Self:
         """Order the motions by a column; those of which it is not known stand last.
 

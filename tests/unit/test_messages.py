@@ -6,7 +6,9 @@ import re
 import runpy
 import sys
 import zipfile
+from inspect import signature
 from pathlib import Path
+from types import FunctionType
 
 import numpy as np
 import pytest
@@ -271,3 +273,69 @@ def test_measures_are_known_in_any_letters(name):
     assert found.attrs["intensity"] == "peak_ground_acceleration"
     runs = rf.sweep(SYSTEM, [SHAKING, SHAKING.scaled(2)], scale=[1, 2])
     assert rf.fragility(runs, name).sizes["peak_ground_acceleration"] > 1
+
+
+def _named(owner, name):
+    """Public functions with their names, those of classes too."""
+    for one in dir(owner):
+        found = None if one.startswith("_") else getattr(owner, one)
+        if isinstance(found, FunctionType):
+            yield f"{name}.{one}", found
+
+
+TAKING = dict(
+    pair
+    for owner, name in (
+        (rf, "rf"), (rf.plot, "rf.plot"), (rf.measures, "rf.measures"), (rf.export, "rf.export"),
+        (rf.codes, "rf.codes"),
+    )
+    for pair in _named(owner, name)
+)  # fmt: skip
+TAKING |= {
+    f"{kind.__name__}.{method}": getattr(kind, method)
+    for kind, methods in (
+        (rf.MotionSuite, "response_spectrum rotated_spectrum sort scaling_to selection_for"),
+        (rf.TargetSpectrum, "eurocode_8 asce_7 from_table from_spectrum at with_deviation"),
+        (rf.GroundMotion, "read example from_arrays from_frame window scaled filtered to_at2"),
+        (rf.Block, "from_density from_size from_outline cylinder"),
+        (rf.System, "simulate moment_rotation"),
+    )
+    for method in methods.split()
+}
+
+
+def _last_argument(function):
+    """An argument that is known by its name; of a function that takes any, None."""
+    given = signature(function).parameters.values()
+    if any(one.kind is one.VAR_KEYWORD for one in given):
+        return None
+    named = [one.name for one in given if one.kind in (one.KEYWORD_ONLY, one.POSITIONAL_OR_KEYWORD)]
+    return next((one for one in reversed(named) if len(one) > 4), None)
+
+
+@pytest.mark.parametrize("name", [one for one in TAKING if _last_argument(TAKING[one])])
+def test_every_function_answers_a_misspelt_argument(name):
+    meant = _last_argument(TAKING[name])
+    with pytest.raises(TypeError) as caught:
+        TAKING[name](**{f"{meant[:-2]}{meant[-1]}{meant[-2]}x": 1})
+    assert meant in str(caught.value).split(" It takes ")[0].split("meant?")[0]
+    assert "meant?" in str(caught.value)
+
+
+def test_names_within_suites_maps_and_examples_are_proposed():
+    suite = rf.MotionSuite({"first": SHAKING, "second": SHAKING.scaled(2.0)})
+    assert "frist" not in suite
+    for given, words in (
+        (lambda: suite["frist"], "was 'first' meant?"),
+        (lambda: suite.select(magnitud=(6, 8)), "was 'magnitude' meant?"),
+        (lambda: rf.GroundMotion.example("loma-preta"), "was 'loma-prieta' meant?"),
+        (
+            lambda: rf.overturning_map(
+                SYSTEM, "sine_pulse", amplitude=["1 m/s^2"], frequency=["1 Hz"]
+            ),
+            "such as rf.GroundMotion.sine_pulse",
+        ),
+    ):
+        with pytest.raises((KeyError, rf.errors.RockframeError)) as caught:
+            given()
+        assert words in str(caught.value)

@@ -254,6 +254,8 @@ def test_every_analysis_has_a_report(tmp_path):
         words = words_of(rf.report(result, tmp_path / f"{name}.html"))
         assert said in words, name
         assert "Provenance" in words
+        assert "not described" not in words or name == "joined"
+        assert "s^-" not in words.split("Scene")[0]  # powers stand above the line
 
 
 def test_the_motion_that_a_result_does_not_hold_can_be_handed_in(tmp_path):

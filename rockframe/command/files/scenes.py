@@ -25,6 +25,8 @@ from rockframe.system.options import Overturning
 from rockframe.system.parts import slot_of_kind
 
 _FILE: Final = "file"
+MOTIONS: Final = (*CONSTRUCTORS, "example")
+"""Constructors of motions that files may name; one of them gives a record of the package."""
 _OPERATIONS: Final = "operations"
 
 
@@ -62,9 +64,9 @@ def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion |
 
 def _constructed(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion | None:
     constructor = table.pop(CONSTRUCTOR)
-    if constructor not in CONSTRUCTORS:
-        known = ", ".join(CONSTRUCTORS)
-        near = nearest(str(constructor), CONSTRUCTORS)
+    if constructor not in MOTIONS:
+        known = ", ".join(MOTIONS)
+        near = nearest(str(constructor), MOTIONS)
         words = f"constructor must be one of {known}, got {shown(constructor)}{near}"
         file.fault((*where, CONSTRUCTOR), words)
         return None

@@ -13,13 +13,13 @@ from rockframe.command.files.parts import (
     inner_parts,
     part_slots,
 )
-from rockframe.command.files.scenes import motion_keys, run_keys
+from rockframe.command.files.scenes import MOTIONS, motion_keys, run_keys
 from rockframe.command.files.studies import sweep_keys
 from rockframe.command.files.tables import arguments_of
 from rockframe.components import Component, InitialState
 from rockframe.components.parameters import REQUIRED, Choice, Declared
 from rockframe.motion import GroundMotion
-from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
+from rockframe.motion.description import OPERATIONS
 from rockframe.reports.project import ASSUMPTIONS, CONCLUSION, LINES
 from rockframe.simulation.system import System
 from rockframe.studies import sweep
@@ -266,7 +266,7 @@ def _of_motion() -> Iterator[str]:
         meaning = words.get(name, meanings.get(name, ""))
         yield from _commented(f"# {name}", f"{'must be given: ' if must else ''}{meaning}")
     yield f"# or {CONSTRUCTOR}, with its arguments:"
-    for name in CONSTRUCTORS:
+    for name in MOTIONS:
         keys = arguments_of(getattr(GroundMotion, name))
         yield from _keys(f"{name}: {', '.join(_marked(keys))}")
     yield "# operations, such as operations = [{ scaled = { factor = 1.5 } }]:"

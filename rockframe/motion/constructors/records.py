@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.arguments import hinted, text
-from rockframe.errors import ComponentError, RecordWarning, UnitsError, shown, warn
+from rockframe.errors import ComponentError, RecordWarning, UnitsError, nearest, shown, warn
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, declared_times
 from rockframe.motion.value import UNNAMED, Made
 from rockframe.records import PathLike, RecordLike, read_record, request_of
@@ -194,6 +194,7 @@ def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:
 _PROVENANCE: Final = "provenance.toml"
 
 
+@hinted()
 def example(
     kind: type[Made],
     name: str = "loma-prieta",
@@ -235,7 +236,8 @@ def example(
     record = records.get(name) if isinstance(cast("object", name), str) else None
     if record is None:
         known = ", ".join(repr(one) for one in records)
-        msg = f"{kind.__name__}.example: name must be one of {known}, got {shown(name)}"
+        got = f"{shown(name)}{nearest(name, records)}"
+        msg = f"{kind.__name__}.example: name must be one of {known}, got {got}"
         raise ComponentError(msg)
     file = io.BytesIO((folder / record["file"]).read_bytes())
     file.name = record["file"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import hinted, one_of_words
 from rockframe.errors import ComponentError, RecordWarning, shown
 from rockframe.motion.processing.samples import instants_of
 from rockframe.motion.quantities import (
@@ -53,6 +53,7 @@ _HOW: Final = {
 }
 
 
+@hinted()
 def from_times(
     kind: type[Made],
     times: ArrayLike,
@@ -155,6 +156,7 @@ def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Arr
     return np.asarray(spline(grid), dtype=np.float64)
 
 
+@hinted()
 def from_frame(
     kind: type[Made],
     frame: Any,
@@ -287,6 +289,7 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
 _NEEDED: Final = ("id", "data", "stats")
 
 
+@hinted()
 def from_trace(
     kind: type[Made],
     trace: Any,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion.operations.following import following, other_motion
 from rockframe.motion.processing.samples import padded
@@ -26,6 +27,7 @@ _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degrees; agencies round azimuths to whole
 _ROUNDING: Final = 1e-15
 
 
+@hinted()
 def with_vertical(motion: Made, other: MotionValue) -> Made:
     """Add a vertical motion: the horizontal component of another one, upwards.
 
@@ -80,6 +82,7 @@ def with_vertical(motion: Made, other: MotionValue) -> Made:
     return following(motion, result, *steps, operation=operation, metadata=added)
 
 
+@hinted()
 def rotated(
     motion: Made,
     other: MotionValue,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing import velocity_pulses
@@ -29,6 +30,7 @@ LONGEST: Final = "15 s"
 _STEPS_PER_PERIOD: Final = 4.0
 
 
+@hinted()
 def velocity_pulse(
     motion: Made,
     *,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import hinted, one_of_words, whole_number
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing.floors import (
@@ -202,6 +202,7 @@ class VerticalComponent(StrEnum):
     OMITTED = "omitted"
 
 
+@hinted()
 def through_storeys(
     motion: Made,
     periods: ArrayLike | Iterable[QuantityLike] | QuantityLike | None = None,

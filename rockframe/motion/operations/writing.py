@@ -8,7 +8,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import hinted, one_of_words
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 from rockframe.motion.value import MotionValue
@@ -28,6 +28,7 @@ class WrittenComponent(StrEnum):
     VERTICAL = "vertical"
 
 
+@hinted()
 def to_at2(
     motion: MotionValue,
     path: str | os.PathLike[str],

@@ -8,6 +8,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, SchemaError, StudyError, UnitsError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
@@ -173,6 +174,7 @@ _MOST_LEFT_OUT: Final = 80
 """Motions up to which each is left out in turn; of more the sandwich holds as often."""
 
 
+@hinted()
 def fragility(
     runs: xr.Dataset | dict[str, Any],
     intensity: str | xr.DataArray | Sequence[str | xr.DataArray] = "PGA",

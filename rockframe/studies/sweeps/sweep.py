@@ -7,7 +7,7 @@ from typing import Any
 
 import xarray as xr
 
-from rockframe.arguments import truth
+from rockframe.arguments import hinted, truth
 from rockframe.components import InitialState
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
@@ -162,6 +162,7 @@ def sweep(
         return run_study(study, bar, store=store, executor=executor, chunk=chunk, known=several)
 
 
+@hinted()
 def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
     """Read what a sweep has kept so far, also while it runs.
 

@@ -181,3 +181,30 @@ def test_a_statue_on_a_plinth_is_that_of_python(typed):
     with xr.open_dataset("statue.nc") as kept:
         expected = system.simulate(pulse, free_vibration="5 s")
         assert float(kept.peak_rotation) == float(expected.peak_rotation)
+
+
+def test_serve_tells_its_address_and_ends(typed, monkeypatch):
+    served, opened = [], []
+
+    def ends(server):
+        served.append(server)
+        raise KeyboardInterrupt  # as Ctrl-C does
+
+    monkeypatch.setattr("rockframe.serve.server.Server.serve_forever", ends)
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    code, _, err = typed("serve", "record.AT2", "--port", "0", "--browse")
+    assert code == 130
+    (server,) = served
+    assert opened == [server.address]
+    assert server.address in err
+    assert server.record.keys["file"].endswith("record.AT2")
+    assert server.record.motion.peak_acceleration.to("m/s^2").magnitude == pytest.approx(4.0)
+    for words, said in (
+        (("nothing.AT2",), "nothing.AT2"),
+        (("-",), "give a file in the place of '-'"),
+        (("--port", "70000"), "port 70000 cannot be opened"),
+    ):
+        code, _, err = typed("serve", *words)
+        assert code == 2
+        assert said in err
+    assert len(served) == 1

@@ -1,0 +1,39 @@
+"""``rockframe serve``: a page on this machine, on which a scene is tried."""
+
+import argparse
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+from rockframe.command.answer import Answer
+from rockframe.command.shared import motion_from
+from rockframe.command.streams import STREAM, tell
+from rockframe.errors import FileError
+from rockframe.serve import Server
+from rockframe.serve.controls import NamedRecord
+
+
+def execute(arguments: argparse.Namespace, answer: Answer) -> int:
+    """Serve the page until Ctrl-C."""
+    record = None if arguments.record is None else _record(arguments)
+    with Server(arguments.port, record) as server:
+        words = f"the page is at {server.address}, for this machine alone; Ctrl-C ends it"
+        tell("rockframe serve", words, "label")
+        if arguments.browse:
+            webbrowser.open(server.address)
+        server.serve_forever()
+    answer.says("Page", "ended")
+    return 0
+
+
+def _record(arguments: argparse.Namespace) -> NamedRecord:
+    if arguments.record == STREAM:
+        words = "a scene's file names its record; give a file in the place of '-'"
+        raise FileError(STREAM, [(None, words)])
+    keys: dict[str, Any] = {"file": str(Path(arguments.record).expanduser().resolve())}
+    keys |= {
+        name: getattr(arguments, name)
+        for name in ("component", "unit", "time_step")
+        if getattr(arguments, name) is not None
+    }
+    return NamedRecord(motion_from(arguments.record, arguments), keys)

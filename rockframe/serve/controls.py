@@ -1,0 +1,177 @@
+"""What the page can change, between which ends, and the tables of a scene's file that it makes."""
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from rockframe.components import Block, Component, TwoSpringSupport, WinklerSoil
+from rockframe.errors import nearest, shown
+from rockframe.motion import GroundMotion
+from rockframe.simulation.system import System
+
+
+@dataclass(frozen=True)
+class Control:
+    """A number that the page can change."""
+
+    name: str  # in the address of the page
+    words: str  # on the page
+    low: float
+    high: float
+    step: float  # of the slider
+    default: float
+    unit: str = ""
+    of: str = ""  # the choice that it belongs to; always shown unless given
+
+    def quantity(self, value: float) -> str | float:
+        """Write a value as components and files take it."""
+        return f"{value:g} {self.unit}" if self.unit else value
+
+
+CONTROLS: Final = (
+    Control("width", "Width", 0.1, 5.0, 0.05, 0.8, "m"),
+    Control("height", "Height", 0.2, 20.0, 0.1, 3.2, "m"),
+    Control("mass", "Mass", 0.05, 200.0, 0.05, 5.5, "t"),
+    Control("pad_stiffness", "Stiffness of one pad", 0.1, 500.0, 0.1, 12.0, "MN/m", "pads"),
+    Control("pad_damping", "Damping ratio of the pads", 0.0, 1.0, 0.01, 0.1, "", "pads"),
+    Control("soil_stiffness", "Stiffness of the bed", 0.1, 500.0, 0.1, 9.0, "MPa", "soil"),
+    Control("soil_damping", "Damping ratio of the bed", 0.0, 1.0, 0.01, 0.2, "", "soil"),
+    Control("amplitude", "Amplitude of the pulse", 0.1, 20.0, 0.1, 5.0, "m/s^2", "pulse"),
+    Control("frequency", "Frequency of the pulse", 0.1, 10.0, 0.1, 2.0, "Hz", "pulse"),
+    Control("scale", "Times the motion", 0.1, 10.0, 0.1, 1.0),
+)
+BASES: Final = {"ground": "Rigid ground", "pads": "Pads", "soil": "Bed of springs"}
+PULSES: Final = {"sine_pulse": "Sine pulse", "cosine_pulse": "Cosine pulse"}
+EXAMPLE: Final = "example"
+RECORD: Final = "record"
+FREE_VIBRATION: Final = "5 s"
+"""Behind the motion, so that the body comes to rest or falls."""
+
+
+@dataclass(frozen=True)
+class NamedRecord:
+    """The record that was handed to the server, and the keys that read it."""
+
+    motion: GroundMotion
+    keys: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What was chosen on the page."""
+
+    numbers: Mapping[str, float]
+    base: str
+    motion: str
+
+    @property
+    def parts(self) -> dict[str, dict[str, Any]]:
+        """Tables of the parts."""
+        found = {"block": {name: self._quantity(name) for name in ("width", "height", "mass")}}
+        of_base = {"pads": "pad", "soil": "soil"}
+        if self.base in of_base:
+            stem = of_base[self.base]
+            found[self.base] = {
+                "stiffness": self._quantity(f"{stem}_stiffness"),
+                "damping_ratio": self._quantity(f"{stem}_damping"),
+            }
+        return found
+
+    def system(self) -> System:
+        """Build the scene."""
+        kinds: dict[str, type[Component]] = {
+            "block": Block, "pads": TwoSpringSupport, "soil": WinklerSoil,
+        }  # fmt: skip
+        return System(*(kinds[name](**table) for name, table in self.parts.items()))
+
+    def ground(self, record: NamedRecord | None) -> GroundMotion:
+        """Make the motion."""
+        if self.motion == RECORD and record is not None:
+            motion = record.motion
+        elif self.motion == EXAMPLE:
+            motion = GroundMotion.example()
+        else:
+            motion = getattr(GroundMotion, self.motion)(**self._pulse())
+        scale = self.numbers["scale"]
+        return motion if scale == 1.0 else motion.scaled(scale)
+
+    def toml(self, record: NamedRecord | None) -> str:
+        """Write the scene as a file for the command line."""
+        if self.motion == RECORD and record is not None:
+            motion = dict(record.keys)
+        else:
+            pulse = self._pulse() if self.motion in PULSES else {}
+            motion = {"constructor": self.motion, **pulse}
+        lines = ["# rockframe run scene.toml"]
+        tables = {**self.parts, "motion": motion, "run": {"free_vibration": FREE_VIBRATION}}
+        for name, table in tables.items():
+            lines += ["", f"[{name}]", *(f"{key} = {_toml(one)}" for key, one in table.items())]
+            if name == "motion" and self.numbers["scale"] != 1.0:
+                factor = _toml(self.numbers["scale"])
+                lines.append(f"operations = [{{ scaled = {{ factor = {factor} }} }}]")
+        return "\n".join(lines) + "\n"
+
+    def _pulse(self) -> dict[str, Any]:
+        return {name: self._quantity(name) for name in ("amplitude", "frequency")}
+
+    def _quantity(self, name: str) -> str | float:
+        return next(one for one in CONTROLS if one.name == name).quantity(self.numbers[name])
+
+
+def motions_with(record: NamedRecord | None) -> dict[str, str]:
+    """Give the motions that can be chosen, the record first where there is one."""
+    own = {} if record is None else {RECORD: f"Record: {record.motion.name}"}
+    return {**own, **PULSES, EXAMPLE: "Example record (Loma Prieta 1989)"}
+
+
+def read_choice(given: Mapping[str, str], record: NamedRecord | None) -> tuple[Tried, list[str]]:
+    """Read what the address of the page says; what is wrong keeps its default, and is told."""
+    faults = [*_unknown(given)]
+    numbers = dict[str, float]()
+    for control in CONTROLS:
+        numbers[control.name] = control.default
+        if control.name in given:
+            try:
+                numbers[control.name] = _number(control, given[control.name])
+            except ValueError as problem:
+                faults.append(str(problem))
+    words = dict[str, str]()
+    for name, known in (("base", BASES), ("motion", motions_with(record))):
+        words[name] = given.get(name, next(iter(known)))
+        if words[name] not in known:
+            near = nearest(words[name], known)
+            faults.append(
+                f"{name}: found {shown(words[name])}; expected one of {', '.join(known)}{near}"
+            )
+            words[name] = next(iter(known))
+    return Tried(numbers, words["base"], words["motion"]), faults
+
+
+def _unknown(given: Mapping[str, str]) -> Iterator[str]:
+    known = [*(one.name for one in CONTROLS), "base", "motion"]
+    for name in given:
+        if name not in known:
+            words = nearest(name, known) or f"; there are {', '.join(known)}"
+            yield f"there is no {shown(name)}{words}"
+
+
+def _number(control: Control, text: str) -> float:
+    unit = f" {control.unit}" if control.unit else ""
+    try:
+        value = float(text.strip().replace(",", "."))
+    except ValueError:
+        value = math.nan
+    if not control.low <= value <= control.high:
+        msg = (
+            f"{control.words}: found {shown(text)}; expected a number from {control.low:g} to "
+            f"{control.high:g}{unit}"
+        )
+        raise ValueError(msg)
+    return value
+
+
+def _toml(value: object) -> str:
+    """Write a value; texts of TOML have the escapes of JSON."""
+    return json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,108 @@
+"""The page of the server, in HTML: the form, and what became of the body."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Final
+from urllib.parse import urlencode
+
+from rockframe.reports.page import banner
+from rockframe.reports.values import powers_in_html
+from rockframe.serve.controls import BASES, CONTROLS, PULSES, Control, Tried
+
+STYLE: Final = "/page.css"
+SCRIPT: Final = "/page.js"
+
+
+@dataclass(frozen=True)
+class ToldOutcome:
+    """What a choice came to."""
+
+    title: str
+    verdict: str
+    kind: str  # of the banner: good, bad or doubt
+    warnings: Sequence[str]
+    toml: str
+    player: str  # a page
+
+
+def trial_page(choice: Tried, motions: Mapping[str, str], outcome: str) -> str:
+    """Give the page."""
+    groups = [
+        _group("Body", "", _numbers(choice, "", without=("scale",))),
+        _group("Base", "", [_choices("base", BASES, choice.base)]),
+        _group("Pads", "pads", _numbers(choice, "pads"), shown=choice.base == "pads"),
+        _group("Bed", "soil", _numbers(choice, "soil"), shown=choice.base == "soil"),
+        _group("Motion", "", [
+            _choices("motion", motions, choice.motion), *_numbers(choice, "", only="scale"),
+        ]),
+        _group("Pulse", "pulse", _numbers(choice, "pulse"), shown=choice.motion in PULSES),
+    ]  # fmt: skip
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f'<title>rockframe</title>\n<link rel="stylesheet" href="{STYLE}">\n'
+        f'<link rel="icon" href="data:,">\n<script src="{SCRIPT}" defer></script>\n'
+        '</head>\n<body>\n<h1>Does it rock, does it fall?</h1>\n<div class="sides">\n'
+        f'<form action="/" method="get" data-pulses="{" ".join(PULSES)}">\n'
+        + "\n".join(groups)
+        + '\n<button type="submit">Run</button>\n</form>\n'
+        f'<main id="outcome" aria-live="polite">\n{outcome}\n</main>\n</div>\n</body>\n</html>\n'
+    )
+
+
+def told(outcome: ToldOutcome, query: Mapping[str, str]) -> str:
+    """Give the part of the page that tells what became of the body."""
+    address = escape(urlencode(query))
+    cautions = "".join(banner("To be used with care", one, "doubt") for one in outcome.warnings)
+    return (
+        banner(outcome.title, outcome.verdict, outcome.kind)
+        + cautions
+        + f'\n<iframe title="The run as it moves" src="/player?{address}"></iframe>\n'
+        "<h2>The scene as a file</h2>\n"
+        f'<p><a href="/scene.toml?{address}" download="scene.toml">scene.toml</a>, for '
+        "<code>rockframe run scene.toml</code></p>\n"
+        f'<pre tabindex="0">{escape(outcome.toml)}</pre>'
+    )
+
+
+def refused(faults: Sequence[str]) -> str:
+    """Give the part of the page that tells what is wrong."""
+    lines = "".join(f"<li>{escape(one)}</li>" for one in faults)
+    return f'<div class="verdict doubt" role="alert"><strong>Not run</strong><ul>{lines}</ul></div>'
+
+
+def _group(title: str, name: str, pieces: Sequence[str], *, shown: bool = True) -> str:
+    owned = f' data-of="{name}"' if name else ""
+    hidden = "" if shown else " hidden"
+    inner = "\n".join(pieces)
+    return f"<fieldset{owned}{hidden}><legend>{title}</legend>\n{inner}\n</fieldset>"
+
+
+def _choices(name: str, known: Mapping[str, str], chosen: str) -> str:
+    options = "".join(
+        f'<option value="{value}"{" selected" if value == chosen else ""}>{escape(words)}</option>'
+        for value, words in known.items()
+    )
+    title = "Stands on" if name == "base" else "Shaken by"
+    return f'<label>{title}<select name="{name}">{options}</select></label>'
+
+
+def _numbers(choice: Tried, of: str, *, only: str = "", without: Sequence[str] = ()) -> list[str]:
+    return [
+        _number(one, choice.numbers[one.name])
+        for one in CONTROLS
+        if one.of == of and one.name not in without and only in ("", one.name)
+    ]
+
+
+def _number(one: Control, value: float) -> str:
+    unit = f" [{escape(powers_in_html(one.unit))}]" if one.unit else ""
+    ends = f'min="{one.low:g}" max="{one.high:g}"'
+    return (
+        f'<div class="number"><label for="{one.name}">{one.words}{unit}</label>'
+        f'<input type="number" id="{one.name}" name="{one.name}" {ends} step="any" '
+        f'value="{value:g}" required>'
+        f'<input type="range" data-for="{one.name}" {ends} step="{one.step:g}" value="{value:g}" '
+        f'aria-label="{one.words}, slider"></div>'
+    )

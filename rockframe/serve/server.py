@@ -1,0 +1,208 @@
+"""The server of the page: this machine alone, and no file but the page's own."""
+
+import sys
+import threading
+import traceback
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Final
+from urllib.parse import parse_qsl, urlsplit
+
+from rockframe import plot
+from rockframe.errors import PLEASE_REPORT, ComponentError, RockframeError, collected_warnings
+from rockframe.results.outcome import verdict_of
+from rockframe.serve import page
+from rockframe.serve.controls import (
+    FREE_VIBRATION,
+    NamedRecord,
+    Tried,
+    motions_with,
+    read_choice,
+)
+from rockframe.serve.page import ToldOutcome
+
+LOOPBACK: Final = "127.0.0.1"
+_MOVING: Final = "The run as it moves"
+_KEPT: Final = 16
+"""Outcomes, so that the player of a run is there when its frame asks for it."""
+_MOST_FIELDS: Final = 50
+_PATIENCE: Final = 30.0
+"""With a client that says nothing [s]."""
+_TITLES: Final = {True: ("Overturned", "bad"), False: ("Did not overturn", "good"),
+                  None: ("Not finished", "doubt")}  # fmt: skip
+_HTML: Final = "text/html; charset=utf-8"
+_FILES: Final = {page.STYLE: "text/css", page.SCRIPT: "text/javascript"}
+_POLICY: Final = (
+    "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; "
+    "frame-src 'self'; img-src data:; form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
+)
+_PLAYER_POLICY: Final = (
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
+    "frame-ancestors 'self'"
+)
+
+
+class Server(ThreadingHTTPServer):
+    """A server of the page at a port of this machine.
+
+    Parameters
+    ----------
+    port : int
+        Of the loopback address; 0 takes one that is free.
+    record : NamedRecord, optional
+        That can be chosen beside pulses and the example.
+
+    Raises
+    ------
+    ComponentError
+        The port is none, or is taken.
+    """
+
+    daemon_threads = True
+    allow_reuse_address = sys.platform != "win32"
+
+    def __init__(self, port: int = 0, record: NamedRecord | None = None) -> None:
+        try:
+            super().__init__((LOOPBACK, port), _Handler)
+        except (OSError, OverflowError) as problem:
+            msg = (
+                f"serve: port {port} cannot be opened ({problem}); expected a free one from 1024 "
+                "to 65535, or 0 for any"
+            )
+            raise ComponentError(msg) from problem
+        self.record = record
+        self.hosts = {f"{name}:{self.server_port}" for name in (LOOPBACK, "localhost")}
+        self._lock = threading.Lock()  # one run at a time, and one user of matplotlib
+        self._outcomes = OrderedDict[str, ToldOutcome]()
+
+    @property
+    def address(self) -> str:
+        """The address of the page."""
+        return f"http://{LOOPBACK}:{self.server_port}/"
+
+    def outcome(self, choice: Tried) -> ToldOutcome:
+        """Simulate a choice, or remember what it came to."""
+        toml = choice.toml(self.record)
+        with self._lock:
+            if toml not in self._outcomes:
+                self._outcomes[toml] = self._simulated(choice, toml)
+                if len(self._outcomes) > _KEPT:
+                    self._outcomes.popitem(last=False)
+            self._outcomes.move_to_end(toml)
+            return self._outcomes[toml]
+
+    def _simulated(self, choice: Tried, toml: str) -> ToldOutcome:
+        with collected_warnings() as said:
+            motion = choice.ground(self.record)
+            run = choice.system().simulate(motion, free_vibration=FREE_VIBRATION)
+            player = plot.player(run, title=_MOVING).to_html()
+        title, kind = _TITLES[verdict_of(run)]
+        return ToldOutcome(title, str(run.attrs["verdict"]), kind, tuple(said), toml, player)
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server: Server  # pyright: ignore[reportIncompatibleVariableOverride]
+    server_version = "rockframe"
+    sys_version = ""
+    timeout = _PATIENCE  # pyright: ignore[reportAssignmentType]
+
+    def do_GET(self) -> None:
+        """Answer a request."""
+        if not self._is_own():
+            words = "This page answers to its own address on this machine only.\n"
+            self._send(HTTPStatus.FORBIDDEN, "text/plain; charset=utf-8", words)
+            return
+        target = urlsplit(self.path)
+        if target.path in _FILES:
+            text = Path(__file__).with_name(target.path.removeprefix("/")).read_text("utf-8")
+            self._send(HTTPStatus.OK, f"{_FILES[target.path]}; charset=utf-8", text)
+            return
+        answers: dict[str, Callable[[Mapping[str, str]], None]] = {
+            "/": self._page, "/outcome": self._outcome, "/player": self._player,
+            "/scene.toml": self._scene,
+        }  # fmt: skip
+        if target.path not in answers:
+            words = f"There is no such page; the page is at {self.server.address}\n"
+            self._send(HTTPStatus.NOT_FOUND, "text/plain; charset=utf-8", words)
+            return
+        try:
+            query = dict(parse_qsl(target.query, max_num_fields=_MOST_FIELDS,
+                                   keep_blank_values=True))  # fmt: skip
+        except ValueError:
+            self._send(HTTPStatus.BAD_REQUEST, _HTML, page.refused(["too many values"]))
+            return
+        answers[target.path](query)
+
+    def _is_own(self) -> bool:
+        """Tell a request of the page from one that another page has a browser make."""
+        hosts = self.server.hosts
+        origin = self.headers.get("Origin")
+        return (
+            self.headers.get("Host", "") in hosts
+            and (origin is None or origin in {f"http://{one}" for one in hosts})
+            and self.headers.get("Sec-Fetch-Site") not in ("cross-site", "same-site")
+        )
+
+    def _found(self, query: Mapping[str, str]) -> tuple[Tried, ToldOutcome | None, list[str]]:
+        choice, faults = read_choice(query, self.server.record)
+        if faults:
+            return choice, None, faults
+        try:
+            return choice, self.server.outcome(choice), []
+        except RockframeError as problem:
+            return choice, None, [str(problem)]
+        except Exception:  # the page stays, whatever fails behind it
+            traceback.print_exc()
+            return choice, None, [f"The run failed: {PLEASE_REPORT}."]
+
+    def _page(self, query: Mapping[str, str]) -> None:
+        choice, outcome, faults = self._found(query)
+        part = page.refused(faults) if outcome is None else page.told(outcome, query)
+        self._send(
+            HTTPStatus.OK, _HTML, page.trial_page(choice, motions_with(self.server.record), part)
+        )
+
+    def _outcome(self, query: Mapping[str, str]) -> None:
+        _, outcome, faults = self._found(query)
+        part = page.refused(faults) if outcome is None else page.told(outcome, query)
+        self._send(HTTPStatus.OK, _HTML, part)
+
+    def _player(self, query: Mapping[str, str]) -> None:
+        _, outcome, faults = self._found(query)
+        if outcome is None:
+            self._send(HTTPStatus.BAD_REQUEST, _HTML, page.refused(faults))
+        else:
+            self._send(HTTPStatus.OK, _HTML, outcome.player, _PLAYER_POLICY)
+
+    def _scene(self, query: Mapping[str, str]) -> None:
+        choice, faults = read_choice(query, self.server.record)
+        plain = "text/plain; charset=utf-8"
+        if faults:
+            self._send(HTTPStatus.BAD_REQUEST, plain, "\n".join(faults) + "\n")
+        else:
+            self._send(HTTPStatus.OK, plain, choice.toml(self.server.record))
+
+    def _send(self, status: HTTPStatus, kind: str, text: str, policy: str = _POLICY) -> None:
+        data = text.encode()
+        self.send_response(status)
+        for name, value in {
+            "Content-Type": kind,
+            "Content-Length": str(len(data)),
+            "Content-Security-Policy": policy,
+            "X-Content-Type-Options": "nosniff",
+            "Referrer-Policy": "no-referrer",
+            "Cross-Origin-Resource-Policy": "same-origin",
+            "Cache-Control": "no-store",
+        }.items():
+            self.send_header(name, value)
+        self.end_headers()
+        try:
+            self.wfile.write(data)
+        except (BrokenPipeError, ConnectionResetError):  # the browser asks for something newer
+            self.close_connection = True
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002
+        """Say nothing of requests."""
