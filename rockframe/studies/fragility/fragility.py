@@ -25,7 +25,7 @@ from rockframe.studies.fragility.likelihood import (
     trials_of_runs,
 )
 from rockframe.studies.fragility.words import POOLED, sentences
-from rockframe.studies.intensities import PERIOD_OF, Intensity, intensity_in
+from rockframe.studies.intensities import Intensity, measure_in, named_column, told_period
 from rockframe.studies.limit_states import (
     LimitState,
     check_names,
@@ -37,11 +37,11 @@ from rockframe.studies.limit_states import (
 )
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import Changes, free_values
-from rockframe.units import PERIOD, to_si
 
 if TYPE_CHECKING:
     from rockframe.motion import GroundMotion
-    from rockframe.units import QuantityLike, RatioLike
+    from rockframe.studies.intensities import PeriodLike
+    from rockframe.units import RatioLike
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +181,7 @@ def fragility(
     intensity: "str | xr.DataArray | Sequence[str | xr.DataArray]" = "PGA",
     *,
     limits: Iterable[object] | None = None,
-    period: "QuantityLike | None" = None,
+    period: "PeriodLike | None" = None,
     motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
     pooled: Iterable[str] = (),
     trials: str = "runs",
@@ -198,9 +198,10 @@ def fragility(
         ``"intensity"``, values with a unit such as ``([0.2, 0.3], "g_0")``, ``"exceeded"``, how
         many trials exceeded the limit state at each, and ``"trials"``, of how many.
     intensity : str, DataArray, or two of them
-        Intensity measure: ``"PGA"``, ``"PGV"``, ``"PGD"``, ``"CAV"``, ``"SA"``, ``"PGV/PGA"``, or
-        a name of :func:`rockframe.intensity_measures` or :func:`rockframe.response_spectrum`;
-        or numbers of one's own along dimensions of the runs, with a name and ``units``. Two
+        Intensity measure: ``"PGA"``, ``"PGV"``, ``"PGD"``, ``"CAV"``, ``"SA"``, ``"Sa_avg"``,
+        ``"PGV/PGA"``, or a name of :func:`rockframe.intensity_measures` or
+        :func:`rockframe.response_spectrum`; the name of a coordinate or variable of the runs; or
+        numbers of one's own along dimensions of the runs, with a name and ``units``. Two
         give a fragility over both.
     limits : iterable, optional
         Limit states beside overturning: ``"uplift"``, and peak rotations over the
@@ -208,8 +209,9 @@ def fragility(
         Or on any scalar of the runs whose size tells: its name and a value with a unit, such
         as ``("peak_slip", "5 cm")`` or ``("broken_restrainer_count", 1)``; and third, of points,
         bodies or restrainers, which one. Overturning exceeds each of them.
-    period : str or Quantity, optional
-        Of the oscillator of a spectral intensity [s].
+    period : str or Quantity, or several, optional
+        Of the oscillator of a spectral intensity; of ``"Sa_avg"`` those over which the spectrum is
+        averaged, such as ``(numpy.linspace(0.2, 3, 57), "s")`` [s].
     motions : GroundMotion, or sequence or mapping of them, optional
         The records of the sweep, where neither the dataset nor this process has them.
     pooled : iterable of str, optional
@@ -292,14 +294,14 @@ def fragility(
         others = [name for name, one in given.items() if one is not None]
         return _of_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
-    given = _several(intensity)
+    given = [named_column(runs, one) for one in _several(intensity)]
     structures = structures_of(runs, pooled, given, owner=_OWNER)
     of_capacities = check_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
     states = _states(runs, limits)
-    measures = [_measure(runs, one, period, motions) for one in given]
+    measures = [measure_in(runs, one, period, motions, owner=_OWNER) for one in given]
     if len({one.name for one in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
@@ -322,13 +324,13 @@ def fragility(
                 left_out = verdict.size - int(made.weight.sum())
                 found.append(StructureTrials(made, flat(verdict, along), left_out, count))
     over = dict(zip(structures.groups, structures.shape, strict=True))
-    about: dict[str, str | float | int] = {"trials": trials}
+    about: dict[str, Any] = {"trials": trials}
     together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
     if together:
         about[POOLED] = ", ".join(together)
     dataset = fragility_dataset(
         found, {**over, "limit_state": len(states)}, [_labels(one) for one in measures], means,
-        about | _period_of(period),
+        about | told_period(runs, given, period, owner=_OWNER),
     )  # fmt: skip
     dataset = dataset.assign_coords({**structures.coordinates, **labels_of_states(states)})
     if of_capacities:
@@ -344,7 +346,7 @@ def fragility(
 def _of_counts(
     counts: Mapping[Any, Any],
     measure: object,
-    period: "QuantityLike | None",
+    period: "PeriodLike | None",
     bands: str | None,
     confidence: "RatioLike",
     others: Sequence[str],
@@ -385,10 +387,11 @@ def _of_counts(
     )
     total = int(count.sum())
     labels = (which.name, which.attributes())
-    about: dict[str, str | float | int] = {"trials": "trials"}
+    about: dict[str, Any] = {"trials": "trials"}
     found = fragility_dataset(
         [StructureTrials(made, (each[0][:, None], each[1]), 0, total)],
-        {"limit_state": 1}, [labels], means, about | _period_of(period),
+        {"limit_state": 1}, [labels], means,
+        about | told_period(None, [measure], period, owner=_OWNER),
     ).isel(limit_state=0)  # fmt: skip
     return found.assign_attrs(verdict=sentences(found))
 
@@ -433,13 +436,6 @@ def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
     return f" {words[0].upper()}{words[1:]}; these count as if it were held." if words else ""
 
 
-def _period_of(given: "QuantityLike | None") -> dict[str, str | float | int]:
-    """Read the period of a spectral intensity [s], and give it as an attribute."""
-    if given is None:
-        return {}
-    return {PERIOD_OF: to_si(given, PERIOD, owner=_OWNER, name="period")}
-
-
 def _several(given: object) -> list[object]:
     if isinstance(given, str | xr.DataArray):
         return [given]
@@ -448,23 +444,6 @@ def _several(given: object) -> list[object]:
         msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(given)}"
         raise ComponentError(msg)
     return several
-
-
-def _measure(
-    runs: xr.Dataset, given: object, period: "QuantityLike | None", motions: object
-) -> xr.DataArray:
-    if not isinstance(given, xr.DataArray):
-        return intensity_in(
-            runs, Intensity.read(given, period, owner=_OWNER), motions, owner=_OWNER
-        )
-    dims = set(runs["status"].dims)
-    if given.name is None or not set(given.dims) <= dims:
-        msg = (
-            f"{_OWNER}: an intensity of one's own needs a name and dimensions among "
-            f"{', '.join(map(str, runs['status'].dims))}, got {given.name!r} over {given.dims}"
-        )
-        raise ComponentError(msg)
-    return given
 
 
 def _labels(measure: xr.DataArray) -> tuple[str, dict[str, Any]]:

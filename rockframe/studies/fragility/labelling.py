@@ -131,7 +131,7 @@ def fragility_dataset(
         dataset = _with_parameters(dataset, every, layout, means)
         dataset = _with_curves(dataset, every, layout, labels, means)
         runs = [one.runs for one in found if one.runs is not None]
-        dataset = _with_stripes(
+        dataset = with_stripes(
             dataset, runs or _decided([one.trials for one in found]), layout, means
         )
         unit = labels[1].get("units")
@@ -312,7 +312,7 @@ def _probabilities(etas: Array, layout: Arrangement, *measures: str) -> dict[str
     return {str(name): built[name].variable for name in built.data_vars}
 
 
-def _with_stripes(
+def with_stripes(
     dataset: xr.Dataset, counted: Sequence[tuple[Array, Array]], layout: Arrangement, means: Means
 ) -> xr.Dataset:
     """Add how many exceeded, by groups of intensities, with the bounds of Clopper and Pearson."""
