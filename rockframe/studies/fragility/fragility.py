@@ -18,12 +18,14 @@ from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
 from rockframe.studies.fragility.likelihood import (
     Bands,
+    Fit,
     Trials,
     flat,
     motion_numbers,
     trials_of_capacities,
     trials_of_runs,
 )
+from rockframe.studies.fragility.ordered import ordered_fits
 from rockframe.studies.fragility.words import POOLED, sentences
 from rockframe.studies.intensities import Intensity, measure_in, named_column, told_period
 from rockframe.studies.limit_states import (
@@ -171,6 +173,8 @@ _OWNER: Final = "fragility"
 _COLUMNS: Final = ("intensity", "exceeded", "trials")
 _CAPACITIES: Final = "capacities"
 _TRIALS: Final = ("runs", _CAPACITIES)
+_COMMON: Final = "common"
+_DISPERSIONS: Final = ("each", _COMMON)
 _MOST_MEASURES: Final = 2
 _MOST_LEFT_OUT: Final = 80
 """Motions up to which each is left out in turn; of more the sandwich holds as often."""
@@ -185,6 +189,7 @@ def fragility(
     motions: "GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None" = None,
     pooled: Iterable[str] = (),
     trials: str = "runs",
+    dispersion: str = "each",
     bands: str | None = None,
     confidence: "RatioLike" = 0.95,
 ) -> xr.Dataset:
@@ -221,6 +226,10 @@ def fragility(
         What is fitted: all runs, each as it went; or, of a dynamic analysis, the least scale
         that was found to exceed under each motion, above which a block may stand again. The
         former does not hang on how closely scales were looked at.
+    dispersion : {"each", "common"}, optional
+        Whether each limit state has a dispersion of its own, so that curves may cross where they
+        are extrapolated; or all have one, by the likelihood of ordered verdicts of runs,
+        :eq:`eq-fragility-ordered`, so that they cannot. Then limit states must include one another.
     bands : {"profile", "jackknife", "sandwich"}, optional
         Where confidence bounds come from: the profile of the likelihood, which takes all runs
         for independent; fits that leave out each motion in turn; or the sandwich covariance with
@@ -309,13 +318,23 @@ def fragility(
     repeated = not of_capacities and any(map(_repeated, structures.parts(verdicts[-1])))
     most = max(len(np.unique(motion_numbers(one))) for one in structures.parts(verdicts[-1]))
     of_runs = Bands.JACKKNIFE if most <= _MOST_LEFT_OUT else Bands.SANDWICH
-    usual = of_runs if repeated else Bands.PROFILE
+    common = check_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
+    if common and (of_capacities or len(measures) > 1 or bands == "profile"):
+        msg = (
+            f"{_OWNER}: a common dispersion is fitted to runs, over one measure, with bands by "
+            "'jackknife' or 'sandwich'"
+        )
+        raise ComponentError(msg)
+    usual = of_runs if repeated or common else Bands.PROFILE
     means = Means(_bands(bands, usual, len(measures)), read_level(confidence, owner=_OWNER))
-    by_motion = means.bands is not Bands.PROFILE and repeated
+    by_motion = means.bands is not Bands.PROFILE and (repeated or common)
     parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
     found: list[StructureTrials] = []
+    fits: list[Fit] | None = [] if common else None
     for part in parts:
         those, along = part[: len(states)], part[len(states) :]
+        if fits is not None:
+            fits += _ordered(those, along[0], states, means.bands)
         for state, verdict in zip(states, those, strict=True):
             if of_capacities:
                 found.append(_of_capacities(runs, state, verdict, along))
@@ -324,13 +343,13 @@ def fragility(
                 left_out = verdict.size - int(made.weight.sum())
                 found.append(StructureTrials(made, flat(verdict, along), left_out, count))
     over = dict(zip(structures.groups, structures.shape, strict=True))
-    about: dict[str, Any] = {"trials": trials}
+    about: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
     together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
     if together:
         about[POOLED] = ", ".join(together)
     dataset = fragility_dataset(
         found, {**over, "limit_state": len(states)}, [_labels(one) for one in measures], means,
-        about | told_period(runs, given, period, owner=_OWNER),
+        about | told_period(runs, given, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = dataset.assign_coords({**structures.coordinates, **labels_of_states(states)})
     if of_capacities:
@@ -425,6 +444,21 @@ def _of_capacities(
     trials = trials_of_capacities(one, known, measures)
     count = len(trials.weight)
     return StructureTrials(trials, None, one.sizes[MOTION] - count, count)
+
+
+def _ordered(
+    verdicts: Sequence[xr.DataArray],
+    along: xr.DataArray,
+    states: Sequence[LimitState],
+    bands: Bands,
+) -> list[Fit]:
+    """Fit all limit states of a structure with one dispersion."""
+    rows = np.stack([flat(one, [along])[1] for one in verdicts])
+    intensity = flat(verdicts[0], [along])[0][:, 0]
+    kept = ~np.isnan(rows).any(axis=0) & (intensity > 0.0) & np.isfinite(intensity)
+    names = [state.name for state in states]
+    motions = motion_numbers(verdicts[0])[kept]
+    return ordered_fits(np.log(intensity[kept]), rows[:, kept], motions, names, bands)
 
 
 def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:

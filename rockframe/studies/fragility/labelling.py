@@ -91,9 +91,9 @@ class _Fitted:
     bounded: bool
 
     @classmethod
-    def of(cls, found: StructureTrials, means: Means) -> "_Fitted":
-        """Fit, and look for the region where bounds come from it."""
-        trials, made = found.trials, fit(found.trials, means.bands)
+    def of(cls, found: StructureTrials, means: Means, given: Fit | None = None) -> "_Fitted":
+        """Fit, unless a fit is given, and look for the region where bounds come from it."""
+        trials, made = found.trials, given or fit(found.trials, means.bands)
         separated = made.status is FragilityStatus.SEPARATED and trials.measures == 1
         # separated trials of one motion do not contradict one another: they are one bracket
         bands = Bands.PROFILE if separated else means.bands
@@ -110,10 +110,12 @@ def fragility_dataset(
     over: Mapping[str, int],
     measures: Sequence[Labels],
     means: Means,
-    attributes: Mapping[str, str | float | int],
+    attributes: Mapping[str, Any],
+    fits: Sequence[Fit] | None = None,
 ) -> xr.Dataset:
-    """Fit capacities, and label what is found."""
-    every = [_Fitted.of(one, means) for one in found]
+    """Fit capacities, unless fits are given, and label what is found."""
+    given = [None] * len(found) if fits is None else fits
+    every = [_Fitted.of(one, means, each) for one, each in zip(found, given, strict=True)]
     layout = Arrangement(tuple(over), tuple(over.values()))
     counts = {
         "fragility_status": [one.fit.status for one in every],
