@@ -43,10 +43,14 @@ from rockframe.simulation.registration import register as register
 from rockframe.simulation.run_arguments import Certification as Certification
 from rockframe.simulation.system import System as System
 from rockframe.solve.accuracy import Accuracy as Accuracy
+from rockframe.studies import annual_rate as annual_rate
 from rockframe.studies import case as case
+from rockframe.studies import cloud_analysis as cloud_analysis
+from rockframe.studies import compare_intensities as compare_intensities
 from rockframe.studies import critical_scale as critical_scale
 from rockframe.studies import earthquake_sequences as earthquake_sequences
 from rockframe.studies import ensemble_statistics as ensemble_statistics
+from rockframe.studies import fractile_curves as fractile_curves
 from rockframe.studies import fragility as fragility
 from rockframe.studies import incremental_dynamic_analysis as incremental_dynamic_analysis
 from rockframe.studies import open_study as open_study

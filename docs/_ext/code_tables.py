@@ -13,9 +13,13 @@ import rockframe as rf
 from rockframe.command.files.templates import every_key
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.results.variables.analyses import (
+    CLOUD,
     DYNAMIC_ANALYSIS,
     ENSEMBLE,
+    FRACTILES,
     FRAGILITY,
+    HAZARD,
+    MEASURE_COMPARISON,
     OVERTURNING_MAP,
     PROBABILITY,
     SEQUENCES,
@@ -133,6 +137,10 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "critical-scale": lambda: _variables(CRITICAL_SCALE),
     "sweep": lambda: _variables(SWEEP),
     "dynamic-analysis": lambda: _variables(DYNAMIC_ANALYSIS),
+    "fractiles": lambda: _variables(FRACTILES),
+    "cloud": lambda: _variables(CLOUD),
+    "measure-comparison": lambda: _variables(MEASURE_COMPARISON),
+    "hazard": lambda: _variables(HAZARD),
     "fragility": lambda: _variables(FRAGILITY),
     "fragility-statuses": lambda: _flags(FragilityStatus),
     "overturning-map": lambda: _variables(OVERTURNING_MAP),

@@ -1,11 +1,13 @@
 """Figures of results and motions; matplotlib is imported when the first is drawn."""
 
 from rockframe.plot._animation import Animation, animation
+from rockframe.plot._clouds import annual_rate, cloud
 from rockframe.plot._diagrams import energies, moment_rotation, phase
 from rockframe.plot._ensembles import ensemble, fragility, probability
 from rockframe.plot._motion import motion, velocity_pulse
 from rockframe.plot._overturning import (
     dynamic_analysis,
+    fractile_curves,
     overturning_map,
     overturning_spectrum,
     rocking_spectrum,
@@ -24,10 +26,13 @@ __all__ = [
     "Panels",
     "Player",
     "animation",
+    "annual_rate",
+    "cloud",
     "critical_scale",
     "dynamic_analysis",
     "energies",
     "ensemble",
+    "fractile_curves",
     "fragility",
     "free_decay",
     "moment_rotation",

@@ -34,8 +34,19 @@ class DatasetKind:
 
 
 KINDS: Final = {
+    "cloud": DatasetKind(
+        "a cloud", "rf.cloud_analysis(runs)", ("cloud_response", "residual_dispersion")
+    ),
+    "annual_rate": DatasetKind(
+        "annual rates", "rf.annual_rate(fragility, hazard)", ("annual_rate", "rate_share")
+    ),
     "fragility": DatasetKind(
         "a fragility", "rf.fragility(runs)", ("exceedance_probability", "fragility_status")
+    ),
+    "fractile_curves": DatasetKind(
+        "fractile curves",
+        "rf.fractile_curves(runs)",
+        ("response_fractile", "intensity_fractile", "motion_response"),
     ),
     "dynamic_analysis": DatasetKind(
         "a dynamic analysis",

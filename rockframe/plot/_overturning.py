@@ -128,6 +128,74 @@ def dynamic_analysis(
     return on.panels
 
 
+@draws("fractile_curves", title="the verdict")
+def fractile_curves(
+    dataset: xr.Dataset,
+    *,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
+    title: str | None = None,
+) -> Axes:
+    """Draw the intensity over the response: runs in grey, and their fractiles.
+
+    Full lines are fractiles of the response at an intensity, broken ones those of the intensity by
+    which a level of the response is reached. Where a full line ends in a level one to the right,
+    that share of the motions has overturned.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.fractile_curves`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    given = drawable(dataset, "fractile_curves", units)
+    on = single(ax, "fractile_curves", (6.0, 4.3))
+    axes = on.axes
+    name = str(given.attrs["intensity"])
+    up, levels = given[name].to_numpy(), given["response_level"].to_numpy()
+    runs = given["motion_response"].transpose("motion", name).to_numpy()
+    finite = runs[np.isfinite(runs)]
+    right = _ROOM * max(float(levels[-1]), float(finite.max(initial=0.0)))
+    for number, one in enumerate(runs):
+        words = "motions" if number == 0 else None
+        axes.plot(np.where(np.isfinite(one), one, np.nan), up, color=GREY, lw=0.7, label=words)
+        fallen = np.isinf(one)
+        starts = np.flatnonzero(fallen[1:] & ~fallen[:-1])
+        axes.plot(one[starts], up[starts + 1], "o", color=GREY, ms=3)
+    shares = given["quantile"].to_numpy().round(9).tolist()
+    for number, share in enumerate(shares):
+        colour, words = colour_of(number), f"{100.0 * share:.3g} %"
+        # what most responses stay below is what few intensities are below
+        rest = round(1.0 - share, 9)
+        paired = colour_of(shares.index(rest)) if rest in shares else colour
+        one = given.isel(quantile=number)
+        of_response = np.minimum(one["response_fractile"].to_numpy(), 2.0 * right)
+        axes.plot(of_response, up, color=colour, lw=1.6, label=f"{words} of responses")
+        axes.plot(
+            levels,
+            np.where(np.isfinite(one["intensity_fractile"]), one["intensity_fractile"], np.nan),
+            color=paired,
+            lw=1.4,
+            ls="--",
+            label=f"{words} of intensities",
+        )
+    words = str(given.attrs["response"])
+    axes.set(
+        xlabel=label_of(given["response_level"].rename(words)),
+        ylabel=label_of_intensity(given[name], given),
+        xlim=(0.0, right),
+        # above where the last motion stands nothing is left to see
+        ylim=(0.0, min(up[-1], _ROOM * up[np.isfinite(runs).any(axis=0)].max(initial=up[0]))),
+    )
+    grid(axes)
+    on.name_lines()
+    on.entitle(str(given.attrs["verdict"]), title)
+    return axes
+
+
 def _until_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
     """Give intensities and peaks of a motion, with those at which the verdict changes."""
     up = np.concatenate([along, flips])

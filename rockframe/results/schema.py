@@ -4,9 +4,13 @@ from typing import Final
 
 from rockframe.errors import SchemaError
 from rockframe.results.variables.analyses import (
+    CLOUD,
     DYNAMIC_ANALYSIS,
     ENSEMBLE,
+    FRACTILES,
     FRAGILITY,
+    HAZARD,
+    MEASURE_COMPARISON,
     OVERTURNING_MAP,
     PROBABILITY,
     SEQUENCES,
@@ -75,8 +79,12 @@ _TABLES: Final = (
     COMPARISON,
     CRITICAL_SCALE,
     SWEEP,
+    CLOUD,
     DYNAMIC_ANALYSIS,
+    FRACTILES,
     FRAGILITY,
+    HAZARD,
+    MEASURE_COMPARISON,
     OVERTURNING_MAP,
     SPECTRA,
     PROBABILITY,
@@ -119,6 +127,10 @@ COORDINATES: Final = (
     "slenderness",
     "parameter",
     "quantile",
+    "response_level",
+    "measure",
+    "covariate",
+    "contributing_intensity",
     "sequence",
     "earthquake",
 )

@@ -1,15 +1,20 @@
 """Intensity measures of the motions of a sweep, and of a motion that is scaled."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, StudyError, nearest, shown
-from rockframe.measures import intensity_measures, response_spectrum
+from rockframe.measures import (
+    average_spectral_acceleration,
+    intensity_measures,
+    response_spectrum,
+)
+from rockframe.measures.response import checked_periods
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.motions import MEASURES
@@ -18,14 +23,24 @@ from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.studies.limit_states import check_names
 from rockframe.studies.sweeps.case import remembered, unscaled_motion
 from rockframe.studies.sweeps.motions import SPECTRAL, motion_of_case
-from rockframe.units import ACCELERATION, PERIOD, POSITIVE, quantity, to_ratio, to_si
+from rockframe.units import (
+    ACCELERATION,
+    PERIOD,
+    POSITIVE,
+    QuantityLike,
+    RatioLike,
+    quantity,
+    to_ratio,
+    to_si,
+)
 
 if TYPE_CHECKING:
-    from rockframe.motion import GroundMotion
     from rockframe.simulation.system import System
-    from rockframe.units import QuantityLike, RatioLike
+
+PeriodLike: TypeAlias = QuantityLike | tuple[Any, str] | Sequence[QuantityLike]
 
 RATIO: Final = "velocity_to_acceleration_ratio"
+AVERAGE: Final = "average_spectral_acceleration"
 SHORT: Final = {
     "PGA": "peak_ground_acceleration",
     "PGV": "peak_ground_velocity",
@@ -33,6 +48,7 @@ SHORT: Final = {
     "CAV": "cumulative_absolute_velocity",
     "SA": SPECTRAL,
     "PGV/PGA": RATIO,
+    "Sa_avg": AVERAGE,
 }
 """Usual abbreviations."""
 POWERS: Final = {
@@ -52,6 +68,7 @@ POWERS: Final = {
     "absolute_spectral_acceleration": 1,
     "pseudo_spectral_velocity": 1,
     SPECTRAL: 1,
+    AVERAGE: 1,
 }
 """Powers of the scale of the motion with which measures grow."""
 _SPELLED: Final = {short.casefold(): name for short, name in SHORT.items()} | {
@@ -59,8 +76,12 @@ _SPELLED: Final = {short.casefold(): name for short, name in SHORT.items()} | {
 }
 """Names by how they may be written, in small letters."""
 PERIOD_OF: Final = "intensity_period"
-"""Attribute that keeps the period of a spectral intensity [s]."""
+"""Attribute that keeps the period of a spectral intensity, or those of an average [s]."""
+Periods: TypeAlias = float | tuple[float, ...] | None
+"""That of an oscillator, or those over which its values are averaged [s]."""
 _OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
+_SPECTRAL: Final = (*_OSCILLATORS, AVERAGE)
+"""Measures that are of a period, or of several."""
 
 
 def spelled(given: object) -> object:
@@ -69,15 +90,28 @@ def spelled(given: object) -> object:
     return _SPELLED.get(written, given)
 
 
-def measure_words(name: str, period: float | None) -> str:
-    """Write the name of a measure in words, of a spectral value with its period [s]."""
+def measure_words(name: str, period: Any) -> str:
+    """Write the name of a measure in words, of a spectral value with its period or periods [s]."""
     words = name.replace("_", " ")
-    return words if period is None or name not in _OSCILLATORS else f"{words} at {period:.6g} s"
+    if period is None or name not in _SPECTRAL:
+        return words
+    several = np.atleast_1d(period)
+    least, most = several[0], several[-1]
+    return (
+        f"{words} at {least:.6g} s" if name != AVERAGE else f"{words}, {least:.4g} to {most:.4g} s"
+    )
 
 
-def of_study(name: str, period: float | None) -> dict[str, str | float]:
+def of_study(name: str, period: Periods) -> dict[str, Any]:
     """Give the attributes by which a dataset tells of which measure it is."""
-    return {"intensity": name} | ({} if period is None else {PERIOD_OF: period})
+    return {"intensity": name} | of_period(period)
+
+
+def of_period(period: Periods) -> dict[str, Any]:
+    """Give the attribute by which a dataset tells the period of a measure, or its periods."""
+    if period is None:
+        return {}
+    return {PERIOD_OF: np.array(period) if isinstance(period, tuple) else period}
 
 
 @dataclass(frozen=True)
@@ -85,23 +119,28 @@ class Intensity:
     """An intensity measure."""
 
     name: str  # in the schema
-    period: float | None  # of the oscillator of a spectral value [s]
+    period: Periods  # of a spectral value
 
     @classmethod
-    def read(cls, given: object, period: "QuantityLike | None", *, owner: str) -> "Intensity":
+    def read(cls, given: object, period: PeriodLike | None, *, owner: str) -> "Intensity":
         """Read the arguments ``intensity`` and ``period``."""
         given = spelled(given)
         name = check_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
-        if name not in _OSCILLATORS:
+        if name not in _SPECTRAL:
             return cls(name, None)
+        if name == AVERAGE:
+            return cls(name, _read_periods(period, owner))
         if period is None:
             msg = f"{owner}: intensity {name!r} needs a period, for example period='0.5 s'"
             raise ComponentError(msg)
-        seconds = to_si(period, PERIOD, owner=owner, name="period", condition=POSITIVE)
+        one: Any = period
+        seconds = to_si(one, PERIOD, owner=owner, name="period", condition=POSITIVE)
         return cls(name, seconds)
 
     def of(self, motion: GroundMotion) -> float:
         """Give the measure of a motion, in SI units."""
+        if isinstance(self.period, tuple):
+            return float(average_spectral_acceleration(motion, (self.period, "s"))[self.name])
         if self.period is not None:
             found = response_spectrum(motion, [quantity(self.period, PERIOD)])[self.name]
             return float(found.squeeze())
@@ -115,6 +154,76 @@ class Intensity:
     def attributes(self) -> dict[str, Any]:
         """Give the CF attributes of its values."""
         return SCHEMA[self.name].attributes()
+
+
+def _read_periods(given: PeriodLike | None, owner: str) -> tuple[float, ...]:
+    """Read the periods over which spectral values are averaged [s]."""
+    if given is None:
+        msg = (
+            f"{owner}: intensity {AVERAGE!r} needs the periods over which it is averaged, for "
+            "example period=(numpy.linspace(0.2, 3, 57), 's')"
+        )
+        raise ComponentError(msg)
+    seconds = tuple(checked_periods(given, owner=owner).tolist())
+    if seconds[0] <= 0.0:
+        msg = f"{owner}: periods must be above zero, whose logarithm is averaged"
+        raise ComponentError(msg)
+    return seconds
+
+
+def measure_in(
+    runs: xr.Dataset, given: object, period: PeriodLike | None, motions: object, *, owner: str
+) -> xr.DataArray:
+    """Give a measure of the motion of each case: a known one, a column, or numbers of one's own.
+
+    A column is any coordinate or variable of the runs, along their dimensions, by its name.
+    """
+    dims = runs["status"].dims
+    given = named_column(runs, given)
+    named = str(spelled(given))
+    known = isinstance(given, str) and named in runs.variables
+    if known and (named not in _SPECTRAL or _same_period(runs, named, period, owner)):
+        return runs[named]
+    if not isinstance(given, xr.DataArray):
+        which = Intensity.read(given, period, owner=owner)
+        return intensity_in(runs, which, motions, owner=owner)
+    if given.name is None or not set(given.dims) <= set(dims):
+        msg = (
+            f"{owner}: an intensity of one's own needs a name and dimensions among "
+            f"{', '.join(map(str, dims))}, got {given.name!r} over {given.dims}"
+        )
+        raise ComponentError(msg)
+    return given
+
+
+def named_column(runs: xr.Dataset, given: object) -> object:
+    """Give a column of the runs for its name, where no known measure has that."""
+    known = spelled(given)
+    if isinstance(known, str) and known not in POWERS and known in runs.variables:
+        return runs[known]
+    return given
+
+
+def _same_period(runs: xr.Dataset, name: str, period: PeriodLike | None, owner: str) -> bool:
+    """Tell whether the runs have a spectral measure of the period that is asked for."""
+    known = runs.attrs.get(PERIOD_OF, runs.attrs.get("spectral_period"))
+    if period is None:
+        return True
+    wanted: Any = Intensity.read(name, period, owner=owner).period
+    return known is not None and np.array_equal(np.atleast_1d(known), np.atleast_1d(wanted))
+
+
+def told_period(
+    runs: xr.Dataset | None, measures: Iterable[object], period: PeriodLike | None, *, owner: str
+) -> dict[str, Any]:
+    """Give the period of a spectral measure, or those of an average, as an attribute."""
+    named = [spelled(one) for one in measures if not isinstance(one, xr.DataArray)]
+    if period is not None:
+        several = AVERAGE if AVERAGE in named else SPECTRAL
+        return of_period(Intensity.read(several, period, owner=owner).period)
+    if runs is None or PERIOD_OF not in runs.attrs or not any(one in _SPECTRAL for one in named):
+        return {}
+    return {PERIOD_OF: runs.attrs[PERIOD_OF]}
 
 
 def intensity_in(
@@ -197,11 +306,11 @@ class ScaledIntensity:
     def __init__(
         self,
         system: "System",
-        motion: "GroundMotion",
+        motion: GroundMotion,
         name: object,
         *,
-        period: "QuantityLike | None",
-        damping_ratio: "RatioLike",
+        period: QuantityLike | None,
+        damping_ratio: RatioLike,
         owner: str,
     ) -> None:
         self._motion = motion
@@ -229,7 +338,7 @@ class ScaledIntensity:
             return self._one(self._all(self._motion.scaled(scale)))
         return xr.full_like(self._one(self._all(self._motion)), np.nan)
 
-    def _all(self, motion: "GroundMotion") -> xr.Dataset:
+    def _all(self, motion: GroundMotion) -> xr.Dataset:
         if self.period is not None:
             return response_spectrum(motion, [quantity(self.period, PERIOD)], self._damping)
         return intensity_measures(

@@ -134,7 +134,7 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     if state.rotation == 1.0:
         return overturned
     if state.variable:
-        values = _values(runs, state)
+        values = scalar_of(runs, state.variable, state.label, owner="limits")
         beyond = values.notnull() if math.isnan(state.value) else abs(values) >= state.value
         known = runs["peak_relative_rotation"].notnull()
         known = known if math.isnan(state.value) else known & values.notnull()
@@ -149,24 +149,25 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     return (beyond | (runs["overturned"] == 1)).astype(float).where(known)
 
 
-def _values(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Give the variable of a limit state, of the point that it is of."""
-    if state.variable not in runs:
+def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr.DataArray:
+    """Give a scalar of runs, of one of the points, bodies or restrainers that it is of."""
+    if name not in runs:
+        near = nearest(name, [str(one) for one in runs])
         msg = (
-            f"limits: the runs have no {state.variable}, which limit state {state.name!r} is on; "
+            f"{owner}: the runs have no {name}{near}; "
             f"they have {', '.join(str(one) for one in runs if str(one).startswith('peak_'))}"
         )
         raise SchemaError(msg)
-    values = runs[state.variable]
+    values = runs[name]
     beside = [dim for dim in values.dims if dim not in runs["status"].dims]
     labels = values[beside[0]].to_numpy().astype(str).tolist() if beside else [""]
-    if len(beside) > 1 or state.label not in labels:
+    if len(beside) > 1 or label not in labels:
         msg = (
-            f"limits: {state.variable} is of {' and '.join(map(str, beside)) or 'the whole'}; "
-            f"give one of {', '.join(map(repr, labels))} third, got {state.label!r}"
+            f"{owner}: {name} is of {' and '.join(map(str, beside)) or 'the whole'}; "
+            f"give one of {', '.join(map(repr, labels))}, got {label!r}"
         )
         raise ComponentError(msg)
-    return values.isel({beside[0]: labels.index(state.label)}, drop=True) if beside else values
+    return values.isel({beside[0]: labels.index(label)}, drop=True) if beside else values
 
 
 def interrupted(runs: xr.Dataset) -> bool:

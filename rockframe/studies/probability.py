@@ -26,7 +26,7 @@ from rockframe.studies.sweeps.motions import named_motions
 from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import SweptScene, own_motion, scene_of
 from rockframe.studies.sweeps.sweep import sweep
-from rockframe.units import POSITIVE, Measure, RatioLike, Unit, to_ratio, to_si
+from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio, to_si
 
 
 class Sampling(StrEnum):
@@ -37,6 +37,7 @@ class Sampling(StrEnum):
     SOBOL = "sobol"
 
 
+_CORRELATED: Final = Condition("between -1 and 1", lambda value: -1.0 < value < 1.0)
 _KINDS: Final = {
     "normal": "('normal', mean, standard deviation)",
     "lognormal": "('lognormal', median, standard deviation of the logarithm)",
@@ -68,6 +69,55 @@ def read_spread(given: object, scene: SweptScene, *, owner: str) -> tuple[Spread
     if faults:
         raise StudyError(*faults)
     return tuple(found)
+
+
+def read_correlation(given: object, names: Sequence[str], *, owner: str) -> Array | None:
+    """Read the argument ``correlation``: a matrix in the order of the parameters, or its pairs."""
+    if given is None:
+        return None
+    size = len(names)
+    if isinstance(given, Mapping):
+        matrix = np.eye(size)
+        for pair, value in cast("Mapping[Any, Any]", given).items():
+            two = tuple(pair) if isinstance(pair, tuple) else (pair,)
+            if len(two) != 2 or two[0] == two[1] or not set(two) <= set(names):
+                msg = (
+                    f"{owner}: correlation needs pairs of two of {', '.join(names)}, "
+                    f"got {shown(pair)}"
+                )
+                raise ComponentError(msg)
+            i, j = (names.index(one) for one in two)
+            matrix[i, j] = matrix[j, i] = to_ratio(
+                value, owner=owner, name="correlation", condition=_CORRELATED, example="0.5"
+            )
+    else:
+        matrix = np.asarray(given, dtype=np.float64)
+    alike = matrix.shape == (size, size) and np.array_equal(matrix, matrix.T)
+    if not alike or not np.allclose(np.diag(matrix), 1.0, rtol=0.0, atol=1e-12):
+        msg = (
+            f"{owner}: correlation must be a symmetric matrix of {size} rows with ones on its "
+            f"diagonal, in the order of {', '.join(names)}, got {shown(given)}"
+        )
+        raise ComponentError(msg)
+    if float(np.linalg.eigvalsh(matrix)[0]) <= 0.0:
+        msg = f"{owner}: no parameters have this correlation, which is not positive definite"
+        raise ComponentError(msg)
+    return matrix
+
+
+def correlated(cube: Array, matrix: Array, *, stratified: bool) -> Array:
+    """Give a sample of the unit cube the correlation of normal scores, :eq:`eq-gaussian-copula`.
+
+    One that is stratified keeps its values, in another order (Iman and Conover, 1982).
+    """
+    from scipy.special import ndtr, ndtri
+
+    tiny = np.finfo(np.float64).tiny
+    normal = ndtri(np.clip(cube, tiny, 1.0 - 1e-16)) @ np.linalg.cholesky(matrix).T
+    if not stratified:
+        return np.asarray(ndtr(normal), dtype=np.float64)
+    order = np.argsort(np.argsort(normal, axis=0, kind="stable"), axis=0, kind="stable")
+    return np.take_along_axis(np.sort(cube, axis=0), order, axis=0)
 
 
 def drawn(spreads: tuple[Spread, ...], count: int, sampling: Sampling, seed: int) -> Array:
@@ -209,6 +259,7 @@ def probability_of_overturning(
     motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
     *,
     spread: Mapping[str, Any],
+    correlation: Mapping[tuple[str, str], RatioLike] | Array | None = None,
     cases: int = 1000,
     sampling: str = Sampling.LATIN,
     seed: int = 0,
@@ -229,6 +280,10 @@ def probability_of_overturning(
         ``("normal", mean, standard deviation)``, ``("lognormal", median, standard deviation of
         the logarithm)``, ``("uniform", least, greatest)``, with units; or a frozen distribution
         of ``scipy.stats`` in SI units, and the unit: ``(scipy.stats.triang(0.5), "m")``.
+    correlation : mapping of (str, str) to float, or array, optional
+        Of the normal scores of parameters, by pairs of them, ``{("width", "height"): 0.7}``, or a
+        matrix in the order of `spread`; of normal distributions that of the parameters, of
+        lognormal ones that of their logarithms. None are correlated unless given [1].
     cases : int, optional
         How many are drawn.
     sampling : {"latin", "random", "sobol"}, optional
@@ -258,7 +313,10 @@ def probability_of_overturning(
     The bounds are those of Clopper and Pearson for independent cases. Latin hypercubes
     and Sobol sequences vary less, so that the bounds are wide for them: of a Latin hypercube
     the variance is at most n/(n-1) times that of independent cases (Owen, 1997). They say
-    nothing of whether the motions stand for those to come. The first-order index is the share
+    nothing of whether the motions stand for those to come. Correlated parameters have a Gaussian
+    copula, :eq:`eq-gaussian-copula`: each keeps its distribution; the order of a Latin hypercube
+    is changed, and its strata stay. The index of a parameter then holds what it tells of
+    those that go with it. The first-order index is the share
     of the variance of the verdict that would be gone if the parameter were known; what several
     parameters do together is in none of them. Cases without a verdict are left out.
 
@@ -278,6 +336,7 @@ def probability_of_overturning(
     """
     scene = scene_of(system)
     spreads = read_spread(spread, scene, owner=_OWNER)
+    matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
     count = whole_number(cases, owner=_OWNER, name="cases", lowest=2, highest=_MOST_CASES)
     way = one_of_words(Sampling, sampling, owner=_OWNER, name="sampling")
     first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
@@ -290,6 +349,8 @@ def probability_of_overturning(
     if wrong:
         raise StudyError(*wrong)
     cube = drawn(spreads, count, way, first)
+    if matrix is not None:
+        cube[:, 1:] = correlated(cube[:, 1:], matrix, stratified=way is Sampling.LATIN)
     several = 1 if named is None else len(named)
     number = np.minimum((cube[:, 0] * several).astype(int), several - 1)
     # neighbours share their motion

@@ -41,12 +41,30 @@ def _sweep():
     )
 
 
+def _cloud():
+    runs = rf.sweep(RIGID, {f"{k}": PULSE.scaled(0.8 + 0.1 * k) for k in range(8)}, progress=False)
+    return rf.cloud_analysis(runs, "PGA", limits=[0.2])
+
+
+def _rates():
+    hazard = {"intensity": ([0.1, 1.0, 10.0, 100.0], "m/s^2"), "rate": [1.0, 1e-2, 1e-5, 1e-9]}
+    return rf.annual_rate(rf.fragility(COUNTS, "PGA"), hazard)
+
+
 METRES, DEGREES = {"length": ("m", "mm", 1e-3)}, {"angle": ("rad", "mrad", 1e-3)}
 GRAVITIES = {"acceleration": ("m/s^2", "g", 9.80665)}
 PERIODS = {"periods": ([2.0, 3.0], "s"), "slenderness": [5.0], "progress": False}
 DRAWN = {
     # function: (what it draws, a kind of units that it shows, with two of them and their ratio)
     "animation": (_run, DEGREES),
+    "annual_rate": (_rates, GRAVITIES),
+    "cloud": (_cloud, GRAVITIES),
+    "fractile_curves": (
+        lambda: rf.fractile_curves(
+            rf.sweep(RIGID, MOTIONS, scale=[0.5, 1.0, 2.0, 4.0], progress=False), "PGA"
+        ),
+        GRAVITIES,
+    ),
     "critical_scale": (lambda: rf.critical_scale(RIGID, PULSE, largest=3, progress=False), DEGREES),
     "dynamic_analysis": (
         lambda: rf.incremental_dynamic_analysis(

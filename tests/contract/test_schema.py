@@ -234,6 +234,11 @@ DIMENSIONS = {
 }
 DIMENSION_NAMES = {
     "restrainer",
+    "run",
+    "measure",
+    "covariate",
+    "response_level",
+    "contributing_intensity",
     "body",
     "time",
     "sample_after_end",

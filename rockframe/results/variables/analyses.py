@@ -13,6 +13,8 @@ BOUNDARY: Final = ("boundary",)
 COEFFICIENT: Final = ("coefficient",)
 RANK: Final = ("rank",)
 QUANTILE: Final = ("quantile",)
+RUN: Final = ("run",)
+COVARIATE: Final = ("covariate",)
 
 
 class FragilityStatus(IntEnum):
@@ -58,6 +60,31 @@ DYNAMIC_ANALYSIS: Final = (
     count("censored_count", "number of motions under which no scale exceeded the limit state"),
 )
 """Of motions that are scaled until limit states are exceeded."""
+
+FRACTILES: Final = (
+    Variable(
+        "motion_response",
+        (),
+        Unit.ONE,
+        "response under a motion, infinite where the block overturns, in its own unit",
+    ),
+    Variable(
+        "response_fractile",
+        (),
+        Unit.ONE,
+        "response that this share of the motions does not exceed at the intensity",
+    ),
+    count("overturned_count", "number of motions that overturn the block at the intensity"),
+    Variable("response_level", ("response_level",), Unit.ONE, "level of the response"),
+    Variable(
+        "intensity_fractile",
+        (),
+        Unit.ONE,
+        "intensity by which this share of the motions has first reached the level",
+    ),
+    count("unreached_count", "number of motions that never reach the level"),
+)
+"""Of motions that are scaled, in summary."""
 
 FRAGILITY: Final = (
     flag("fragility_status", (), "whether a lognormal capacity fits the trials", FragilityStatus),
@@ -164,6 +191,122 @@ FRAGILITY: Final = (
     ),
 )
 """Of lognormal capacities."""
+
+CLOUD: Final = (
+    Variable(
+        "regression_intercept",
+        (),
+        Unit.ONE,
+        "logarithm of the response at an intensity of one, both in SI units",
+    ),
+    Variable(
+        "regression_slope", (), Unit.ONE, "power of the intensity with which the response grows"
+    ),
+    Variable("regression_slope_error", (), Unit.ONE, "standard error of that power"),
+    Variable(
+        "residual_dispersion",
+        (),
+        Unit.ONE,
+        "standard deviation of the logarithm of the response at an intensity",
+    ),
+    Variable(
+        "determination", (), Unit.ONE, "share of the variance of the logarithms that the line tells"
+    ),
+    Variable("logistic_intercept", (), Unit.ONE, "intercept of the logistic curve of overturning"),
+    Variable(
+        "logistic_slope",
+        (),
+        Unit.ONE,
+        "slope of the logistic curve of overturning over the logarithm of the intensity",
+    ),
+    Variable("logistic_slope_error", (), Unit.ONE, "standard error of that slope"),
+    count("cloud_overturned_count", "number of runs that overturned"),
+    count("resting_count", "number of runs in which nothing moved"),
+    Variable("response_limit", (), Unit.ONE, "level of the response, infinite for overturning"),
+    Variable("cloud_intensity", RUN, Unit.ONE, "intensity of a run, in the unit of the measure"),
+    Variable(
+        "cloud_response", RUN, Unit.ONE, "response of a run, infinite where the block overturned"
+    ),
+)
+"""Of many motions, each at one scale."""
+
+MEASURE_COMPARISON: Final = (
+    Variable("measure", ("measure",), None, "intensity measure", dtype="str"),
+    Variable("covariate", ("covariate",), None, "what a response may depend on too", dtype="str"),
+    Variable(
+        "efficiency_ratio", (), Unit.ONE, "dispersion of the response over the power it grows with"
+    ),
+    Variable(
+        "sufficiency_slope",
+        COVARIATE,
+        Unit.ONE,
+        "slope of the residuals, per unit of the covariate",
+    ),
+    Variable(
+        "sufficiency_p_value",
+        COVARIATE,
+        Unit.ONE,
+        "probability of a slope as great if the response did not depend on the covariate",
+    ),
+    Variable(
+        "relative_sufficiency",
+        (),
+        Unit.ONE,
+        "information that the measure gives on the runs more than the first, in bits a run",
+    ),
+    Variable("relative_sufficiency_error", (), Unit.ONE, "standard error of that information"),
+    count("line_count", "number of runs that moved and did not overturn"),
+)
+"""Of measures side by side."""
+
+HAZARD: Final = (
+    Variable(
+        "annual_rate",
+        (),
+        Unit.ONE,
+        "number of times a year that the limit state is exceeded on average",
+    ),
+    Variable(
+        "annual_rate_lower_bound", (), Unit.ONE, "the same of the lower bound of the fragility"
+    ),
+    Variable(
+        "annual_rate_upper_bound", (), Unit.ONE, "the same of the upper bound of the fragility"
+    ),
+    Variable(
+        "unreached_rate_below",
+        (),
+        Unit.ONE,
+        "annual rate that arises below the hazard curve, if it goes on as it ends",
+    ),
+    Variable(
+        "unreached_rate_above",
+        (),
+        Unit.ONE,
+        "annual rate that arises above the hazard curve, if it goes on as it ends",
+    ),
+    Variable(
+        "outside_trials_share",
+        (),
+        Unit.ONE,
+        "share of the annual rate that arises at intensities beyond those of all trials",
+    ),
+    Variable(
+        "contributing_intensity",
+        ("contributing_intensity",),
+        Unit.ONE,
+        "middle of a range of intensities, in the unit of the measure",
+    ),
+    Variable(
+        "rate_share",
+        ("contributing_intensity",),
+        Unit.ONE,
+        "share of the rate that arises in the range of intensities",
+    ),
+    Variable(
+        "quantile_intensity", QUANTILE, Unit.ONE, "intensity below which that share of it arises"
+    ),
+)
+"""Of limit states at a site."""
 
 OVERTURNING_MAP: Final = (
     Variable(

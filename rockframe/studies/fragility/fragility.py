@@ -20,14 +20,22 @@ from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
 from rockframe.studies.fragility.likelihood import (
     Bands,
+    Fit,
     Trials,
     flat,
     motion_numbers,
     trials_of_capacities,
     trials_of_runs,
 )
+from rockframe.studies.fragility.ordered import ordered_fits
 from rockframe.studies.fragility.words import POOLED, sentences
-from rockframe.studies.intensities import PERIOD_OF, Intensity, intensity_in
+from rockframe.studies.intensities import (
+    Intensity,
+    PeriodLike,
+    measure_in,
+    named_column,
+    told_period,
+)
 from rockframe.studies.limit_states import (
     LimitState,
     check_names,
@@ -39,7 +47,7 @@ from rockframe.studies.limit_states import (
 )
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import Changes, free_values
-from rockframe.units import PERIOD, QuantityLike, RatioLike, to_si
+from rockframe.units import RatioLike
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,6 +177,8 @@ _OWNER: Final = "fragility"
 _COLUMNS: Final = ("intensity", "exceeded", "trials")
 _CAPACITIES: Final = "capacities"
 _TRIALS: Final = ("runs", _CAPACITIES)
+_COMMON: Final = "common"
+_DISPERSIONS: Final = ("each", _COMMON)
 _MOST_MEASURES: Final = 2
 _MOST_LEFT_OUT: Final = 80
 """Motions up to which each is left out in turn; of more the sandwich holds as often."""
@@ -180,10 +190,11 @@ def fragility(
     intensity: str | xr.DataArray | Sequence[str | xr.DataArray] = "PGA",
     *,
     limits: Iterable[object] | None = None,
-    period: QuantityLike | None = None,
+    period: PeriodLike | None = None,
     motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
     pooled: Iterable[str] = (),
     trials: str = "runs",
+    dispersion: str = "each",
     bands: str | None = None,
     confidence: RatioLike = 0.95,
 ) -> xr.Dataset:
@@ -197,9 +208,10 @@ def fragility(
         ``"intensity"``, values with a unit such as ``([0.2, 0.3], "g_0")``, ``"exceeded"``, how
         many trials exceeded the limit state at each, and ``"trials"``, of how many.
     intensity : str, DataArray, or two of them
-        Intensity measure: ``"PGA"``, ``"PGV"``, ``"PGD"``, ``"CAV"``, ``"SA"``, ``"PGV/PGA"``, or
-        a name of :func:`rockframe.intensity_measures` or :func:`rockframe.response_spectrum`;
-        or numbers of one's own along dimensions of the runs, with a name and ``units``. Two
+        Intensity measure: ``"PGA"``, ``"PGV"``, ``"PGD"``, ``"CAV"``, ``"SA"``, ``"Sa_avg"``,
+        ``"PGV/PGA"``, or a name of :func:`rockframe.intensity_measures` or
+        :func:`rockframe.response_spectrum`; the name of a coordinate or variable of the runs; or
+        numbers of one's own along dimensions of the runs, with a name and ``units``. Two
         give a fragility over both.
     limits : iterable, optional
         Limit states beside overturning: ``"uplift"``, and peak rotations over the
@@ -207,8 +219,9 @@ def fragility(
         Or on any scalar of the runs whose size tells: its name and a value with a unit, such
         as ``("peak_slip", "5 cm")`` or ``("broken_restrainer_count", 1)``; and third, of points,
         bodies or restrainers, which one. Overturning exceeds each of them.
-    period : str or Quantity, optional
-        Of the oscillator of a spectral intensity [s].
+    period : str or Quantity, or several, optional
+        Of the oscillator of a spectral intensity; of ``"Sa_avg"`` those over which the spectrum is
+        averaged, such as ``(numpy.linspace(0.2, 3, 57), "s")`` [s].
     motions : GroundMotion, or sequence or mapping of them, optional
         The records of the sweep, where neither the dataset nor this process has them.
     pooled : iterable of str, optional
@@ -218,6 +231,10 @@ def fragility(
         What is fitted: all runs, each as it went; or, of a dynamic analysis, the least scale
         that was found to exceed under each motion, above which a block may stand again. The
         former does not hang on how closely scales were looked at.
+    dispersion : {"each", "common"}, optional
+        Whether each limit state has a dispersion of its own, so that curves may cross where they
+        are extrapolated; or all have one, by the likelihood of ordered verdicts of runs,
+        :eq:`eq-fragility-ordered`, so that they cannot. Then limit states must include one another.
     bands : {"profile", "jackknife", "sandwich"}, optional
         Where confidence bounds come from: the profile of the likelihood, which takes all runs
         for independent; fits that leave out each motion in turn; or the sandwich covariance with
@@ -291,14 +308,14 @@ def fragility(
         others = [name for name, one in given.items() if one is not None]
         return _of_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
-    given = _several(intensity)
+    given = [named_column(runs, one) for one in _several(intensity)]
     structures = structures_of(runs, pooled, given, owner=_OWNER)
     of_capacities = check_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
     states = _states(runs, limits)
-    measures = [_measure(runs, one, period, motions) for one in given]
+    measures = [measure_in(runs, one, period, motions, owner=_OWNER) for one in given]
     if len({one.name for one in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
@@ -306,13 +323,23 @@ def fragility(
     repeated = not of_capacities and any(map(_repeated, structures.parts(verdicts[-1])))
     most = max(len(np.unique(motion_numbers(one))) for one in structures.parts(verdicts[-1]))
     of_runs = Bands.JACKKNIFE if most <= _MOST_LEFT_OUT else Bands.SANDWICH
-    usual = of_runs if repeated else Bands.PROFILE
+    common = check_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
+    if common and (of_capacities or len(measures) > 1 or bands == "profile"):
+        msg = (
+            f"{_OWNER}: a common dispersion is fitted to runs, over one measure, with bands by "
+            "'jackknife' or 'sandwich'"
+        )
+        raise ComponentError(msg)
+    usual = of_runs if repeated or common else Bands.PROFILE
     means = Means(_bands(bands, usual, len(measures)), read_level(confidence, owner=_OWNER))
-    by_motion = means.bands is not Bands.PROFILE and repeated
+    by_motion = means.bands is not Bands.PROFILE and (repeated or common)
     parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
     found: list[StructureTrials] = []
+    fits: list[Fit] | None = [] if common else None
     for part in parts:
         those, along = part[: len(states)], part[len(states) :]
+        if fits is not None:
+            fits += _ordered(those, along[0], states, means.bands)
         for state, verdict in zip(states, those, strict=True):
             if of_capacities:
                 found.append(_of_capacities(runs, state, verdict, along))
@@ -321,13 +348,13 @@ def fragility(
                 left_out = verdict.size - int(made.weight.sum())
                 found.append(StructureTrials(made, flat(verdict, along), left_out, count))
     over = dict(zip(structures.groups, structures.shape, strict=True))
-    about: dict[str, str | float | int] = {"trials": trials}
+    about: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
     together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
     if together:
         about[POOLED] = ", ".join(together)
     dataset = fragility_dataset(
         found, {**over, "limit_state": len(states)}, [_labels(one) for one in measures], means,
-        about | _period_of(period),
+        about | told_period(runs, given, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = dataset.assign_coords({**structures.coordinates, **labels_of_states(states)})
     if of_capacities:
@@ -343,7 +370,7 @@ def fragility(
 def _of_counts(
     counts: Mapping[Any, Any],
     measure: object,
-    period: QuantityLike | None,
+    period: PeriodLike | None,
     bands: str | None,
     confidence: RatioLike,
     others: Sequence[str],
@@ -384,10 +411,11 @@ def _of_counts(
     )
     total = int(count.sum())
     labels = (which.name, which.attributes())
-    about: dict[str, str | float | int] = {"trials": "trials"}
+    about: dict[str, Any] = {"trials": "trials"}
     found = fragility_dataset(
         [StructureTrials(made, (each[0][:, None], each[1]), 0, total)],
-        {"limit_state": 1}, [labels], means, about | _period_of(period),
+        {"limit_state": 1}, [labels], means,
+        about | told_period(None, [measure], period, owner=_OWNER),
     ).isel(limit_state=0)  # fmt: skip
     return found.assign_attrs(verdict=sentences(found))
 
@@ -423,6 +451,21 @@ def _of_capacities(
     return StructureTrials(trials, None, one.sizes[MOTION] - count, count)
 
 
+def _ordered(
+    verdicts: Sequence[xr.DataArray],
+    along: xr.DataArray,
+    states: Sequence[LimitState],
+    bands: Bands,
+) -> list[Fit]:
+    """Fit all limit states of a structure with one dispersion."""
+    rows = np.stack([flat(one, [along])[1] for one in verdicts])
+    intensity = flat(verdicts[0], [along])[0][:, 0]
+    kept = ~np.isnan(rows).any(axis=0) & (intensity > 0.0) & np.isfinite(intensity)
+    names = [state.name for state in states]
+    motions = motion_numbers(verdicts[0])[kept]
+    return ordered_fits(np.log(intensity[kept]), rows[:, kept], motions, names, bands)
+
+
 def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
     """Say in how many runs friction would not hold the block; nothing where none was given."""
     if "would_slide" not in runs:
@@ -430,13 +473,6 @@ def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
     which = "runs of the scan" if of_capacities else "runs"
     words = share_words(runs["would_slide"].to_numpy(), runs=which)
     return f" {words[0].upper()}{words[1:]}; these count as if it were held." if words else ""
-
-
-def _period_of(given: QuantityLike | None) -> dict[str, str | float | int]:
-    """Read the period of a spectral intensity [s], and give it as an attribute."""
-    if given is None:
-        return {}
-    return {PERIOD_OF: to_si(given, PERIOD, owner=_OWNER, name="period")}
 
 
 def _several(given: object) -> list[object]:
@@ -447,23 +483,6 @@ def _several(given: object) -> list[object]:
         msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(given)}"
         raise ComponentError(msg)
     return several
-
-
-def _measure(
-    runs: xr.Dataset, given: object, period: QuantityLike | None, motions: object
-) -> xr.DataArray:
-    if not isinstance(given, xr.DataArray):
-        return intensity_in(
-            runs, Intensity.read(given, period, owner=_OWNER), motions, owner=_OWNER
-        )
-    dims = set(runs["status"].dims)
-    if given.name is None or not set(given.dims) <= dims:
-        msg = (
-            f"{_OWNER}: an intensity of one's own needs a name and dimensions among "
-            f"{', '.join(map(str, runs['status'].dims))}, got {given.name!r} over {given.dims}"
-        )
-        raise ComponentError(msg)
-    return given
 
 
 def _labels(measure: xr.DataArray) -> tuple[str, dict[str, Any]]:

@@ -91,9 +91,9 @@ class _Fitted:
     bounded: bool
 
     @classmethod
-    def of(cls, found: StructureTrials, means: Means) -> "_Fitted":
-        """Fit, and look for the region where bounds come from it."""
-        trials, made = found.trials, fit(found.trials, means.bands)
+    def of(cls, found: StructureTrials, means: Means, given: Fit | None = None) -> "_Fitted":
+        """Fit, unless a fit is given, and look for the region where bounds come from it."""
+        trials, made = found.trials, given or fit(found.trials, means.bands)
         separated = made.status is FragilityStatus.SEPARATED and trials.measures == 1
         # separated trials of one motion do not contradict one another: they are one bracket
         bands = Bands.PROFILE if separated else means.bands
@@ -110,10 +110,12 @@ def fragility_dataset(
     over: Mapping[str, int],
     measures: Sequence[Labels],
     means: Means,
-    attributes: Mapping[str, str | float | int],
+    attributes: Mapping[str, Any],
+    fits: Sequence[Fit] | None = None,
 ) -> xr.Dataset:
-    """Fit capacities, and label what is found."""
-    every = [_Fitted.of(one, means) for one in found]
+    """Fit capacities, unless fits are given, and label what is found."""
+    given = [None] * len(found) if fits is None else fits
+    every = [_Fitted.of(one, means, each) for one, each in zip(found, given, strict=True)]
     layout = Arrangement(tuple(over), tuple(over.values()))
     counts = {
         "fragility_status": [one.fit.status for one in every],
@@ -131,7 +133,7 @@ def fragility_dataset(
         dataset = _with_parameters(dataset, every, layout, means)
         dataset = _with_curves(dataset, every, layout, labels, means)
         runs = [one.runs for one in found if one.runs is not None]
-        dataset = _with_stripes(
+        dataset = with_stripes(
             dataset, runs or _decided([one.trials for one in found]), layout, means
         )
         unit = labels[1].get("units")
@@ -312,7 +314,7 @@ def _probabilities(etas: Array, layout: Arrangement, *measures: str) -> dict[str
     return {str(name): built[name].variable for name in built.data_vars}
 
 
-def _with_stripes(
+def with_stripes(
     dataset: xr.Dataset, counted: Sequence[tuple[Array, Array]], layout: Arrangement, means: Means
 ) -> xr.Dataset:
     """Add how many exceeded, by groups of intensities, with the bounds of Clopper and Pearson."""

@@ -223,7 +223,7 @@ def _fit(trials: Trials) -> Fit:
 
 def log_likelihood(trials: Trials, coefficients: Array) -> Array:
     """Give the logarithm of the likelihood, :eq:`eq-fragility-likelihood`."""
-    return trials.weight @ _log_shares(*_etas(trials, coefficients))
+    return trials.weight @ log_shares(*_etas(trials, coefficients))
 
 
 def scores(trials: Trials, coefficients: Array) -> Array:
@@ -332,9 +332,9 @@ def gap(trials: Trials) -> tuple[float, float] | None:
 def _slopes_along(trials: Trials, coefficients: Array, rays: Array) -> Array:
     upper, lower = _design(trials)
     eta_upper, eta_lower = _etas(trials, coefficients)
-    share = _log_shares(eta_upper, eta_lower)
-    along = np.exp(_log_density(eta_upper) - share) * (upper @ rays)
-    along -= np.exp(_log_density(eta_lower) - share) * (lower @ rays)
+    share = log_shares(eta_upper, eta_lower)
+    along = np.exp(log_density(eta_upper) - share) * (upper @ rays)
+    along -= np.exp(log_density(eta_lower) - share) * (lower @ rays)
     return trials.weight @ along
 
 
@@ -379,15 +379,15 @@ def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
 def _ratios(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Array]:
     """Give eta at both ends, 0 where one is open, and the density there over the share between."""
     eta_upper, eta_lower = (eta[:, 0] for eta in _etas(trials, coefficients[:, None]))
-    share = _log_shares(eta_upper, eta_lower)
-    at_upper = np.exp(_log_density(eta_upper) - share)
-    at_lower = np.exp(_log_density(eta_lower) - share)
+    share = log_shares(eta_upper, eta_lower)
+    at_upper = np.exp(log_density(eta_upper) - share)
+    at_lower = np.exp(log_density(eta_lower) - share)
     finite_upper = np.where(trials.has_upper, eta_upper, 0.0)
     finite_lower = np.where(trials.has_lower, eta_lower, 0.0)
     return finite_upper, at_upper, finite_lower, at_lower
 
 
-def _log_shares(upper: Array, lower: Array) -> Array:
+def log_shares(upper: Array, lower: Array) -> Array:
     """Give ln(Phi(upper) - Phi(lower)), to the last digits in both tails."""
     from scipy.special import log_ndtr
 
@@ -399,7 +399,8 @@ def _log_shares(upper: Array, lower: Array) -> Array:
         return high + np.log(-np.expm1(np.where(np.isneginf(low), -np.inf, low - high)))
 
 
-def _log_density(eta: Array) -> Array:
+def log_density(eta: Array) -> Array:
+    """Give the logarithm of the density of the normal distribution."""
     return -0.5 * (eta * eta + math.log(2.0 * math.pi))
 
 

@@ -61,6 +61,8 @@ def sentences(fragility: xr.Dataset) -> str:
             bands, last.attrs["confidence"], independent, trials,
             kind="trials" if kind == "trials" else "motions", measures=len(measures_of(last)),
         )  # fmt: skip
+    if last.attrs.get("dispersions") == "common":
+        said.append("One dispersion is common to all limit states.")
     return " ".join([*said, *_below_scan(last), *_left_out(last)])
 
 

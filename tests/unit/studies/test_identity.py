@@ -64,6 +64,10 @@ OF_SIZES = {
     "system": OTHER, "motions": TURNED, "periods": ([2, 5], "s"), "slenderness": [3, 5],
 }  # fmt: skip
 SPECTRAL = tuple({"intensity": "SA", "period": period} for period in ("0.5 s", "2 s"))
+SPREAD = {"scale": ("lognormal", 1.5, 0.4), "gravity": ("uniform", "9 m/s^2", "10 m/s^2")}
+CORRELATED = tuple(
+    {"spread": SPREAD, "correlation": {("scale", "gravity"): size}} for size in (0.2, 0.8)
+)
 LINES = {"scale": [0.5, 2.0], "bracket_width": 0.05}
 OF_LINES = {
     "scale": [0.5, 2.5],
@@ -89,7 +93,8 @@ ANALYSES = {
         {"system": SYSTEM, "motions": MOTIONS, "spread": {"scale": ("lognormal", 1.5, 0.4)},
          "cases": 24},
         {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 1.6, 0.4)},
-         "cases": 25, "sampling": "random", "seed": 1, "confidence": 0.9},
+         "correlation": CORRELATED, "cases": 25, "sampling": "random",
+         "seed": 1, "confidence": 0.9},
     ),
     "earthquake_sequences": (
         {"system": SYSTEM, "sequences": {"zwei": [WEAK, STRONG], "1": [STRONG]}, "pause": "1 s"},

@@ -1,0 +1,28 @@
+"""
+Fractile curves
+===============
+
+Eight motions at growing scales, with the fractiles of their peaks at an intensity, and of the
+intensities at a peak (:doc:`/guide/analyses`).
+"""
+
+import numpy as np
+
+import rockframe as rf
+
+cabinet = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+suite = {
+    f"seed {k}": rf.GroundMotion.stochastic(7.0, "5 km", seed=k, stress_drop="20 MPa")
+    for k in range(8)
+}
+analysis = rf.incremental_dynamic_analysis(
+    cabinet,
+    suite,
+    scale=np.arange(0.2, 6.1, 0.2),
+    intensity="PGA",
+    free_vibration="4 s",
+    progress=False,
+)
+curves = rf.fractile_curves(analysis, "PGA")
+print(curves.verdict)
+rf.plot.fractile_curves(curves)

@@ -1,0 +1,139 @@
+"""Clouds of unscaled motions, and the intensities at which limit states are exceeded."""
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import SchemaError
+from rockframe.plot._axes import (
+    COLOURS,
+    GREY,
+    colour_of,
+    grid,
+    label_of,
+    label_of_intensity,
+    plain_ticks,
+)
+from rockframe.plot._checks import drawable, draws
+from rockframe.plot._panels import Axes, AxesLike, single
+from rockframe.units.shown import UnitsLike
+
+
+@draws("cloud", title="the verdict")
+def cloud(
+    dataset: xr.Dataset,
+    *,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
+    title: str | None = None,
+) -> Axes:
+    """Draw runs on logarithmic axes, with their line and the levels that are limit states.
+
+    Light, one and two dispersions about the line. Above the frame of the others stand runs that
+    overturned, below it those in which nothing moved.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.cloud_analysis`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    given = drawable(dataset, "cloud", units)
+    on = single(ax, "cloud", (6.0, 4.3))
+    axes = on.axes
+    name = str(given.attrs["intensity"])
+    along, response = (given[f"cloud_{one}"].to_numpy() for one in ("intensity", "response"))
+    fell, still = np.isinf(response), response == 0.0
+    between = ~fell & ~still
+    limits = given["response_limit"].to_numpy()
+    limits = limits[np.isfinite(limits)]
+    shown = np.concatenate([response[between], limits])
+    low, high = (shown.min() / 1.6, shown.max() * 1.6) if len(shown) else (0.1, 1.0)
+    axes.plot(along[between], response[between], "o", color=GREY, ms=3.5, label="runs")
+    axes.plot(
+        along[fell], np.full(fell.sum(), high), "^", color=COLOURS[1], ms=5, label="overturned"
+    )
+    axes.plot(along[still], np.full(still.sum(), low), "v", color=COLOURS[2], ms=5, label="at rest")
+    x = np.geomspace(along.min(), along.max(), 101)
+    # the line is fitted in SI units; its middle is that of the runs in any
+    logs = np.log(along[between])
+    slope, spread = float(given["regression_slope"]), float(given["residual_dispersion"])
+    if np.isfinite(slope):
+        middle = np.log(response[between]).mean() + slope * (np.log(x) - logs.mean())
+        axes.plot(x, np.exp(middle), color=COLOURS[0], lw=1.6, label="median")
+        for size in (1.0, 2.0):
+            ends = (np.exp(middle + sign * size * spread) for sign in (-1.0, 1.0))
+            axes.fill_between(x, *ends, color=COLOURS[0], alpha=0.12, linewidth=0.0)
+    for one in limits:
+        axes.axhline(one, color="0.3", lw=0.8, ls=":")
+    response_name = given["cloud_response"].rename(str(given.attrs["response"]))
+    axes.set(
+        xscale="log", yscale="log", ylim=(low / 1.3, high * 1.3),
+        xlabel=label_of_intensity(given[name], given), ylabel=label_of(response_name),
+    )  # fmt: skip
+    plain_ticks(axes)
+    grid(axes)
+    on.name_lines()
+    on.entitle(str(given.attrs["verdict"]), title)
+    return axes
+
+
+@draws("annual_rate", title="the verdict")
+def annual_rate(
+    dataset: xr.Dataset,
+    *,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
+    title: str | None = None,
+) -> Axes:
+    """Draw which intensities contribute to the annual rate of limit states.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.annual_rate`, of one structure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    given = drawable(dataset, "annual_rate", units)
+    several = [str(dim) for dim in given["annual_rate"].dims if dim != "limit_state"]
+    given = given.isel({dim: 0 for dim in several if given.sizes[dim] == 1})
+    wide = [dim for dim in several if dim in given.dims]
+    if wide:
+        msg = (
+            f"rf.plot.annual_rate: found several structures, by {', '.join(wide)}; pick one, for "
+            f"example with rates.isel({wide[0]}=0)"
+        )
+        raise SchemaError(msg)
+    if "limit_state" not in given.dims:
+        given = given.expand_dims("limit_state")
+    on = single(ax, "annual_rate", (6.0, 4.0))
+    axes = on.axes
+    middle = given["contributing_intensity"]
+    logs = np.log(middle.to_numpy())
+    step = logs[1] - logs[0]
+    edges = np.exp(np.append(logs - 0.5 * step, logs[-1] + 0.5 * step))
+    for number in range(given.sizes["limit_state"]):
+        one = given.isel(limit_state=number)
+        state = str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"
+        rate = float(one["annual_rate"])
+        if np.isnan(rate):
+            continue
+        axes.stairs(
+            100.0 * one["rate_share"].to_numpy(), edges, color=colour_of(number), lw=1.4, fill=True,
+            alpha=0.35, label=f"{state}: {rate:.3g} a year",
+        )  # fmt: skip
+    axes.set(
+        xscale="log", ylabel="share of the rate in a range of intensities [%]",
+        xlabel=label_of_intensity(middle.rename(str(given.attrs["intensity"])), given),
+    )  # fmt: skip
+    axes.set_ylim(bottom=0.0)
+    plain_ticks(axes)
+    grid(axes)
+    on.name_lines()
+    on.entitle(str(given.attrs["verdict"]), title)
+    return axes

@@ -1,0 +1,494 @@
+"""Cloud analysis: a straight line in logarithms, with runs that overturn apart."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import StudyError
+from rockframe.motion import GroundMotion
+from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Generic, overturns
+from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.results.variables.studies import MOTION
+from rockframe.signals.arrays import Array
+from rockframe.studies.confidence import read_level
+from rockframe.studies.fragility.labelling import Arrangement, Means, with_stripes
+from rockframe.studies.fragility.likelihood import Bands, motion_numbers
+from rockframe.studies.intensities import (
+    PERIOD_OF,
+    PeriodLike,
+    measure_in,
+    measure_words,
+    told_period,
+)
+from rockframe.studies.limit_states import OVERTURNING, check_runs, scalar_of
+from rockframe.studies.logistic import Logistic, fit_logistic
+from rockframe.units import POSITIVE, Measure, RatioLike, Unit, to_ratio, to_si
+
+_OWNER: Final = "cloud_analysis"
+_FEWEST: Final = 4
+"""Runs of a regression, below which nothing is left for its dispersion."""
+_POINTS: Final = 101
+_DRAWS: Final = 4000
+"""Of the coefficients, for bounds."""
+_ENDS: Final = ("lower", "upper")
+_OF_INTENSITY: Final = (
+    "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
+    "stripe_intensity", "cloud_intensity",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A straight line through the logarithms of responses, :eq:`eq-cloud-line`."""
+
+    intercept: float
+    slope: float
+    dispersion: float  # standard deviation of the residuals
+    determination: float
+    covariance: Array  # of intercept and slope
+    freedom: int  # degrees of freedom of the residuals
+    residuals: Array
+
+    @classmethod
+    def through(cls, logs: Array, responses: Array) -> "Line":
+        """Fit by least squares."""
+        design = np.column_stack([np.ones(len(logs)), logs])
+        (intercept, slope), *_ = np.linalg.lstsq(design, responses)
+        residuals = responses - design @ np.array([intercept, slope])
+        freedom = len(logs) - 2
+        squares = float(residuals @ residuals)
+        total = float(((responses - responses.mean()) ** 2).sum())
+        variance = squares / freedom
+        return cls(
+            float(intercept), float(slope), math.sqrt(variance),
+            1.0 - squares / total if total > 0.0 else 0.0,
+            np.asarray(variance * np.linalg.inv(design.T @ design), dtype=np.float64), freedom,
+            residuals,
+        )  # fmt: skip
+
+    def drawn(self, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
+        """Draw intercepts, slopes and dispersions that are as likely, :eq:`eq-cloud-posterior`."""
+        scale = np.sqrt(self.freedom / rng.chisquare(self.freedom, count))
+        root = np.linalg.cholesky(self.covariance)
+        about = rng.standard_normal((count, 2)) @ root.T * scale[:, None]
+        return self.intercept + about[:, 0], self.slope + about[:, 1], self.dispersion * scale
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """Runs, each under a motion, with what is fitted to them."""
+
+    logs: Array  # of the intensity
+    responses: Array  # infinite where the block overturned, zero where it stayed at rest
+    line: Line | None  # of the runs between these; None of too few
+    overturning: Logistic
+    moving: Logistic  # of runs that did not overturn: whether anything moved
+
+    @classmethod
+    def of(cls, logs: Array, responses: Array) -> "Cloud":
+        """Fit a line, and what parts runs that overturn, or stay at rest, from the others."""
+        fell, moved = np.isinf(responses), responses > 0.0
+        between = moved & ~fell
+        several = between.sum() >= _FEWEST and np.ptp(logs[between]) > 0.0
+        line = Line.through(logs[between], np.log(responses[between])) if several else None
+        return cls(
+            logs, responses, line, fit_logistic(logs, fell), fit_logistic(logs[~fell], moved[~fell])
+        )
+
+    def log_likelihoods(self) -> Array:
+        """Give the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
+        if self.line is None:
+            return np.full(len(self.logs), np.nan)
+        falls, moves = self.overturning.at(self.logs), self.moving.at(self.logs)
+        fell, moved = np.isinf(self.responses), self.responses > 0.0
+        found = np.where(
+            fell, np.log(np.maximum(falls, 1e-300)), np.log1p(-np.minimum(falls, 1.0 - 1e-16))
+        )
+        stood = ~fell
+        chance = np.where(moved, moves, 1.0 - moves)
+        found[stood] += np.log(np.maximum(chance[stood], 1e-300))
+        between = moved & ~fell
+        over = self.line.residuals / self.line.dispersion
+        found[between] += -0.5 * (over**2 + math.log(2.0 * math.pi)) - math.log(
+            self.line.dispersion
+        )
+        return found
+
+    def probabilities(self, logs: Array, level: float) -> Array:
+        """Give the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
+        falls, moves = self.overturning.at(logs), self.moving.at(logs)
+        if math.isinf(level):
+            return falls
+        if self.line is None:
+            return np.full(logs.shape, np.nan)
+        beyond = _normal(
+            (self.line.intercept + self.line.slope * logs - math.log(level)) / self.line.dispersion
+        )
+        return falls + (1.0 - falls) * moves * beyond
+
+    def drawn(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
+        """Draw curves that are as likely; shape (count, intensities)."""
+        falls, moves = self.overturning.drawn(logs, rng, count), self.moving.drawn(logs, rng, count)
+        if math.isinf(level) or self.line is None:
+            return falls if math.isinf(level) else np.full((count, len(logs)), np.nan)
+        intercept, slope, spread = (one[:, None] for one in self.line.drawn(rng, count))
+        beyond = _normal((intercept + slope * logs - math.log(level)) / spread)
+        return falls + (1.0 - falls) * moves * beyond
+
+
+def _normal(eta: Array) -> Array:
+    from scipy.special import ndtr
+
+    return np.asarray(ndtr(eta))
+
+
+def cloud_analysis(
+    runs: xr.Dataset,
+    intensity: str | xr.DataArray = "PGA",
+    *,
+    response: str = "peak_relative_rotation",
+    label: str | None = None,
+    limits: Iterable[Any] = (0.1, 0.5),
+    least: Any = None,
+    period: PeriodLike | None = None,
+    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    confidence: RatioLike = 0.95,
+    seed: int = 0,
+) -> xr.Dataset:
+    """Fit a line to responses under many motions, each at one scale, and give the fragility.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Of a sweep over many motions, usually as they were recorded.
+    intensity : str or DataArray, optional
+        Measure, as for :func:`rockframe.fragility`.
+    response : str, optional
+        Which scalar of the runs.
+    label : str, optional
+        Of points, bodies or restrainers which one.
+    limits : iterable, optional
+        Levels of the response, with a unit where it has one: limit states beside overturning.
+    least : float, str or Quantity, optional
+        Response below which a run counts as one in which nothing moved, with a unit where it has
+        one; zero unless given.
+    period : str or Quantity, or several, optional
+        Of a spectral intensity [s].
+    motions : GroundMotion, or sequence or mapping of them, optional
+        The records, where neither the dataset nor this process has them.
+    confidence : float, optional
+        Of all bounds [1].
+    seed : int, optional
+        Of the random numbers that bounds are found by.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``regression_intercept``, ``regression_slope``, ``residual_dispersion``,
+        ``determination`` of the runs that moved and did not overturn; ``logistic_intercept`` and
+        ``logistic_slope`` of overturning; over ``limit_state`` what a fragility has:
+        ``median_intensity``, ``dispersion``, ``exceedance_probability``, with bounds; and over
+        ``run`` ``cloud_intensity`` and ``cloud_response``, infinite of those that overturned. The
+        attribute ``verdict`` says it in words.
+
+    Raises
+    ------
+    ComponentError, UnitsError
+        An argument is out of range, has a wrong unit, or names no such measure or scalar.
+    SchemaError
+        Not the result of a sweep.
+    StudyError
+        The runs are of several structures, or have no verdicts.
+
+    Notes
+    -----
+    The modified cloud analysis of Jalayer et al. (2017): the logarithm of the response is normal
+    about a straight line in that of the intensity, :eq:`eq-cloud-line`, for runs that do not
+    overturn, and overturning is logistic, :eq:`eq-cloud-fragility`. Blocks on rigid ground that
+    stay at rest have no logarithm, and those that hardly rise have one that tells nothing of the
+    others, so that `least` had best be given; whether a block that stands has moved is logistic
+    too. Where
+    the intensity parts one from the other without overlap, the probability is a step in the middle
+    of the gap. The median is where the probability is one half, the dispersion half the
+    logarithm of the ratio of the intensities at 84 and 16 %; of the line alone the curve is
+    lognormal, and both are its parameters.
+
+    Bounds are those between which curves lie whose coefficients are drawn from what the runs leave
+    possible (the robust fragility of Jalayer et al., 2015), :eq:`eq-cloud-posterior`. Where
+    motions were run more than once the runs depend on one another, and there are none.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    >>> motions = [rf.GroundMotion.stochastic(6.5, f"{d} km", seed=d) for d in range(2, 22)]
+    >>> runs = rf.sweep(system, motions, accuracy="fast", progress=False)
+    >>> found = rf.cloud_analysis(runs, "PGV", limits=[0.2])
+    >>> found.limit_state.values.tolist()
+    ['peak relative rotation 0.2', 'overturning']
+    """
+    runs = check_runs(runs, owner=_OWNER)
+    level = read_level(confidence, owner=_OWNER)
+    measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
+    values = scalar_of(runs, response, label or "", owner=_OWNER)
+    asked = _levels(limits, values)
+    floor = read_least(least, values, owner=_OWNER)
+    cloud, kept, repeated = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
+    return _labelled(
+        cloud, asked, _names(asked, response, label, values), measure, level,
+        {
+            "left_out": int((~kept).sum()), "repeated": repeated, "seed": seed,
+            "response": response if label is None else f"{response} {label}",
+            "unit": str(values.attrs.get("units", "1")),
+            "told": told_period(runs, [intensity], period, owner=_OWNER),
+            "kept": {key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs},
+        },
+    )  # fmt: skip
+
+
+class CloudOfRuns(NamedTuple):
+    """A cloud, and which runs it is of."""
+
+    cloud: Cloud
+    kept: Generic  # whether each run is one of it, in the order of the dimensions
+    repeated: bool  # whether motions were run more than once
+
+
+def cloud_of(
+    runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray, *, least: float, owner: str
+) -> CloudOfRuns:
+    """Fit a cloud to runs that have a verdict, an intensity and a response."""
+    if MOTION not in runs.coords:
+        msg = f"{owner}: found runs without motions; expected those of many motions"
+        raise StudyError(msg)
+    along, response = laid_out(runs, measure), np.abs(laid_out(runs, values))
+    fell = laid_out(runs, overturns(runs))
+    response = np.where(fell == 1.0, np.inf, np.where(response < least, 0.0, response))
+    known = ~np.isnan(fell) & (along > 0.0) & np.isfinite(along) & ~np.isnan(response)
+    if known.sum() < _FEWEST:
+        count = int(known.sum())
+        msg = f"{owner}: {count} runs have a verdict and an intensity; {_FEWEST} are needed"
+        raise StudyError(msg)
+    used = motion_numbers(overturns(runs))[known]
+    made = Cloud.of(np.log(along[known]), response[known])
+    return CloudOfRuns(made, known, len(np.unique(used)) < len(used))
+
+
+def laid_out(runs: xr.Dataset, values: xr.DataArray) -> Array:
+    """Lay numbers of runs out in a row."""
+    status = runs["status"]
+    laid = values.broadcast_like(status).transpose(*status.dims)
+    return laid.to_numpy().ravel().astype(np.float64)
+
+
+def read_least(given: Any, values: xr.DataArray, *, owner: str) -> float:
+    """Read the response below which nothing is taken to have moved, in its own unit."""
+    return 0.0 if given is None else _read_level(given, values, owner, "least")
+
+
+def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> float:
+    unit = str(values.attrs.get("units", "1"))
+    if unit == Unit.ONE:
+        return to_ratio(given, owner=owner, name=name, condition=POSITIVE, example="0.5")
+    kind = Measure(str(values.name).replace("_", " "), Unit(unit), f"1 {unit}")
+    return to_si(given, kind, owner=owner, name=name, condition=POSITIVE)
+
+
+def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
+    """Read levels of the response; overturning is the last, at infinity."""
+    several = [limits] if isinstance(limits, str | int | float) else limits
+    found = {_read_level(one, values, _OWNER, "limits") for one in several if one != OVERTURNING}
+    return [*sorted(found), math.inf]
+
+
+def _names(
+    levels: Sequence[float], response: str, label: str | None, values: xr.DataArray
+) -> list[str]:
+    unit = str(values.attrs.get("units", "1"))
+    words = " ".join(filter(None, [response.replace("_", " "), label]))
+    return [
+        OVERTURNING if math.isinf(one) else f"{words} {one:g}{'' if unit == '1' else f' {unit}'}"
+        for one in levels
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class _Curve:
+    """The fragility of one limit state, with bounds."""
+
+    status: FragilityStatus
+    points: Array  # probability and its bounds; shape (3, intensities)
+    median: Array  # and its bounds
+    dispersion: Array
+
+
+def _curve(cloud: Cloud, level: float, along: Array, about: "_Bounds") -> _Curve:
+    status = _status(cloud, level)
+    wide = np.linspace(cloud.logs.min() - _BEYOND, cloud.logs.max() + _BEYOND, _WIDE)
+    middle, spread = _parameters(cloud.probabilities(wide, level)[None], wide)
+    points = np.full((3, len(along)), np.nan)
+    medians, spreads = np.full((2, 3), np.nan)
+    if status not in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
+        points[0] = cloud.probabilities(along, level)
+        return _Curve(status, points, medians, spreads)
+    points[0] = cloud.probabilities(along, level)
+    medians[0], spreads[0] = np.exp(middle[0]), spread[0]
+    if status is FragilityStatus.SEPARATED:
+        medians[0], spreads[0] = np.exp(cloud.overturning.coefficients[0]), 0.0
+    elif not math.isnan(about.confidence):
+        tails = 0.5 * (1.0 - about.confidence), 0.5 * (1.0 + about.confidence)
+        rng = np.random.default_rng(about.seed)
+        drawn = cloud.drawn(np.concatenate([along, wide]), level, rng, _DRAWS)
+        points[1:] = np.quantile(drawn[:, : len(along)], tails, axis=0)
+        each = _parameters(drawn[:, len(along) :], wide)
+        # beyond what was looked at a median is anywhere: it counts as infinite
+        every = [np.where(np.isnan(one), np.inf, one) for one in each]
+        medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
+        spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
+    return _Curve(status, points, medians, spreads)
+
+
+_BEYOND: Final = 3.0
+"""Logarithm of the intensity by which medians are looked for beyond the runs."""
+_WIDE: Final = 601
+
+
+class _Bounds(NamedTuple):
+    """How bounds are drawn."""
+
+    confidence: float  # NaN where there are none
+    seed: int
+
+
+def _status(cloud: Cloud, level: float) -> FragilityStatus:
+    """Tell whether a limit state has a fragility, or why not."""
+    if math.isinf(level):
+        rises = cloud.overturning.status is not FragilityStatus.FITTED
+        rises = rises or cloud.overturning.coefficients[1] > 0.0
+        return cloud.overturning.status if rises else FragilityStatus.NOT_RISING
+    if cloud.line is None:
+        return FragilityStatus.NO_TRIALS
+    return FragilityStatus.FITTED if cloud.line.slope > 0.0 else FragilityStatus.NOT_RISING
+
+
+def _parameters(curves: Array, logs: Array) -> tuple[Array, Array]:
+    """Give the logarithms at which curves reach one half, and their dispersions."""
+    from scipy.special import ndtri
+
+    eta = ndtri(np.clip(curves, 1e-300, 1.0 - 1e-16))
+    at = [_crossing(eta, logs, level) for level in (-1.0, 0.0, 1.0)]
+    return at[1], 0.5 * (at[2] - at[0])
+
+
+def _crossing(eta: Array, logs: Array, level: float) -> Array:
+    """Give where curves first rise above a level; NaN where they do not."""
+    above = eta >= level
+    right = np.argmax(above, axis=1)
+    found = above.any(axis=1) & (right > 0)
+    right = np.maximum(right, 1)
+    rows = np.arange(len(eta))
+    low, high = eta[rows, right - 1], eta[rows, right]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        at = logs[right - 1] + (level - low) / (high - low) * (logs[right] - logs[right - 1])
+    return np.where(found, at, np.nan)
+
+
+def _labelled(
+    cloud: Cloud,
+    levels: Sequence[float],
+    names: Sequence[str],
+    measure: xr.DataArray,
+    confidence: float,
+    about: Mapping[str, Any],
+) -> xr.Dataset:
+    """Label a cloud and its fragility."""
+    bounds = _Bounds(math.nan if about["repeated"] else confidence, about["seed"])
+    along = np.linspace(cloud.logs.min(), cloud.logs.max(), _POINTS)
+    curves = [_curve(cloud, level, along, bounds) for level in levels]
+    name, over = str(measure.name), ("limit_state",)
+    line, falls = cloud.line, cloud.overturning.coefficients
+    of_line = [math.nan] * 4 if line is None else [
+        line.intercept, line.slope, line.dispersion, line.determination
+    ]  # fmt: skip
+    errors = [math.nan] * 2 if line is None else np.sqrt(np.diag(line.covariance)).tolist()
+    fell = np.isinf(cloud.responses)
+    found = build_dataset(
+        {
+            "regression_intercept": of_line[0],
+            "regression_slope": of_line[1],
+            "regression_slope_error": errors[1],
+            "residual_dispersion": of_line[2],
+            "determination": of_line[3],
+            "logistic_intercept": falls[0],
+            "logistic_slope": falls[1],
+            "logistic_slope_error": math.sqrt(cloud.overturning.covariance[1, 1]),
+            "cloud_overturned_count": fell.sum(),
+            "resting_count": (cloud.responses == 0.0).sum(),
+            "cloud_intensity": np.exp(cloud.logs),
+            "cloud_response": cloud.responses,
+        },
+        {"bands": "posterior", "trials": "cloud", "confidence": confidence},
+        title="Cloud analysis", source="least squares and logistic regression",
+    )  # fmt: skip
+    ends = ("", *(f"_{end}_bound" for end in _ENDS))
+    of_states = {"fragility_status": np.array([one.status for one in curves]),
+                 "response_limit": np.array(levels)}  # fmt: skip
+    for k, end in enumerate(ends):
+        of_states[f"median_intensity{end}"] = np.array([one.median[k] for one in curves])
+        of_states[f"dispersion{end}"] = np.array([one.dispersion[k] for one in curves])
+    counts = {
+        "trial_count": np.full(len(levels), len(cloud.logs)),
+        "left_out_count": np.full(len(levels), about["left_out"]),
+    }
+    points = {
+        f"exceedance_probability{end}": np.stack([one.points[k] for one in curves])
+        for k, end in enumerate(ends)
+    }
+    found = found.assign(build_dataset({**of_states, **counts}, {}, over=over).data_vars)
+    found = found.assign(build_dataset(points, {}, over=(*over, name)).data_vars)
+    found = found.assign_coords({name: (name, np.exp(along), measure.attrs)})
+    found = found.assign_coords(
+        build_dataset({"limit_state": np.array(list(names), dtype=object)}, {}).coords
+    )
+    counted = [
+        (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
+        for level in levels
+    ]
+    layout = Arrangement(over, (len(levels),))
+    found = with_stripes(found, counted, layout, Means(Bands.PROFILE, confidence))
+    for one in _OF_INTENSITY:
+        found[one].attrs["units"] = measure.attrs.get("units", "1")
+    found["cloud_response"].attrs["units"] = found["response_limit"].attrs["units"] = about["unit"]
+    found.attrs |= {
+        **about["kept"],
+        **about["told"],
+        "intensity": name,
+        "response": about["response"],
+    }
+    return found.assign_attrs(verdict=_sentence(found, about["repeated"]))
+
+
+def _sentence(found: xr.Dataset, repeated: bool) -> str:
+    """Tell the line, and how many runs overturned."""
+    words = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
+    count, fell = found.sizes["run"], int(found["cloud_overturned_count"])
+    rest = int(found["resting_count"])
+    text = f"Of {count} runs {fell} overturned"
+    text += f" and {rest} did not move" if rest else ""
+    if math.isnan(float(found["regression_slope"])):
+        text += "; too few are between for a line"
+    else:
+        text += (
+            f"; the {str(found.attrs['response']).replace('_', ' ')} of the others grows with "
+            f"power {float(found['regression_slope']):.3g} of {words}, dispersion "
+            f"{float(found['residual_dispersion']):.3g}"
+        )
+    left_out = int(found["left_out_count"].max())
+    text += f"; {left_out} are left out, without a verdict or an intensity" if left_out else ""
+    text += "; no bounds, for motions were run more than once" if repeated else ""
+    return f"{text}."

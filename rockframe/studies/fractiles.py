@@ -1,0 +1,322 @@
+"""Fractile curves of motions that are scaled: response given the intensity, and the other way."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import ComponentError, StudyError, shown
+from rockframe.motion import GroundMotion
+from rockframe.motion.quantities import ArrayLike
+from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Generic, overturns
+from rockframe.results.variables.studies import MOTION
+from rockframe.signals.arrays import Array
+from rockframe.studies.intensities import PeriodLike, measure_in, told_period
+from rockframe.studies.limit_states import check_runs, scalar_of
+from rockframe.studies.lines import SCALE
+from rockframe.units import Condition, Measure, RatioLike, Unit, to_ratio, to_si_values
+
+_OWNER: Final = "fractile_curves"
+_SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
+_POINTS: Final = 201
+"""Intensities, and levels of the response, at which curves are given unless told otherwise."""
+_LEVEL: Final = "response_level"
+_TITLE: Final = "Fractile curves of scaled motions"
+
+
+def fractile_curves(
+    runs: xr.Dataset,
+    intensity: str | xr.DataArray = SCALE,
+    response: str = "peak_relative_rotation",
+    *,
+    label: str | None = None,
+    period: PeriodLike | None = None,
+    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    fractiles: Sequence[RatioLike] = (0.16, 0.5, 0.84),
+    levels: ArrayLike | None = None,
+) -> xr.Dataset:
+    """Summarize scaled motions: fractiles of the response at an intensity, and of that to reach it.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Of :func:`rockframe.incremental_dynamic_analysis`, or of a sweep over the scale and motions.
+    intensity : str or DataArray, optional
+        Measure, as for :func:`rockframe.fragility`; the scale of the motion unless given.
+    response : str, optional
+        Which scalar of the runs.
+    label : str, optional
+        Of points, bodies or restrainers which one.
+    period : str or Quantity, or several, optional
+        Of a spectral intensity [s].
+    motions : GroundMotion, or sequence or mapping of them, optional
+        The records, where neither the dataset nor this process has them.
+    fractiles : sequence of float, optional
+        Shares of the motions [1].
+    levels : (sequence, unit), Quantity or sequence of float, optional
+        Levels of the response, increasing; from the least response to the greatest unless given.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the intensity: ``motion_response`` of each motion, ``response_fractile`` over
+        ``quantile``, and ``overturned_count``. Over ``response_level``: ``intensity_fractile``, the
+        intensity at which that share of the motions has first reached the level, and
+        ``unreached_count``, of motions that did not. The response of a block that overturned is
+        infinite, and so is the intensity of a motion that never reached the level. The attribute
+        ``verdict`` says it in words.
+
+    Raises
+    ------
+    ComponentError, UnitsError
+        An argument is out of range, has a wrong unit, or names no such measure or scalar.
+    SchemaError
+        Not the result of a sweep.
+    StudyError
+        The runs go over more than the scale and motions, or their intensities have no range in
+        common.
+
+    Notes
+    -----
+    Vamvatsikos and Cornell (2004), :eq:`eq-fractiles`. Between runs of a motion its response is
+    a straight line; between one that stands and one that overturns it is level up to the scale
+    at which the verdict changes, by the bracket of a dynamic analysis, by the run that overturned
+    in a sweep. Nothing is said below the greatest of the motions' least intensities, and nothing
+    above the least of their greatest ones. A fractile is the least value up to which at least that
+    share of the motions lies, so that those that are infinite count like any other. A motion
+    whose first run already reaches a level has the intensity of that run there, a bound from above.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    >>> motions = [rf.GroundMotion.stochastic(6.5, "10 km", seed=k) for k in range(5)]
+    >>> runs = rf.sweep(system, motions, scale=[1, 2, 3, 4], accuracy="fast")
+    >>> curves = rf.fractile_curves(runs, "PGA")
+    >>> dict(curves.response_fractile.sizes)
+    {'quantile': 3, 'peak_ground_acceleration': 201}
+    """
+    runs = check_runs(runs, owner=_OWNER)
+    shares = np.array(
+        [
+            to_ratio(one, owner=_OWNER, name="fractiles", condition=_SHARE, example="0.5")
+            for one in fractiles
+        ]
+    )
+    measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
+    values = scalar_of(runs, response, label or "", owner=_OWNER)
+    lines = _lines(runs, measure, abs(values))
+    low = max(float(one.along[0]) for one in lines)
+    high = min(float(one.along[-1]) for one in lines)
+    if not low < high:
+        msg = (
+            f"{_OWNER}: the motions have no range of {measure.name} in common: from {low:.4g} all "
+            f"have been run, up to {high:.4g}; give them more scales"
+        )
+        raise StudyError(msg)
+    along = np.linspace(low, high, _POINTS)
+    asked = _levels(levels, values, lines)
+    responses = np.stack([one.at(along) for one in lines])
+    reached = np.stack([one.first(asked) for one in lines])
+    name = str(measure.name)
+    labels = build_dataset(
+        {MOTION: np.array([one.name for one in lines], dtype=object), "quantile": shares}, {}
+    )
+    parts = [
+        build_dataset({"motion_response": responses}, {}, over=(MOTION, name)),
+        build_dataset(
+            {"response_fractile": fractiles_of(responses, shares)}, {}, over=("quantile", name)
+        ),
+        build_dataset({"overturned_count": np.isinf(responses).sum(axis=0)}, {}, over=(name,)),
+        build_dataset(
+            {"intensity_fractile": fractiles_of(reached, shares)}, {}, over=("quantile", _LEVEL)
+        ),
+        build_dataset({"unreached_count": np.isinf(reached).sum(axis=0)}, {}, over=(_LEVEL,)),
+    ]
+    found = xr.merge([part.drop_attrs(deep=False) for part in parts], join="exact", compat="equals")
+    found = found.assign_coords({**labels.coords, name: (name, along, measure.attrs)})
+    found = found.assign_coords(build_dataset({_LEVEL: asked}, {}).coords)
+    unit = values.attrs.get("units", "1")
+    for one in ("motion_response", "response_fractile", _LEVEL):
+        found[one].attrs["units"] = unit
+    found["intensity_fractile"].attrs["units"] = measure.attrs.get("units", "1")
+    about = build_dataset({}, {}, title=_TITLE, source="runs of scaled motions").attrs
+    told = told_period(runs, [intensity], period, owner=_OWNER)
+    kept = {key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs}
+    return found.assign_attrs(
+        {**about, **kept, "intensity": name, **told, "response": _words(response, label),
+         "verdict": _sentence(lines, along, responses, measure)}
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """The response of a motion along its intensity."""
+
+    name: str
+    along: Array  # intensities of all runs with a verdict, rising
+    # breakpoints of the response where the block stands: intensities and values
+    points: Array
+    values: Array
+    falls: tuple[tuple[float, float], ...]  # from where to where it overturns, ends included
+
+    def at(self, intensities: Array) -> Array:
+        """Give the response at intensities, infinite where the block overturns."""
+        found = np.interp(intensities, self.points, self.values)
+        for first, last in self.falls:
+            found[(intensities >= first) & (intensities <= last)] = np.inf
+        return found
+
+    def first(self, levels: Array) -> Array:
+        """Give the least intensities at which levels are reached; infinite where they are not."""
+        highest = np.maximum.accumulate(self.values)
+        place = np.searchsorted(highest, levels, side="left")
+        found = np.full(levels.shape, self.falls[0][0] if self.falls else np.inf)
+        for k, (level, right) in enumerate(zip(levels, place, strict=True)):
+            if right == len(highest):
+                continue
+            reached = self.points[right]
+            if right > 0:
+                ends = self.values[right - 1 : right + 1]
+                reached = np.interp(level, ends, self.points[right - 1 : right + 1])
+            found[k] = min(found[k], reached)
+        return found
+
+
+def _lines(runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray) -> list[_Line]:
+    """Give the line of each motion."""
+    verdict = overturns(runs)
+    wide = [str(dim) for dim, size in verdict.sizes.items() if size > 1 and dim != MOTION]
+    if len(wide) != 1 or MOTION not in verdict.dims:
+        what = " and ".join(map(str, verdict.sizes))
+        msg = (
+            f"{_OWNER}: found runs over {what}; expected motions, and one scale of them: pick a "
+            "value of anything else"
+        )
+        raise StudyError(msg)
+    along = wide[0]
+    others = [dim for dim in verdict.dims if dim not in (MOTION, along)]
+
+    def rows(given: xr.DataArray) -> Array:
+        laid = given.broadcast_like(verdict).isel(dict.fromkeys(others, 0))
+        return laid.transpose(MOTION, along).to_numpy().astype(np.float64)
+
+    intensities, responses, falls = rows(measure), rows(values), rows(verdict)
+    names = runs[MOTION].to_numpy().astype(str)
+    found: list[_Line] = []
+    for k, name in enumerate(names):
+        known = ~np.isnan(falls[k]) & np.isfinite(intensities[k])
+        known &= (falls[k] == 1.0) | np.isfinite(responses[k])
+        if not known.any():
+            msg = f"{_OWNER}: no run under {name} has a verdict"
+            raise StudyError(msg)
+        order = np.argsort(intensities[k], kind="stable")
+        order = order[known[order]]
+        ranges = _falls(runs, k, intensities[k], along)
+        found.append(
+            _line(name, intensities[k][order], responses[k][order], falls[k][order] == 1.0, ranges)
+        )
+    return found
+
+
+def _falls(
+    runs: xr.Dataset, motion: int, intensities: Array, along: str
+) -> list[tuple[float, float]] | None:
+    """Give the ranges that overturn by the brackets of a dynamic analysis; None of a sweep."""
+    if along != SCALE or not all(one in runs for one in ("scale_above", "exceeds_above")):
+        return None
+    last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore")
+    above, below, after = (
+        last[name].to_numpy() for name in ("scale_above", "scale_below", "exceeds_above")
+    )
+    told = ~np.isnan(above)
+    scales = np.log(runs[SCALE].to_numpy())
+    rising = np.argsort(scales)
+
+    def of(scale: float) -> float:  # measures are powers of the scale
+        return float(np.exp(np.interp(np.log(scale), scales[rising], np.log(intensities[rising]))))
+
+    ranges: list[tuple[float, float]] = []
+    start = None if not told.any() or after[told][0] == 1.0 else float(intensities.min())
+    for low, high, falls in zip(below[told], above[told], after[told], strict=True):
+        if falls == 1.0:
+            start = of(high)
+        elif start is not None:
+            ranges.append((start, of(low)))
+            start = None
+    return [*ranges, (start, np.inf)] if start is not None else ranges
+
+
+def _line(
+    name: str, along: Array, values: Array, fell: Generic, told: list[tuple[float, float]] | None
+) -> _Line:
+    """Give the line of runs in order, of which some overturned."""
+    if not told:  # from the first of neighbours that overturned to the last
+        edges = np.diff(np.concatenate([[False], fell, [False]]).astype(int))
+        firsts, lasts = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
+        told = [
+            (float(along[i]), float(along[j]) if j + 1 < len(along) else np.inf)
+            for i, j in zip(firsts, lasts, strict=True)
+        ]
+    stood = ~fell
+    x, y = along[stood].tolist(), values[stood].tolist()
+    for first, last in told if any(stood) else ():
+        # level from the last run that stood to the fall, and from its end to the next
+        before, after = np.searchsorted(along[stood], [first, last], side="right")
+        if before > 0:
+            x.append(first)
+            y.append(values[stood][before - 1])
+        if np.isfinite(last) and after < stood.sum():
+            x.append(last)
+            y.append(values[stood][after])
+    order = np.argsort(x, kind="stable")
+    points, rest = np.array(x)[order], np.array(y)[order]
+    if not len(points):
+        points, rest = along[:1], np.array([np.inf])
+    return _Line(name, along, points, rest, tuple(told))
+
+
+def fractiles_of(rows: Array, shares: Array) -> Array:
+    """Give the least values up to which at least these shares of the rows lie, :eq:`eq-fractiles`.
+
+    By order, so that infinite values need no arithmetic.
+    """
+    place = np.ceil(len(rows) * shares - 1e-9).astype(int) - 1
+    return np.sort(rows, axis=0)[np.clip(place, 0, len(rows) - 1)]
+
+
+def _levels(given: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
+    """Read the levels of the response, or give those from the least to the greatest."""
+    if given is None:
+        every = np.concatenate([one.values for one in lines])
+        every = every[np.isfinite(every)]
+        ends = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
+        return np.linspace(*ends, _POINTS + 1)[1:]  # every motion has reached the least
+    unit = str(values.attrs.get("units", "1"))
+    if unit == Unit.ONE:
+        found = np.array([to_ratio(one, owner=_OWNER, name="levels") for one in given])
+    else:
+        measure = Measure("a response", Unit(unit), f"1 {unit}")
+        found = np.array(to_si_values(given, measure, owner=_OWNER, name="levels"))
+    if not len(found) or not (np.diff(found) > 0.0).all():
+        msg = f"{_OWNER}: levels must be one or more, and increase, got {shown(given)}"
+        raise ComponentError(msg)
+    return found
+
+
+def _words(response: str, label: str | None) -> str:
+    return response if label is None else f"{response} {label}"
+
+
+def _sentence(lines: Sequence[_Line], along: Array, responses: Array, measure: xr.DataArray) -> str:
+    """Tell how many motions overturned, and by which intensity half of them."""
+    fell = np.isinf(responses)
+    unit = str(measure.attrs.get("units", "1"))
+    unit = "" if unit == "1" else f" {unit}"
+    text = f"Of {len(lines)} motions {int(fell.any(axis=1).sum())} overturned at some "
+    text += f"{str(measure.name).replace('_', ' ')} from {along[0]:.4g} to {along[-1]:.4g}{unit}"
+    half = np.flatnonzero(fell.sum(axis=0) >= 0.5 * len(lines))
+    return f"{text}, half of them at {along[half[0]]:.4g}{unit}." if len(half) else f"{text}."

@@ -1,0 +1,203 @@
+"""Capacities against several limit states with one dispersion, whose curves do not cross.
+
+A run shows how many of the limit states, each of which includes those before it, it exceeds: an
+ordered verdict. Its likelihood, :eq:`eq-fragility-ordered`, is log-concave in the intercepts and
+the slope that all have.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from rockframe.errors import StudyError
+from rockframe.results.outcome import Generic
+from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.signals.arrays import Array
+from rockframe.studies.fragility.likelihood import (
+    Bands,
+    Fit,
+    jackknife,
+    log_density,
+    log_shares,
+)
+
+
+def ordered_fits(
+    logs: Array, verdicts: Array, motions: Generic, names: Sequence[str], bands: Bands
+) -> list[Fit]:
+    """Fit all limit states at once.
+
+    Parameters
+    ----------
+    logs : ndarray, shape (runs,)
+        Logarithms of the intensity.
+    verdicts : ndarray, shape (states, runs)
+        Whether each was exceeded; the lightest limit state first.
+    motions : ndarray, shape (runs,)
+        The motion of each run: runs of one depend on one another.
+    names : sequence of str
+        Of the limit states.
+    bands : Bands
+        Where the covariance comes from.
+
+    Returns
+    -------
+    list of Fit
+        One for each limit state.
+
+    Raises
+    ------
+    StudyError
+        A run exceeds a limit state without exceeding one before it.
+    """
+    for k in range(1, len(names)):
+        count = int(((verdicts[k] == 1.0) & (verdicts[k - 1] == 0.0)).sum())
+        if count:
+            msg = (
+                f"fragility: a common dispersion needs limit states that include one another; "
+                f"{count} runs exceed {names[k]!r} and not {names[k - 1]!r}"
+            )
+            raise StudyError(msg)
+    shares = verdicts.mean(axis=1) if verdicts.shape[1] else np.zeros(len(names))
+    some = (shares > 0.0) & (shares < 1.0)
+    if not some.any():
+        return [_of_share(share) for share in shares]
+    # states that the same runs exceed have one capacity
+    _, places = np.unique(shares[some], return_inverse=True)
+    places = places.max() - places
+    first = [int(np.flatnonzero(places == k)[0]) for k in range(places.max() + 1)]
+    count = np.asarray(verdicts[some][first].sum(axis=0), dtype=np.intp)
+    best = _greatest(logs, count, len(first))
+    if best is None or best[-1] <= 0.0:
+        status = FragilityStatus.SEPARATED if best is None else FragilityStatus.NOT_RISING
+        return [
+            Fit.none(status, 1) if one else _of_share(s)
+            for one, s in zip(some, shares, strict=True)
+        ]
+    covariance, rows = _covariance(logs, count, motions, best, bands)
+    inside = _information(logs, count, best)
+    found: list[Fit] = []
+    of_state = iter(places)
+    for one, share in zip(some, shares, strict=True):
+        if not one:
+            found.append(_of_share(share))
+            continue
+        pair = np.array([next(of_state), len(best) - 1])
+        square = np.ix_(pair, pair)
+        without = None if rows is None else (rows[:, pair], np.ones(len(rows)))
+        found.append(
+            Fit(FragilityStatus.FITTED, best[pair], inside[square], covariance[square], without)
+        )
+    return found
+
+
+def _of_share(share: float) -> Fit:
+    """Give what is known of a limit state that all runs exceed, or none."""
+    status = FragilityStatus.ALL_EXCEEDED if share > 0.0 else FragilityStatus.NONE_EXCEEDED
+    return Fit.none(status, 1)
+
+
+def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, Array]:
+    """Give eta and its derivatives at both ends of each verdict; an open end has zeros."""
+    states = len(at) - 1
+    upper, lower = np.zeros((2, len(logs), len(at)))
+    rows = np.arange(len(logs))
+    over, under = count > 0, count < states
+    upper[rows[over], count[over] - 1] = 1.0
+    lower[rows[under], count[under]] = 1.0
+    upper[over, -1], lower[under, -1] = logs[over], logs[under]
+    eta_upper = np.where(over, upper @ at, np.inf)
+    eta_lower = np.where(under, lower @ at, -np.inf)
+    return eta_upper, eta_lower, upper, lower
+
+
+def _value(logs: Array, count: Generic, at: Array) -> float:
+    """Give the log-likelihood, :eq:`eq-fragility-ordered`; minus infinity out of order."""
+    upper, lower, *_ = _ends(logs, count, at)
+    if np.any(upper <= lower):
+        return -math.inf
+    return float(log_shares(upper, lower).sum())
+
+
+def _ratios(logs: Array, count: Generic, at: Array) -> tuple[Array, ...]:
+    upper, lower, of_upper, of_lower = _ends(logs, count, at)
+    share = log_shares(upper, lower)
+    at_upper, at_lower = (np.exp(log_density(one) - share) for one in (upper, lower))
+    upper, lower = (np.where(np.isfinite(one), one, 0.0) for one in (upper, lower))
+    return upper, lower, of_upper, of_lower, at_upper, at_lower
+
+
+def _scores(logs: Array, count: Generic, at: Array) -> Array:
+    _, _, of_upper, of_lower, at_upper, at_lower = _ratios(logs, count, at)
+    return at_upper[:, None] * of_upper - at_lower[:, None] * of_lower
+
+
+def _information(logs: Array, count: Generic, at: Array) -> Array:
+    upper, lower, of_upper, of_lower, at_upper, at_lower = _ratios(logs, count, at)
+    crossed = of_upper.T @ ((at_upper * at_lower)[:, None] * of_lower)
+    return (
+        of_upper.T @ ((at_upper * (upper + at_upper))[:, None] * of_upper)
+        + of_lower.T @ ((at_lower * (at_lower - lower))[:, None] * of_lower)
+        - crossed
+        - crossed.T
+    )
+
+
+_STEPS = 100
+_STEEPEST = 1e4
+"""Slope, over the spread of the intensities, from which on trials are as good as separated."""
+
+
+def _greatest(logs: Array, count: Generic, states: int, start: Array | None = None) -> Array | None:
+    """Find the greatest likelihood by Newton's method; None of separated trials."""
+    from scipy.special import ndtri
+
+    middle, spread = float(logs.mean()), float(logs.std())
+    if spread == 0.0:
+        return None
+    scaled = (logs - middle) / spread
+    if start is None:
+        shares = np.array([(count > k).mean() for k in range(states)])
+        if not np.all(np.diff(np.concatenate([[1.0], shares, [0.0]])) < 0.0):
+            return None
+        at = np.append(ndtri(shares), 1.0)
+    else:
+        at = np.append(start[:-1] + start[-1] * middle, start[-1] * spread)
+    value = _value(scaled, count, at)
+    for _ in range(_STEPS):
+        slope = _scores(scaled, count, at).sum(axis=0)
+        step = np.linalg.lstsq(_information(scaled, count, at), slope)[0]
+        size = 1.0
+        while size > 1e-10 and not _value(scaled, count, at + size * step) >= value - 1e-12:
+            size *= 0.5
+        at = at + size * step
+        value = _value(scaled, count, at)
+        if not np.isfinite(at).all() or at[-1] > _STEEPEST:
+            return None
+        if np.abs(step).max() <= 1e-11 * max(1.0, float(np.abs(at).max())):
+            break
+    else:
+        return None
+    return np.append(at[:-1] - at[-1] * middle / spread, at[-1] / spread)
+
+
+def _covariance(
+    logs: Array, count: Generic, motions: Generic, best: Array, bands: Bands
+) -> tuple[Array, Array | None]:
+    """Give the covariance by motions, :eq:`eq-fragility-sandwich`, :eq:`eq-fragility-jackknife`."""
+    names, place = np.unique(motions, return_inverse=True)
+    if bands is Bands.SANDWICH:
+        inverse = np.linalg.inv(_information(logs, count, best))
+        summed = np.zeros((len(names), len(best)))
+        np.add.at(summed, place, _scores(logs, count, best))
+        factor = len(names) / (len(names) - 1.0) if len(names) > 1 else math.inf
+        filled = factor * inverse @ summed.T @ summed @ inverse
+        return np.asarray(filled, dtype=np.float64), None
+    rows = np.full((len(names), len(best)), np.nan)
+    for k in range(len(names)):
+        kept = place != k
+        one = _greatest(logs[kept], count[kept], len(best) - 1, best)
+        if one is not None:
+            rows[k] = one
+    return jackknife(best, rows, np.ones(len(names))), rows

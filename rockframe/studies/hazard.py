@@ -1,0 +1,425 @@
+"""How often a limit state is exceeded: a fragility and a hazard curve in one number."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple, cast
+
+import numpy as np
+import xarray as xr
+from numpy.polynomial.legendre import leggauss
+
+from rockframe.arguments import checked_dataset
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
+from rockframe.results.dataset import build_dataset
+from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.signals.arrays import Array
+from rockframe.studies.fragility.words import measures_of
+from rockframe.studies.intensities import PERIOD_OF, measure_words
+from rockframe.studies.sweeps.axes import free_values
+from rockframe.units import POSITIVE, to_ratio
+
+_OWNER: Final = "annual_rate"
+_BY_RATE, _BY_PROBABILITY = ("intensity", "rate"), ("intensity", "probability", "years")
+_FINEST: Final = 0.02
+"""Of the logarithm of the intensity, over which the probability is all but a polynomial."""
+_POINTS: Final = 5
+"""Of Gauss and Legendre's rule in each part."""
+_OF_FUNCTIONS: Final = 400
+"""Intensities at which a function is asked."""
+_BINS: Final = 40
+"""In which contributions are told."""
+_SHARES: Final = (0.05, 0.5, 0.95)
+_LACKING: Final = 0.01
+"""Share of the rate beyond the curve from which on that is told."""
+_FAR: Final = 12.0
+"""Logarithm of the intensity by which ends are followed."""
+
+
+@dataclass(frozen=True, eq=False)
+class HazardCurve:
+    """Mean annual rates of exceeding intensities, straight between points in logarithms."""
+
+    intensities: Array  # rising, in the unit of the measure
+    rates: Array  # falling [1/year]
+
+    def slopes(self) -> Array:
+        """Give the exponents of the power laws between the points [1]."""
+        return -np.diff(np.log(self.rates)) / np.diff(np.log(self.intensities))
+
+    def beyond(self) -> tuple["HazardCurve", "HazardCurve"]:
+        """Give what the first and the last power law are before and behind the curve."""
+        first, last = (float(one) for one in self.slopes()[[0, -1]])
+        reach = math.exp(_FAR)
+        least, most = float(self.intensities[0]), float(self.intensities[-1])
+        below = np.array([self.rates[0] * math.exp(min(first * _FAR, 600.0)), self.rates[0]])
+        above = np.array([self.rates[-1], self.rates[-1] * math.exp(-min(last * _FAR, 600.0))])
+        return (
+            HazardCurve(np.array([least / reach, least]), below),
+            HazardCurve(np.array([most, most * reach]), above),
+        )
+
+
+def annual_rate(
+    fragility: xr.Dataset,
+    hazard: Mapping[str, Any] | xr.DataArray | Callable[[Array], Any],
+    *,
+    between: Any = None,
+) -> xr.Dataset:
+    """Give the mean annual rate at which limit states are exceeded, and which intensities do it.
+
+    Parameters
+    ----------
+    fragility : xarray.Dataset
+        Of :func:`rockframe.fragility` or :func:`rockframe.cloud_analysis`, over one measure.
+    hazard : mapping, DataArray or callable
+        Mean annual rate at which the site exceeds values of that measure. A table:
+        ``{"intensity": ([0.1, 0.2, 0.5], "g_0"), "rate": [1e-2, 3e-3, 2e-4]}``, or with
+        ``"probability"`` and ``"years"`` instead of ``"rate"``, of exceeding each at least once in
+        so many years. A DataArray of rates whose only dimension has the intensities, with their
+        unit. Or a function of an array of intensities in SI units.
+    between : (sequence, unit), Quantity or sequence of str, optional
+        Of a function, the least and the greatest intensity at which it holds.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over structures and ``limit_state``: ``annual_rate``, with that of the upper and of the
+        lower bounds of the curve; ``unreached_rate_below`` and ``unreached_rate_above``, what lies
+        beyond the hazard curve where it goes on as it ends; ``outside_trials_share``. Over
+        ``contributing_intensity`` too ``rate_share``; over ``quantile``
+        ``quantile_intensity``, below which that share of the rate arises. The attribute
+        ``verdict`` says it in words.
+
+    Raises
+    ------
+    SchemaError
+        Not a fragility over one measure.
+    UnitsError, ComponentError
+        The hazard has another unit or none, does not fall, or is no such thing.
+
+    Warns
+    -----
+    ModelWarning
+        More than a hundredth of the rate lies beyond the hazard curve.
+
+    Notes
+    -----
+    :eq:`eq-annual-rate`, Cornell (1996). Between the points of a table the hazard is a power law,
+    as a straight line on logarithmic axes, and the integral over each part exact for a lognormal
+    capacity, :eq:`eq-rate-of-part`. The rates of both bounds take each curve of a band as a whole,
+    and so lie farther apart than bounds of the rate of the same confidence.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> levels = ([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0], "g_0")
+    >>> counts = {"intensity": levels, "exceeded": [0, 0, 0, 4, 6, 13, 12, 16], "trials": 40}
+    >>> curve = rf.fragility(counts, "PGA")
+    >>> found = rf.annual_rate(
+    ...     curve, lambda a: 1e-4 * (a / 9.81) ** -2.5, between=["0.01 g_0", "20 g_0"]
+    ... )
+    >>> f"{found.annual_rate.item():.2e}"
+    '1.48e-04'
+    """
+    given = checked_dataset(fragility, owner=_OWNER)
+    measure = _measure(given)
+    curve = read_hazard(hazard, given[measure], between)
+    rows = [_of_one(one, curve, measure) for one in _each(given)]
+    dims = tuple(str(dim) for dim in given["fragility_status"].dims)
+    shape = given["fragility_status"].shape
+
+    def laid(name: str) -> Array:
+        values = np.array([getattr(row, name) for row in rows])
+        return values.reshape((*shape, *values.shape[1:]))
+
+    scalars = build_dataset(
+        {
+            "annual_rate": laid("rate"),
+            "annual_rate_lower_bound": laid("lower"),
+            "annual_rate_upper_bound": laid("upper"),
+            "unreached_rate_below": laid("below"),
+            "unreached_rate_above": laid("above"),
+            "outside_trials_share": laid("outside"),
+        },
+        {}, over=dims, title="Annual rate of exceeding limit states",
+        source="integral of a fragility over a hazard curve",
+    )  # fmt: skip
+    shares = build_dataset(
+        {"rate_share": laid("shares"), "quantile_intensity": laid("quantiles")}, {}, over=dims
+    )
+    labels = build_dataset(
+        {"contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
+         "quantile": np.array(_SHARES)}, {},
+    )  # fmt: skip
+    kept = [str(name) for name in given.coords if set(given[name].dims) <= set(dims)]
+    found = scalars.assign(shares.data_vars).assign_coords(
+        {**{name: given[name].variable for name in kept}, **labels.coords}
+    )
+    for name in ("quantile_intensity", "contributing_intensity"):
+        found[name].attrs["units"] = given[measure].attrs.get("units", "1")
+    told = {key: given.attrs[key] for key in (PERIOD_OF, "model") if key in given.attrs}
+    found = found.assign_attrs(
+        {**told, "intensity": measure, "confidence": given.attrs.get("confidence", math.nan)}
+    )
+    _say_what_lacks(found, curve)
+    return found.assign_attrs(verdict=_sentence(found))
+
+
+def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCurve:
+    """Read a hazard curve over a measure, and refuse what does not fall."""
+    name, unit = str(along.name), str(along.attrs.get("units", "1"))
+    if callable(given):
+        if between is None:
+            msg = f"{_OWNER}: a hazard that is a function needs between, such as ('0.01 g_0', ...)"
+            raise ComponentError(msg)
+        ends = _intensities(between, name, unit)
+        if len(ends) != 2 or not 0.0 < ends[0] < ends[1]:
+            msg = f"{_OWNER}: between must be two intensities that rise, got {shown(between)}"
+            raise ComponentError(msg)
+        values = np.geomspace(float(ends[0]), float(ends[1]), _OF_FUNCTIONS)
+        rates = np.broadcast_to(np.asarray(given(values), dtype=np.float64), values.shape)
+    elif isinstance(given, xr.DataArray) and given.ndim == 1:
+        (dim,) = given.dims
+        given_unit = str(given[dim].attrs.get("units", "1"))
+        values = _intensities((given[dim].to_numpy(), given_unit), name, unit)
+        rates = given.to_numpy().astype(np.float64)
+    elif isinstance(given, Mapping):
+        table = cast("Mapping[str, Any]", given)
+        if set(table) not in (set(_BY_RATE), set(_BY_PROBABILITY)):
+            wanted = " or ".join(
+                ", ".join(map(repr, names)) for names in (_BY_RATE, _BY_PROBABILITY)
+            )
+            msg = f"{_OWNER}: a table of hazard has {wanted}; found {', '.join(map(shown, table))}"
+            raise ComponentError(msg)
+        values = _intensities(table["intensity"], name, unit)
+        rates = _rates(table)
+    else:
+        msg = f"{_OWNER}: hazard must be a table, a DataArray or a function, got {shown(given)}"
+        raise ComponentError(msg)
+    if rates.shape != values.shape or len(values) < 2:
+        msg = (
+            f"{_OWNER}: a hazard curve needs two intensities or more, with a rate each; found "
+            f"{values.size} and {rates.size}"
+        )
+        raise ComponentError(msg)
+    falls = np.all(np.diff(values) > 0.0) and values[0] > 0.0
+    falls = (
+        falls
+        and np.all(rates > 0.0)
+        and np.all(np.isfinite(rates))
+        and np.all(np.diff(rates) < 0.0)
+    )
+    if not falls:
+        msg = (
+            f"{_OWNER}: in a hazard curve intensities above zero rise, and rates above zero fall; "
+            f"found {shown(values.tolist())} and {shown(rates.tolist())}"
+        )
+        raise ComponentError(msg)
+    return HazardCurve(values, rates)
+
+
+def _intensities(given: object, name: str, unit: str) -> Array:
+    values, own = free_values(given, "intensity")
+    if own != unit:
+        msg = f"{_OWNER}: {name} is in {unit}, got {shown(given)}"
+        raise UnitsError(msg)
+    return np.asarray(values, dtype=np.float64)
+
+
+def _rates(table: Mapping[str, Any]) -> Array:
+    """Give rates, also of probabilities in years, which are those of a Poisson process."""
+    if "rate" in table:
+        return np.asarray(table["rate"], dtype=np.float64)
+    years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
+    chance = np.asarray(table["probability"], dtype=np.float64)
+    if np.any(chance <= 0.0) or np.any(chance >= 1.0):
+        msg = f"{_OWNER}: probabilities must be above 0 and below 1, got {shown(chance.tolist())}"
+        raise ComponentError(msg)
+    return -np.log1p(-chance) / years
+
+
+def _measure(given: xr.Dataset) -> str:
+    """Give the one measure of a fragility."""
+    if "exceedance_probability" not in given or "fragility_status" not in given:
+        msg = f"{_OWNER}: found no fragility; expected one of rf.fragility or rf.cloud_analysis"
+        raise SchemaError(msg)
+    several = measures_of(given)
+    if len(several) != 1:
+        msg = f"{_OWNER}: found a fragility over {' and '.join(several)}; expected one measure"
+        raise SchemaError(msg)
+    return several[0]
+
+
+def _each(given: xr.Dataset) -> Iterator[xr.Dataset]:
+    """Give each structure and limit state."""
+    status = given["fragility_status"]
+    for place in np.ndindex(status.shape):
+        yield given.isel(dict(zip(status.dims, place, strict=True)))
+
+
+class _Rate(NamedTuple):
+    """The rate of one limit state, and where it comes from."""
+
+    rate: float
+    lower: float
+    upper: float
+    below: float
+    above: float
+    outside: float
+    shares: Array
+    quantiles: Array
+
+
+_KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
+
+
+def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> _Rate:
+    nothing = np.full(_BINS, np.nan)
+    if int(one["fragility_status"]) not in _KNOWN:
+        none = math.nan
+        return _Rate(none, none, none, none, none, none, nothing, np.full(len(_SHARES), none))
+    edges, parts = contributions(one, curve, measure)
+    rate = float(parts.sum())
+    summed = np.concatenate([[0.0], np.cumsum(parts)]) / rate
+    logs = np.log(edges)
+    lower, upper = (
+        _of_curve(one[f"exceedance_probability_{end}_bound"], one[measure], curve)
+        for end in ("lower", "upper")
+    )
+    below, above = (float(contributions(one, part, measure)[1].sum()) for part in curve.beyond())
+    seen = one["stripe_intensity"].to_numpy()
+    seen = np.log(seen[one["stripe_trials"].to_numpy() > 0])
+    least, most = np.interp([seen.min(), seen.max()], logs, summed)
+    shares = np.diff(np.interp(np.log(_edges(curve)), logs, summed))
+    quantiles = np.exp(np.interp(_SHARES, summed, logs))
+    return _Rate(rate, lower, upper, below, above, 1.0 - (most - least), shares, quantiles)
+
+
+def _edges(curve: HazardCurve) -> Array:
+    return np.geomspace(curve.intensities[0], curve.intensities[-1], _BINS + 1)
+
+
+def contributions(one: xr.Dataset, curve: HazardCurve, measure: str) -> tuple[Array, Array]:
+    """Give the rate that arises between intensities: these, and the rates between them [1/year]."""
+    edges, rates, slopes = _finely(curve)
+    if "median_intensity" in one and "logistic_slope" not in one:
+        median, spread = float(one["median_intensity"]), float(one["dispersion"])
+        return edges, of_lognormal(median, spread, edges, rates, slopes)
+    return edges, _by_points(
+        _interpolated(one["exceedance_probability"], one[measure]), edges, rates, slopes
+    )
+
+
+def of_lognormal(median: float, spread: float, edges: Array, rates: Array, slopes: Array) -> Array:
+    """Give the rate of a lognormal capacity in parts of a power law, :eq:`eq-rate-of-part`."""
+    from scipy.special import ndtr
+
+    with np.errstate(divide="ignore"):
+        eta = (
+            np.log(edges / median) / spread
+            if spread > 0.0
+            else np.where(edges < median, -np.inf, np.inf)
+        )
+    # the hazard at the median by the power law of each part
+    at_median = rates[:-1] * (edges[:-1] / median) ** slopes
+    shift = slopes * spread
+    grown = at_median * np.exp(0.5 * shift**2)
+    within = ndtr(eta[1:] + shift) - ndtr(eta[:-1] + shift)
+    return grown * within - ndtr(eta[1:]) * rates[1:] + ndtr(eta[:-1]) * rates[:-1]
+
+
+def _finely(curve: HazardCurve) -> tuple[Array, Array, Array]:
+    """Cut the curve into parts; give their ends, the rates there, and the slopes between."""
+    logs = np.log(curve.intensities)
+    counts = np.maximum(1, np.ceil(np.diff(logs) / _FINEST)).astype(int)
+    ends = [
+        np.linspace(low, high, count, endpoint=False)
+        for low, high, count in zip(logs[:-1], logs[1:], counts, strict=True)
+    ]
+    fine = np.concatenate([*ends, logs[-1:]])
+    rates = np.exp(np.interp(fine, logs, np.log(curve.rates)))
+    return np.exp(fine), rates, np.repeat(curve.slopes(), counts)
+
+
+def _by_points(
+    probability: Callable[[Array], Array], edges: Array, rates: Array, slopes: Array
+) -> Array:
+    """Integrate any probability over the parts of the hazard."""
+    nodes, weights = leggauss(_POINTS)
+    logs = np.log(edges)
+    half = 0.5 * np.diff(logs)
+    at = (0.5 * (logs[1:] + logs[:-1]))[:, None] + half[:, None] * nodes
+    density = (slopes * rates[:-1])[:, None] * np.exp(-slopes[:, None] * (at - logs[:-1, None]))
+    return half * ((probability(at) * density) @ weights)
+
+
+def _interpolated(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array], Array]:
+    """Give a probability at logarithms of intensities, straight on normal axes, beyond it too."""
+    from scipy.special import ndtr, ndtri
+
+    values = curve.to_numpy()
+    with np.errstate(invalid="ignore"):
+        eta = ndtri(np.clip(values, 1e-300, 1.0 - 1e-16))
+    logs = np.log(along.to_numpy())
+    slope = [(eta[k] - eta[k - 1]) / (logs[k] - logs[k - 1]) for k in (1, len(logs) - 1)]
+
+    def at(given: Array) -> Array:
+        found = np.interp(given, logs, eta)
+        found = np.where(given < logs[0], eta[0] + max(slope[0], 0.0) * (given - logs[0]), found)
+        found = np.where(given > logs[-1], eta[-1] + max(slope[1], 0.0) * (given - logs[-1]), found)
+        return ndtr(found)
+
+    return at
+
+
+def _of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve) -> float:
+    if np.isnan(probability.to_numpy()).any():
+        return math.nan
+    return float(_by_points(_interpolated(probability, along), *_finely(curve)).sum())
+
+
+def _say_what_lacks(found: xr.Dataset, curve: HazardCurve) -> None:
+    """Warn where the hazard curve ends where the integrand does not."""
+    unit = str(found["quantile_intensity"].attrs["units"])
+    unit = "" if unit == "1" else f" {unit}"
+    ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}
+    lacking: list[str] = []
+    for side, end in ends.items():
+        with np.errstate(invalid="ignore", divide="ignore"):
+            rate = found["annual_rate"] + found[f"unreached_rate_{side}"]
+            share = float((found[f"unreached_rate_{side}"] / rate).max(skipna=True))
+        if share > _LACKING:
+            lacking.append(
+                f"{side} {end:.4g}{unit}, where it ends, {100.0 * share:.2g} % of the rate"
+            )
+    if lacking:
+        warn(
+            f"{_OWNER}: the hazard curve does not reach where the limit states are exceeded: if it "
+            f"goes on as it ends, there lie {' and '.join(lacking)}; give a longer one",
+            ModelWarning,
+        )
+
+
+def _sentence(found: xr.Dataset) -> str:
+    """Tell the rate of the last limit state, and where it comes from."""
+    last = found.isel(limit_state=-1) if "limit_state" in found.dims else found
+    state = str(last["limit_state"].item()) if "limit_state" in last.coords else "what was counted"
+    rates = np.atleast_1d(last["annual_rate"].to_numpy()).ravel()
+    known = rates[~np.isnan(rates)]
+    if not len(known):
+        return f"There is no fragility against {state}, and so no rate."
+    measure = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
+    unit = str(found["quantile_intensity"].attrs["units"])
+    unit = "" if unit == "1" else f" {unit}"
+    if len(known) > 1:
+        return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
+    low, _, high = last["quantile_intensity"].to_numpy().ravel()
+    said = (
+        f"Annual rate of {state}: {known[0]:.3g}, a return period of {1.0 / known[0]:.4g} years; "
+    )
+    said += f"nine tenths of it come from {measure} between {low:.3g} and {high:.3g}{unit}"
+    outside = float(last["outside_trials_share"].max())
+    if outside > _LACKING:
+        said += f", {100.0 * outside:.2g} % from intensities beyond those of the runs"
+    return f"{said}."

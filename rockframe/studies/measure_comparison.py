@@ -1,0 +1,252 @@
+"""Intensity measures side by side: efficiency, sufficiency, and what each tells of the runs."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, cast
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from rockframe.errors import ComponentError, StudyError, shown
+from rockframe.motion import GroundMotion
+from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Generic
+from rockframe.results.variables.studies import MOTION
+from rockframe.signals.arrays import Array
+from rockframe.studies.cloud import Cloud, cloud_of, laid_out, read_least
+from rockframe.studies.intensities import (
+    PERIOD_OF,
+    PeriodLike,
+    measure_in,
+    measure_words,
+    named_column,
+    told_period,
+)
+from rockframe.studies.limit_states import check_runs, scalar_of
+
+_OWNER: Final = "compare_intensities"
+_SOURCE: Final = "least squares and logistic regression"
+_AGAINST: Final = 0.05
+"""Probability below which a slope of the residuals is told of."""
+Covariates = Mapping[str, Any]
+"""Numbers of the motions by a name: in their order, by their labels, or over ``motion``."""
+
+
+def compare_intensities(
+    runs: xr.Dataset,
+    measures: Iterable[str | tuple[str, PeriodLike] | xr.DataArray],
+    *,
+    response: str = "peak_relative_rotation",
+    label: str | None = None,
+    against: Sequence[str] | Covariates = (),
+    least: Any = None,
+    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+) -> xr.Dataset:
+    """Compare intensity measures by how well each tells the response.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Of a sweep over many motions, usually as they were recorded.
+    measures : iterable of str, (str, period) or DataArray
+        As for :func:`rockframe.fragility`; spectral ones with their period, such as
+        ``("SA", "1 s")``, or ``("Sa_avg", (numpy.linspace(0.5, 3, 26), "s"))``.
+    response : str, optional
+        Which scalar of the runs.
+    label : str, optional
+        Of points, bodies or restrainers which one.
+    against : sequence of str, or mapping of str to values, optional
+        What the response should not depend on beside the measure: names of coordinates of the
+        runs; or, by their names, numbers of the motions, in their order, by their labels, such as
+        columns of the table of a suite, or a DataArray over ``motion``.
+    least : float, str or Quantity, optional
+        Response below which a run counts as one in which nothing moved; zero unless given.
+    motions : GroundMotion, or sequence or mapping of them, optional
+        The records, where neither the dataset nor this process has them.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``measure``: ``regression_slope``, ``residual_dispersion``, ``efficiency_ratio``,
+        ``determination``, ``relative_sufficiency`` and its standard error; over ``covariate`` too
+        ``sufficiency_slope`` and ``sufficiency_p_value``; how many runs there were of each kind.
+        :func:`rockframe.table` makes a table of it.
+
+    Raises
+    ------
+    ComponentError, UnitsError
+        An argument is out of range, or names no such measure, scalar or coordinate.
+    SchemaError
+        Not the result of a sweep.
+    StudyError
+        Too few runs are between rest and overturning for a line.
+
+    Notes
+    -----
+    Luco and Cornell (2007). The line is that of :func:`rockframe.cloud_analysis`. A measure is
+    *efficient* where the ``residual_dispersion`` is small; of measures with different powers the
+    ``efficiency_ratio`` is comparable, the dispersion of the intensity at a response (Padgett et
+    al., 2008). It is *sufficient* where the residuals do not go with magnitude or distance: the
+    ``sufficiency_p_value`` is that of the slope of a straight line through the residuals over the
+    covariate, as it is given; give the logarithm of a distance. A small one tells
+    against the measure, a large one little where runs are few. The relative sufficiency
+    (Jalayer et al., 2012), :eq:`eq-relative-sufficiency`, is how many bits more than the first
+    measure each one tells of the response of a run on average, overturning and rest included.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.3 m", height="1.5 m", mass="200 kg"))
+    >>> distances = range(2, 22)
+    >>> motions = [rf.GroundMotion.stochastic(7.0, f"{d} km", seed=d) for d in distances]
+    >>> runs = rf.sweep(system, motions, accuracy="fast", progress=False)
+    >>> found = rf.compare_intensities(
+    ...     runs, ["PGA", "PGV"], against={"distance": list(distances)}, least=0.001
+    ... )
+    >>> dict(found.sufficiency_p_value.sizes)
+    {'measure': 2, 'covariate': 1}
+    """
+    runs = check_runs(runs, owner=_OWNER)
+    values = scalar_of(runs, response, label or "", owner=_OWNER)
+    floor = read_least(least, values, owner=_OWNER)
+    named, clouds, kept = list[str](), list[Cloud](), list[Generic]()
+    for given in [measures] if isinstance(measures, str | xr.DataArray) else measures:
+        one, period = _with_period(given)
+        measure = measure_in(runs, one, period, motions, owner=_OWNER)
+        told = told_period(runs, [one], period, owner=_OWNER)
+        cloud, those, _ = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
+        if cloud.line is None:
+            msg = (
+                f"{_OWNER}: too few runs moved and did not overturn for a line over {measure.name}"
+            )
+            raise StudyError(msg)
+        named.append(measure_words(str(measure.name), told.get(PERIOD_OF)))
+        clouds.append(cloud)
+        kept.append(those)
+    if not clouds or any(not np.array_equal(kept[0], one) for one in kept):
+        msg = f"{_OWNER}: measures must be one or more, all known of the same runs, got {named}"
+        raise ComponentError(msg)
+    if len(set(named)) < len(named):
+        msg = f"{_OWNER}: measures are named twice: {', '.join(named)}"
+        raise ComponentError(msg)
+    beside = {
+        name: laid_out(runs, one)[kept[0]] for name, one in _covariates(runs, against).items()
+    }
+    about = build_dataset({}, {}, title="Comparison of intensity measures", source=_SOURCE).attrs
+    found = _compared(named, clouds, beside).assign_attrs(about)
+    words = response if label is None else f"{response} {label}"
+    return found.assign_attrs(response=words, verdict=_sentence(found))
+
+
+def _with_period(given: object) -> tuple[Any, Any]:
+    if isinstance(given, tuple):
+        pair = cast("tuple[Any, ...]", given)
+        if len(pair) == 2 and isinstance(pair[0], str):
+            return pair[0], pair[1]
+        msg = f"{_OWNER}: a measure with a period is ('SA', '1 s'), got {shown(given)}"
+        raise ComponentError(msg)
+    return given, None
+
+
+def _covariates(runs: xr.Dataset, given: Sequence[str] | Covariates) -> dict[str, xr.DataArray]:
+    """Read what the response should not depend on: numbers of the motions by their names."""
+    if isinstance(given, Mapping):
+        table = given
+        return {str(name): _of_motions(runs, str(name), one) for name, one in table.items()}
+    found: dict[str, xr.DataArray] = {}
+    for name in [given] if isinstance(given, str) else given:
+        one = named_column(runs, name)
+        if not isinstance(one, xr.DataArray) or not set(one.dims) <= set(runs["status"].dims):
+            msg = f"{_OWNER}: against names {shown(name)}, which is no coordinate of the runs"
+            raise ComponentError(msg)
+        found[str(name)] = one
+    return found
+
+
+def _of_motions(runs: xr.Dataset, name: str, given: Any) -> xr.DataArray:
+    """Give each run the number of its motion."""
+    if isinstance(given, xr.DataArray):
+        return given
+    labels = runs[MOTION].to_numpy().astype(str)
+    if isinstance(given, Mapping | pd.Series):
+        table = dict(cast("Any", given).items())
+        missing = [str(one) for one in np.unique(labels) if one not in table]
+        if missing:
+            msg = f"{_OWNER}: against has no {name} of the motion {missing[0]!r}"
+            raise ComponentError(msg)
+        values = [table[str(one)] for one in labels.ravel()]
+    else:
+        values = list(given)
+        if runs[MOTION].dims != (MOTION,) or len(values) != labels.size:
+            msg = (
+                f"{_OWNER}: against has {len(values)} numbers of {name} for {labels.size} motions; "
+                "give one for each of them, in their order, or by their labels"
+            )
+            raise ComponentError(msg)
+    numbers = np.array(values, dtype=np.float64).reshape(labels.shape)
+    return xr.DataArray(numbers, dims=runs[MOTION].dims, coords=runs[MOTION].coords)
+
+
+def _compared(
+    named: Sequence[str], clouds: Sequence[Cloud], beside: Mapping[str, Array]
+) -> xr.Dataset:
+    """Put the numbers of all measures side by side."""
+    lines = [one.line for one in clouds if one.line is not None]
+    likely = np.stack([one.log_likelihoods() for one in clouds])
+    more = (likely - likely[0]) / math.log(2.0)
+    count = likely.shape[1]
+    values: dict[str, Any] = {
+        "regression_slope": [one.slope for one in lines],
+        "residual_dispersion": [one.dispersion for one in lines],
+        "efficiency_ratio": [
+            one.dispersion / one.slope if one.slope > 0.0 else np.inf for one in lines
+        ],
+        "determination": [one.determination for one in lines],
+        "relative_sufficiency": more.mean(axis=1),
+        "relative_sufficiency_error": more.std(axis=1, ddof=1) / math.sqrt(count),
+        "line_count": [len(one.residuals) for one in lines],
+        "cloud_overturned_count": [np.isinf(one.responses).sum() for one in clouds],
+        "resting_count": [(one.responses == 0.0).sum() for one in clouds],
+    }
+    if beside:
+        tested = np.array([
+            [_dependence(cloud, values) for values in beside.values()] for cloud in clouds
+        ])  # fmt: skip
+        values |= {"sufficiency_slope": tested[..., 0], "sufficiency_p_value": tested[..., 1]}
+    names = {"measure": np.array(list(named), dtype=object)}
+    if beside:
+        names["covariate"] = np.array(list(beside), dtype=object)
+    found = build_dataset(
+        {name: np.array(one) for name, one in values.items()}, {}, over=("measure",)
+    )
+    return found.assign_coords(build_dataset(names, {}).coords)
+
+
+def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:
+    """Give the slope of the residuals over a covariate, and how probable it is by chance."""
+    from scipy.stats import linregress
+
+    between = (cloud.responses > 0.0) & ~np.isinf(cloud.responses)
+    along = covariate[between]
+    known = np.isfinite(along)
+    if cloud.line is None or known.sum() < 3 or np.ptp(along[known]) == 0.0:
+        return math.nan, math.nan
+    found: Any = linregress(along[known], cloud.line.residuals[known])
+    return float(found.slope), float(found.pvalue)
+
+
+def _sentence(found: xr.Dataset) -> str:
+    """Tell which measure is most efficient, and which are not sufficient."""
+    ratio = found["efficiency_ratio"]
+    best = str(found["measure"][int(np.argmin(ratio.to_numpy()))].item())
+    text = f"Of {found.sizes['measure']} measures {best} is the most efficient, with "
+    text += f"{float(ratio.min()):.3g} of dispersion over power"
+    if "sufficiency_p_value" in found:
+        chance = found["sufficiency_p_value"]
+        wrong = [
+            f"{chance['measure'][k].item()} with {chance['covariate'][j].item()}"
+            for k, j in np.argwhere(chance.to_numpy() < _AGAINST)
+        ]
+        text += f"; residuals go with a covariate (p < {_AGAINST:g}): {', '.join(wrong) or 'none'}"
+    return f"{text}."

@@ -1,0 +1,213 @@
+"""Cloud analysis: least squares and logistic regression by other means, curves and coverage."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy import stats
+
+import rockframe as rf
+from rockframe.errors import ComponentError, StudyError, UnitsError
+from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.results.variables.runs import RunStatus
+from rockframe.studies.cloud import Cloud, Line
+from rockframe.studies.logistic import fit_logistic
+
+SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+COUNT = 40
+
+
+@pytest.fixture(scope="module")
+def base():
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    motions = {f"m{k:02d}": pulse.scaled(1.0 + 0.01 * k) for k in range(COUNT)}
+    return rf.sweep(SYSTEM, motions, accuracy="fast", progress=False)
+
+
+def made(base, seed=0, *, falls=True, rests=False):
+    """Responses about a line, with overturning as a logistic curve has it."""
+    rng = np.random.default_rng(seed)
+    logs = rng.normal(0.0, 0.6, COUNT)
+    response = np.exp(-1.5 + 1.3 * logs + 0.35 * rng.standard_normal(COUNT))
+    fell = falls & (rng.random(COUNT) < 1.0 / (1.0 + np.exp(2.0 - 2.5 * logs)))
+    if rests:
+        response = np.where(
+            ~fell & (rng.random(COUNT) > 1 / (1 + np.exp(-2 - 3 * logs))), 0.0, response
+        )
+    status = np.where(fell, RunStatus.OVERTURNED, RunStatus.COMPLETED).astype(np.int8)
+    dims = base.status.dims
+    runs = base.assign(
+        peak_relative_rotation=(dims, response.reshape(base.status.shape), {"units": "1"}),
+        status=(dims, status.reshape(base.status.shape), base.status.attrs),
+    )
+    return runs.assign_coords(strength=("motion", np.exp(logs), {"units": "m"}))
+
+
+def logistic_by_weights(logs, verdict):
+    """Iteratively reweighted least squares, as textbooks have it."""
+    design = np.column_stack([np.ones(len(logs)), logs])
+    at = np.zeros(2)
+    for _ in range(50):
+        share = 1.0 / (1.0 + np.exp(-design @ at))
+        weight = share * (1.0 - share)
+        working = design @ at + (verdict - share) / weight
+        at = np.linalg.solve(design.T @ (weight[:, None] * design), design.T @ (weight * working))
+    return at, np.linalg.inv(design.T @ (weight[:, None] * design))
+
+
+def test_a_line_alone_gives_the_lognormal_curve_of_least_squares(base):
+    runs = made(base, falls=False)
+    found = rf.cloud_analysis(runs, "strength", limits=[0.1, 0.4])
+    logs, response = (
+        np.log(runs.strength.values),
+        np.log(runs.peak_relative_rotation.values.ravel()),
+    )
+    line = stats.linregress(logs, response)
+    assert found.regression_slope.item() == pytest.approx(line.slope, rel=1e-12)
+    assert found.regression_intercept.item() == pytest.approx(line.intercept, rel=1e-12)
+    assert found.regression_slope_error.item() == pytest.approx(line.stderr, rel=1e-12)
+    assert found.determination.item() == pytest.approx(line.rvalue**2, rel=1e-12)
+    spread = np.std(response - line.intercept - line.slope * logs) * math.sqrt(COUNT / (COUNT - 2))
+    assert found.residual_dispersion.item() == pytest.approx(spread, rel=1e-12)
+    for level, one in zip((0.1, 0.4), (0, 1), strict=True):
+        state = found.isel(limit_state=one)
+        median = math.exp((math.log(level) - line.intercept) / line.slope)
+        assert state.median_intensity.item() == pytest.approx(median, rel=1e-9)
+        assert state.dispersion.item() == pytest.approx(spread / line.slope, rel=1e-9)
+        curve = stats.norm.cdf(np.log(found.strength / median) * line.slope / spread)
+        np.testing.assert_allclose(state.exceedance_probability, curve, rtol=1e-9)
+    assert found.fragility_status.values.tolist()[-1] == FragilityStatus.NONE_EXCEEDED
+    assert found.median_intensity.attrs["units"] == "m"
+
+
+def test_overturning_is_logistic_and_adds_to_the_line(base):
+    runs = made(base, seed=3)
+    found = rf.cloud_analysis(runs, "strength", limits=[0.3])
+    fell = runs.status.values.ravel() == RunStatus.OVERTURNED
+    logs = np.log(runs.strength.values)
+    at, covariance = logistic_by_weights(logs, fell.astype(float))
+    assert found.logistic_intercept.item() == pytest.approx(at[0], rel=1e-7)
+    assert found.logistic_slope.item() == pytest.approx(at[1], rel=1e-7)
+    assert found.logistic_slope_error.item() == pytest.approx(math.sqrt(covariance[1, 1]), rel=1e-6)
+    line = stats.linregress(logs[~fell], np.log(runs.peak_relative_rotation.values.ravel()[~fell]))
+    x = np.log(found.strength.values)
+    collapse = 1.0 / (1.0 + np.exp(-at[0] - at[1] * x))
+    eta = (line.intercept + line.slope * x - math.log(0.3)) / found.residual_dispersion.item()
+    whole = collapse + (1.0 - collapse) * stats.norm.cdf(eta)
+    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), whole, rtol=1e-6)
+    np.testing.assert_allclose(
+        found.exceedance_probability.isel(limit_state=1), collapse, rtol=1e-6
+    )
+    over = found.sel(limit_state="overturning")
+    assert over.median_intensity.item() == pytest.approx(math.exp(-at[0] / at[1]), rel=1e-4)
+    # a logistic curve is at Phi(1) one unit of its logit away
+    reach = math.log(stats.norm.cdf(1.0) / stats.norm.cdf(-1.0)) / at[1]
+    assert over.dispersion.item() == pytest.approx(reach, rel=1e-3)
+    assert int(found.cloud_overturned_count) == fell.sum() == np.isinf(found.cloud_response).sum()
+    assert found.verdict.startswith(
+        f"Of 40 runs {fell.sum()} overturned; the peak relative rotation"
+    )
+    for end, sign in (("lower", -1), ("upper", 1)):
+        band = found[f"exceedance_probability_{end}_bound"]
+        assert (sign * (band - found.exceedance_probability) > 0.0).all()
+
+
+def test_runs_that_stay_at_rest_count_apart(base):
+    runs = made(base, seed=5, rests=True)
+    found = rf.cloud_analysis(runs, "strength", limits=[0.1])
+    response = runs.peak_relative_rotation.values.ravel()
+    fell = runs.status.values.ravel() == RunStatus.OVERTURNED
+    logs = np.log(runs.strength.values)
+    assert int(found.resting_count) == (response[~fell] == 0.0).sum() > 0
+    falls, _ = logistic_by_weights(logs, fell.astype(float))
+    moves, _ = logistic_by_weights(logs[~fell], (response[~fell] > 0.0).astype(float))
+    between = ~fell & (response > 0.0)
+    line = stats.linregress(logs[between], np.log(response[between]))
+    x = np.log(found.strength.values)
+    shares = [1.0 / (1.0 + np.exp(-a - b * x)) for a, b in (falls, moves)]
+    eta = (line.intercept + line.slope * x - math.log(0.1)) / found.residual_dispersion.item()
+    whole = shares[0] + (1.0 - shares[0]) * shares[1] * stats.norm.cdf(eta)
+    np.testing.assert_allclose(found.exceedance_probability.isel(limit_state=0), whole, rtol=1e-6)
+    floored = rf.cloud_analysis(runs, "strength", limits=[0.1], least=0.1)
+    assert int(floored.resting_count) == (response[~fell] < 0.1).sum()
+
+
+def test_coefficients_are_drawn_from_their_distributions():
+    rng = np.random.default_rng(1)
+    logs = rng.normal(size=15)
+    line = Line.through(logs, 0.3 + 1.2 * logs + 0.4 * rng.standard_normal(15))
+    intercept, slope, spread = line.drawn(np.random.default_rng(2), 40_000)
+    error = np.sqrt(np.diag(line.covariance))
+    for drawn, middle, size in (
+        (intercept, line.intercept, error[0]),
+        (slope, line.slope, error[1]),
+    ):
+        assert stats.kstest((drawn - middle) / size, stats.t(13).cdf).pvalue > 1e-3
+    assert stats.kstest(13 * (line.dispersion / spread) ** 2, stats.chi2(13).cdf).pvalue > 1e-3
+
+
+def test_bounds_hold_the_curve_as_often_as_they_say():
+    """Bounds of 95 % of a curve at an intensity, of 600 simulated samples of 30 runs."""
+    rng = np.random.default_rng(7)
+    held, at, level = 0, np.array([0.4]), 0.5
+    truth = stats.norm.cdf((-1.0 + 1.3 * 0.4 - math.log(level)) / 0.4)
+    for _ in range(600):
+        logs = rng.normal(0.0, 0.6, 30)
+        response = np.exp(-1.0 + 1.3 * logs + 0.4 * rng.standard_normal(30))
+        drawn = Cloud.of(logs, response).drawn(at, level, rng, 1000)[:, 0]
+        low, high = np.quantile(drawn, [0.025, 0.975])
+        held += low <= truth <= high
+    assert 0.93 <= held / 600 <= 0.97
+
+
+def test_a_logistic_curve_without_a_fit_is_a_step_or_level():
+    logs = np.array([0.0, 1.0, 2.0, 3.0])
+    parted = fit_logistic(logs, np.array([0, 0, 1, 1]))
+    assert parted.status is FragilityStatus.SEPARATED
+    assert parted.at(np.array([1.4, 1.6])).tolist() == [0.0, 1.0]
+    assert fit_logistic(logs, np.zeros(4)).at(logs).tolist() == [0.0] * 4
+    assert fit_logistic(logs, np.ones(4)).at(logs).tolist() == [1.0] * 4
+    assert fit_logistic(logs, np.array([1, 1, 0, 0])).status is FragilityStatus.NOT_RISING
+
+
+def test_motions_that_are_run_twice_have_no_bounds(base):
+    runs = made(base, seed=3)
+    twice = xr.concat([runs, runs], "motion", data_vars="minimal", combine_attrs="override")
+    found = rf.cloud_analysis(twice, "strength", limits=[0.3])
+    assert np.isnan(found.median_intensity_upper_bound).all()
+    assert "no bounds, for motions were run more than once" in found.verdict
+    once = rf.cloud_analysis(runs, "strength", limits=[0.3])
+    np.testing.assert_allclose(found.median_intensity, once.median_intensity, rtol=1e-3)
+
+
+def test_a_cloud_gives_a_rate_and_a_file(base, tmp_path):
+    runs = made(base, seed=3)
+    found = rf.cloud_analysis(runs, "strength", limits=[0.3])
+    hazard = {"intensity": (np.geomspace(0.01, 50, 9), "m"), "rate": np.geomspace(1, 1e-6, 9)}
+    rates = rf.annual_rate(found, hazard)
+    assert (rates.annual_rate[0] > rates.annual_rate[1]).item()
+    # against a sum over a fine grid, of the curve by its coefficients
+    x = np.geomspace(0.01, 50, 200_001)
+    falls = 1.0 / (
+        1.0 + np.exp(-found.logistic_intercept.item() - found.logistic_slope.item() * np.log(x))
+    )
+    rate = np.exp(np.interp(np.log(x), np.log(hazard["intensity"][0]), np.log(hazard["rate"])))
+    whole = -(0.5 * (falls[1:] + falls[:-1]) * np.diff(rate)).sum()
+    assert rates.annual_rate[1].item() == pytest.approx(whole, rel=1e-3)
+    found.to_netcdf(tmp_path / "cloud.nc")
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"limits": [-0.1]}, ComponentError, "limits must be greater than zero"),
+        ({"limits": ["5 cm"], "response": "peak_rotation"}, UnitsError, "limits"),
+        ({"intensity": "strenght"}, ComponentError, "intensity must be one of"),
+    ],
+)
+def test_what_cannot_be_is_refused(base, options, error, words):
+    with pytest.raises(error, match=words):
+        rf.cloud_analysis(made(base), **{"intensity": "strength", **options})
+    with pytest.raises(StudyError, match="3 runs have a verdict"):
+        rf.cloud_analysis(made(base).isel(motion=slice(3)), "strength")

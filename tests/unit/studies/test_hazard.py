@@ -1,0 +1,173 @@
+"""Annual rates: the closed form of a power law, quadrature of a table, and what lies beyond it."""
+
+import itertools
+import math
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy import integrate, optimize
+from scipy.special import ndtr
+
+import rockframe as rf
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError
+from rockframe.studies import hazard
+
+LEVELS = ([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0], "g_0")
+COUNTS = {"intensity": LEVELS, "exceeded": [0, 0, 0, 4, 6, 13, 12, 16], "trials": 40}
+G = 9.80665
+VALUES = np.array([0.02, 0.1, 0.3, 0.8, 1.7, 5.0])
+RATES = np.array([8e-2, 9e-3, 1.4e-3, 1e-4, 9e-6, 1e-7])
+TABLE = {"intensity": (VALUES, "g_0"), "rate": RATES}
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return rf.fragility(COUNTS, "PGA")
+
+
+def probability(curve, x):
+    return ndtr(np.log(x / curve.median_intensity.item()) / curve.dispersion.item())
+
+
+def density(x):
+    """Slope of the table between its points, from its definition; x in m/s^2."""
+    place = np.clip(np.searchsorted(VALUES * G, x, side="right") - 1, 0, len(VALUES) - 2)
+    ratio = np.log(RATES[place + 1] / RATES[place]) / np.log(VALUES[place + 1] / VALUES[place])
+    return -ratio * RATES[place] * (x / (VALUES[place] * G)) ** ratio / x
+
+
+@pytest.mark.parametrize("exponent", [1.2, 2.5, 4.0])
+def test_a_power_law_gives_the_closed_form_of_cornell(curve, exponent):
+    found = rf.annual_rate(
+        curve, lambda a: 3e-4 * (a / G) ** -exponent, between=["0.01 g_0", "90 g_0"]
+    )
+    median, spread = curve.median_intensity.item(), curve.dispersion.item()
+    exact = 3e-4 * (median / G) ** -exponent * math.exp(0.5 * (exponent * spread) ** 2)
+    total = found.annual_rate + found.unreached_rate_below + found.unreached_rate_above
+    assert total.item() == pytest.approx(exact, rel=1e-9)
+
+
+def test_a_table_is_integrated_as_quadrature_does(curve):
+    found = rf.annual_rate(curve, TABLE)
+    ends = VALUES * G
+
+    def between(a, b):
+        return integrate.quad(
+            lambda x: probability(curve, x) * density(x), a, b, epsabs=0, epsrel=1e-11
+        )[0]
+
+    parts = [between(a, b) for a, b in itertools.pairwise(ends)]
+    assert found.annual_rate.item() == pytest.approx(sum(parts), rel=1e-9)
+    assert found.rate_share.sum().item() == pytest.approx(1.0)
+
+    def until(x):
+        inner = [*ends[ends < x], x]
+        return sum(between(a, b) for a, b in itertools.pairwise(inner))
+
+    middle = optimize.brentq(lambda x: until(x) - 0.5 * sum(parts), ends[1], ends[-1])
+    assert found.quantile_intensity.sel(quantile=0.5).item() == pytest.approx(middle, rel=2e-3)
+    outside = 1.0 - (until(1.0 * G) - until(0.2 * G)) / sum(parts)
+    assert found.outside_trials_share.item() == pytest.approx(outside, abs=2e-3)
+
+
+def test_bounds_are_the_rates_of_both_curves_of_the_band():
+    levels = np.geomspace(0.03, 4.0, 12)
+    exceeded = [0, 0, 0, 0, 1, 5, 17, 28, 37, 39, 40, 40]
+    counts = {"intensity": (levels, "g_0"), "exceeded": exceeded, "trials": 40}
+    curve = rf.fragility(counts, "PGA")
+    found = rf.annual_rate(curve, TABLE)
+    along = curve.peak_ground_acceleration.values
+    for end in ("lower", "upper"):
+        band = curve[f"exceedance_probability_{end}_bound"].values
+        x = np.geomspace(along[0], along[-1], 200_001)
+        within = integrate.trapezoid(np.interp(x, along, band) * density(x), x)
+        whole = found[f"annual_rate_{end}_bound"].item()
+        # beyond the curve that is drawn lies little
+        assert whole == pytest.approx(within, rel=0.01)
+    assert found.annual_rate_lower_bound < found.annual_rate < found.annual_rate_upper_bound
+
+
+def test_points_integrate_a_lognormal_curve_as_its_closed_form():
+    x = np.geomspace(0.5, 60.0, 101)
+    median, spread = 6.0, 0.45
+    values = xr.DataArray(ndtr(np.log(x / median) / spread), dims="x", coords={"x": x})
+    finely = hazard._finely(hazard.HazardCurve(VALUES * G, RATES))
+    by_points = hazard._by_points(hazard._interpolated(values, values.x), *finely)
+    exact = hazard.of_lognormal(median, spread, *finely)
+    np.testing.assert_allclose(by_points, exact, rtol=1e-7, atol=1e-12 * exact.sum())
+
+
+def test_separated_trials_are_exceeded_as_often_as_their_median():
+    counts = {"intensity": ([0.2, 0.4, 0.8, 1.0], "g_0"), "exceeded": [0, 0, 9, 9], "trials": 9}
+    parted = rf.fragility(counts, "PGA")
+    found = rf.annual_rate(parted, TABLE)
+    at = np.exp(np.interp(np.log(parted.median_intensity), np.log(VALUES * G), np.log(RATES)))
+    reached = found.annual_rate.item() + RATES[-1]  # the step goes on beyond the table
+    assert reached == pytest.approx(at.item(), rel=1e-9)
+
+
+def test_hazard_in_other_forms_is_the_same(curve):
+    one = rf.annual_rate(curve, TABLE).annual_rate.item()
+    chance = {"intensity": (VALUES, "g_0"), "probability": 1 - np.exp(-50 * RATES), "years": 50}
+    assert rf.annual_rate(curve, chance).annual_rate.item() == pytest.approx(one, rel=1e-12)
+    array = xr.DataArray(
+        RATES, dims="pga", coords={"pga": ("pga", VALUES * G, {"units": "m s^-2"})}
+    )
+    assert rf.annual_rate(curve, array).annual_rate.item() == pytest.approx(one, rel=1e-12)
+
+
+def test_each_structure_and_limit_state_has_its_rate():
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    motions = [
+        rf.GroundMotion.stochastic(6.5, "10 km", seed=k, stress_drop="20 MPa") for k in range(6)
+    ]
+    runs = rf.sweep(
+        system, motions, scale=[0.4, 0.7, 1, 2, 3, 5, 8], width=["0.4 m", "0.6 m"], accuracy="fast",
+        progress=False,
+    )  # fmt: skip
+    found = rf.fragility(runs, "PGA")
+    rates = rf.annual_rate(found, TABLE)
+    assert rates.annual_rate.dims == ("width", "limit_state")
+    assert rates.rate_share.dims == ("width", "limit_state", "contributing_intensity")
+    one = rf.annual_rate(found.isel(width=1), TABLE)
+    xr.testing.assert_equal(one.annual_rate, rates.annual_rate.isel(width=1))
+    assert (
+        rates.annual_rate.sel(limit_state="uplift") > rates.annual_rate.isel(limit_state=1)
+    ).all()
+
+
+def test_what_lies_beyond_the_table_is_told(curve):
+    with pytest.warns(
+        ModelWarning, match=r"above 9\.807 m s\^-2, where it ends, 3\d % of the rate"
+    ):
+        rf.annual_rate(curve, {"intensity": ([0.1, 0.5, 1.0], "g_0"), "rate": [1e-2, 1e-3, 1e-4]})
+    with pytest.warns(ModelWarning, match=r"there lie below 7\.845 m s\^-2"):
+        rf.annual_rate(curve, {"intensity": ([0.8, 2.0, 9.0], "g_0"), "rate": [1e-3, 4e-5, 1e-8]})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rf.annual_rate(curve, TABLE)
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "words"),
+    [
+        ({"intensity": (VALUES, "m/s"), "rate": RATES}, UnitsError, "is in m s"),
+        ({"intensity": (VALUES, "g_0"), "rate": RATES[::-1]}, ComponentError, "above zero fall"),
+        ({"intensity": (VALUES, "g_0"), "rate": RATES[:3]}, ComponentError, "a rate each; found 6"),
+        ({"intensity": (VALUES, "g_0")}, ComponentError, "a table of hazard has"),
+        ({"intensity": (VALUES, "g_0"), "probability": RATES + 1, "years": 50}, ComponentError,
+         "above 0 and below 1"),
+        (np.exp, ComponentError, "needs between"),
+        (3.0, ComponentError, "must be a table"),
+    ],
+)  # fmt: skip
+def test_what_is_no_hazard_is_refused(curve, given, error, words):
+    with pytest.raises(error, match=words):
+        rf.annual_rate(curve, given)
+
+
+def test_what_is_no_fragility_over_one_measure_is_refused(curve):
+    with pytest.raises(SchemaError, match="found no fragility"):
+        rf.annual_rate(curve.drop_vars("exceedance_probability"), TABLE)

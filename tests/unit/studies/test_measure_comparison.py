@@ -1,0 +1,147 @@
+"""Intensity measures side by side, against regressions by other means and samples that are made."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from scipy import stats
+
+import rockframe as rf
+from rockframe.errors import ComponentError
+from rockframe.results.variables.runs import RunStatus
+from rockframe.studies.cloud import Cloud
+from rockframe.studies.measure_comparison import _dependence
+
+SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+COUNT = 60
+
+
+@pytest.fixture(scope="module")
+def runs():
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    motions = {f"m{k:02d}": pulse.scaled(1.0 + 0.01 * k) for k in range(COUNT)}
+    found = rf.sweep(SYSTEM, motions, accuracy="fast", progress=False)
+    rng = np.random.default_rng(2)
+    true, magnitude = rng.normal(0.0, 0.5, COUNT), rng.uniform(5.5, 7.5, COUNT)
+    response = np.exp(-1.5 + 1.2 * true + 0.3 * rng.standard_normal(COUNT))
+    shape, dims = found.status.shape, found.status.dims
+    fell = np.exp(2.0 * true) > 3.5 * rng.uniform(0.5, 1.5, COUNT)
+    status = np.where(fell, RunStatus.OVERTURNED, RunStatus.COMPLETED).astype(np.int8)
+    return found.assign(
+        peak_relative_rotation=(dims, response.reshape(shape), {"units": "1"}),
+        status=(dims, status.reshape(shape), found.status.attrs),
+    ).assign_coords(
+        good=("motion", np.exp(true), {"units": "m"}),
+        # the response does not depend on magnitude beside the measure; given this one it does
+        poor=("motion", np.exp(true + 0.6 * (magnitude - 6.5)), {"units": "m"}),
+        magnitude=("motion", magnitude, {"units": "1"}),
+    )
+
+
+def test_measures_are_compared_as_regressions_are(runs):
+    found = rf.compare_intensities(runs, ["poor", "good"], against=["magnitude"])
+    assert found.measure.values.tolist() == ["poor", "good"]
+    fell = runs.status.values.ravel() == RunStatus.OVERTURNED
+    response = np.log(runs.peak_relative_rotation.values.ravel())
+    for name in ("poor", "good"):
+        one, logs = found.sel(measure=name), np.log(runs[name].values)
+        line = stats.linregress(logs[~fell], response[~fell])
+        residual = response[~fell] - line.intercept - line.slope * logs[~fell]
+        spread = math.sqrt((residual**2).sum() / ((~fell).sum() - 2))
+        assert one.regression_slope.item() == pytest.approx(line.slope, rel=1e-12)
+        assert one.residual_dispersion.item() == pytest.approx(spread, rel=1e-12)
+        assert one.efficiency_ratio.item() == pytest.approx(spread / line.slope, rel=1e-12)
+        # the t-test of the slope of the residuals, from its definition
+        m = runs.magnitude.values[~fell] - runs.magnitude.values[~fell].mean()
+        slope = (m @ residual) / (m @ m)
+        rest = residual - slope * m
+        error = math.sqrt((rest @ rest) / (len(m) - 2) / (m @ m))
+        assert one.sufficiency_slope.item() == pytest.approx(slope, rel=1e-9)
+        chance = 2.0 * stats.t.sf(abs(slope / error), len(m) - 2)
+        assert one.sufficiency_p_value.item() == pytest.approx(chance, rel=1e-9)
+    assert found.sufficiency_p_value.sel(measure="poor").item() < 1e-3
+    assert found.sufficiency_p_value.sel(measure="good").item() > 0.05
+    assert found.verdict == (
+        f"Of 2 measures good is the most efficient, with {found.efficiency_ratio[1]:.3g} of "
+        "dispersion over power; residuals go with a covariate (p < 0.05): poor with magnitude."
+    )
+
+
+def test_relative_sufficiency_is_the_mean_of_log_likelihoods(runs):
+    found = rf.compare_intensities(runs, ["poor", "good"])
+    fell = runs.status.values.ravel() == RunStatus.OVERTURNED
+    response = np.log(runs.peak_relative_rotation.values.ravel())
+    likely = []
+    for name in ("poor", "good"):
+        logs, one = np.log(runs[name].values), found.sel(measure=name)
+        cloud = rf.cloud_analysis(runs, name)
+        falls = 1 / (
+            1 + np.exp(-cloud.logistic_intercept.item() - cloud.logistic_slope.item() * logs)
+        )
+        middle = cloud.regression_intercept.item() + one.regression_slope.item() * logs
+        density = stats.norm.pdf(response, middle, one.residual_dispersion.item())
+        likely.append(np.log2(np.where(fell, falls, (1 - falls) * density)))
+    more = likely[1] - likely[0]
+    assert found.relative_sufficiency.values.tolist() == pytest.approx([0.0, more.mean()], rel=1e-9)
+    error = more.std(ddof=1) / math.sqrt(COUNT)
+    assert found.relative_sufficiency_error.values[1] == pytest.approx(error, rel=1e-9)
+    assert more.mean() > 0.5
+
+
+def test_chances_are_uniform_where_nothing_depends():
+    rng = np.random.default_rng(3)
+    chances = []
+    for _ in range(400):
+        logs = rng.normal(size=25)
+        cloud = Cloud.of(logs, np.exp(0.5 + logs + 0.4 * rng.standard_normal(25)))
+        chances.append(_dependence(cloud, rng.uniform(5, 7, 25))[1])
+    assert stats.kstest(chances, "uniform").pvalue > 0.01
+
+
+def test_covariates_come_in_several_forms(runs):
+    values = runs.magnitude.values
+    names = runs.motion.values.tolist()
+    forms = [
+        ["magnitude"], {"magnitude": values}, {"magnitude": dict(zip(names, values, strict=True))},
+        {"magnitude": pd.Series(values[::-1], index=names[::-1])},
+        {"magnitude": xr.DataArray(values, dims="motion", coords={"motion": names})},
+    ]  # fmt: skip
+    every = [rf.compare_intensities(runs, ["poor"], against=one) for one in forms]
+    assert len({one.sufficiency_p_value.item() for one in every}) == 1
+    holes = np.where(np.arange(COUNT) < 5, np.nan, values)
+    assert np.isfinite(
+        rf.compare_intensities(runs, ["poor"], against={"m": holes}).sufficiency_p_value
+    ).all()
+
+
+def test_spectral_measures_are_told_apart_by_their_periods(runs):
+    several = [("SA", "0.5 s"), ("SA", "1 s"), ("Sa_avg", (np.array([0.5, 1.0]), "s")), "PGA"]
+    found = rf.compare_intensities(runs, several)
+    assert found.measure.values.tolist() == [
+        "pseudo spectral acceleration at 0.5 s", "pseudo spectral acceleration at 1 s",
+        "average spectral acceleration, 0.5 to 1 s", "peak ground acceleration",
+    ]  # fmt: skip
+    # all motions are one pulse, scaled: all measures are one another's multiples
+    np.testing.assert_allclose(
+        found.residual_dispersion, found.residual_dispersion[0].item(), rtol=1e-6
+    )
+    frame = rf.table(found)
+    assert len(frame) == 4
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"measures": []}, "measures must be one or more"),
+        ({"measures": ["good", "good"]}, "named twice"),
+        ({"measures": [("SA",)]}, "a measure with a period"),
+        ({"measures": ["good"], "against": ["depth"]}, "which is no coordinate"),
+        ({"measures": ["good"], "against": {"depth": [1, 2]}}, "2 numbers of depth for 60 motions"),
+        ({"measures": ["good"], "against": {"depth": {"m00": 1}}}, "no depth of the motion 'm01'"),
+    ],
+)
+def test_what_cannot_be_is_refused(runs, options, words):
+    with pytest.raises(ComponentError, match=words):
+        rf.compare_intensities(runs, **options)
