@@ -64,6 +64,6 @@ def tcu128() -> rf.GroundMotion:
     print("In its place: a synthetic motion of the same peak. The numbers are not those of TCU128.")
     return (
         rf.GroundMotion.stochastic(7.6, "20 km", seed=128)
-        .window("0 s", "30 s")
+        .window("0 s", "60 s")
         .scaled(peak="0.17 g_0")
     )
