@@ -24,11 +24,6 @@ STACKED: Final = "rotation_on_cap"
 """A column of scenes in which a block stands on a cap."""
 OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
 """Columns that the friction between cap and soil follows from, where a scene has them all."""
-DERIVED: Final = (
-    "absolute_horizontal_acceleration", "absolute_vertical_acceleration",
-    "base_overturning_moment", "friction_demand", "soil_friction_demand",
-)  # fmt: skip
-"""What follows from columns."""
 HALF: Final = 0.5
 ENOUGH: Final = 1.0
 """The friction demand is told to last while it is above half its peak, or above what floors seldom

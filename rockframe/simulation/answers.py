@@ -13,7 +13,6 @@ from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.dataset import fitting
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.forces import (
-    DERIVED,
     OF_SOIL_FRICTION,
     EventStates,
     force_histories,
@@ -74,7 +73,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     setting, load, count = system.setting, system.setting.load, len(run.time)
     shown_at, ground, moved = _everything_of(system, plan, run)
     values = {name: each[:count] for name, each in shown_at.items()}
-    if _everything(plan) or not set(DERIVED).isdisjoint(plan.requested):
+    if _everything(plan) or not values.keys() >= set(plan.requested):
         values |= force_histories(values, moved[:count], load)
     values |= contact_histories(system.model, run)
     values |= cap_histories(values, setting)

@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
@@ -147,6 +148,7 @@ def _normal(eta: Array) -> Array:
     return np.asarray(ndtr(eta))
 
 
+@hinted()
 def cloud_analysis(
     runs: xr.Dataset,
     intensity: str | xr.DataArray = "PGA",

@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import ArrayLike
@@ -27,6 +28,7 @@ _LEVEL: Final = "response_level"
 _TITLE: Final = "Fractile curves of scaled motions"
 
 
+@hinted()
 def fractile_curves(
     runs: xr.Dataset,
     intensity: str | xr.DataArray = SCALE,

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, hinted
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.analyses import FragilityStatus
@@ -60,6 +60,7 @@ class HazardCurve:
         )
 
 
+@hinted()
 def annual_rate(
     fragility: xr.Dataset,
     hazard: Mapping[str, Any] | xr.DataArray | Callable[[Array], Any],

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
@@ -33,6 +34,7 @@ Covariates = Mapping[str, Any]
 """Numbers of the motions by a name: in their order, by their labels, or over ``motion``."""
 
 
+@hinted()
 def compare_intensities(
     runs: xr.Dataset,
     measures: Iterable[str | tuple[str, PeriodLike] | xr.DataArray],

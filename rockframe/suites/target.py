@@ -272,6 +272,7 @@ class TargetSpectrum:
             )
         )  # fmt: skip
 
+    @hinted()
     def at(self, periods: ArrayLike | Iterable[QuantityLike]) -> Array:
         """Give the accelerations at periods.
 
@@ -364,6 +365,7 @@ class TargetSpectrum:
             self, name=f"{self.name}, times {ratio:g}", shape=_Multiple(ratio, self.shape)
         )
 
+    @hinted()
     def with_deviation(self, standard_deviation: RatioLike) -> Self:
         """Give a set the same spread at all periods.
 

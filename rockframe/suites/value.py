@@ -141,7 +141,8 @@ class LabelledMotions(Mapping[str, GroundMotion]):
         Examples
         --------
         >>> import rockframe as rf
-        >>> suite = MotionSuite([rf.GroundMotion.stochastic(m, "20 km", seed=m) for m in (5, 6, 7)])
+        >>> motions = [rf.GroundMotion.stochastic(m, "20 km", seed=m) for m in (5, 6, 7)]
+        >>> suite = rf.MotionSuite(motions)
         >>> len(suite.select(magnitude=(6, None)))
         2
         """

@@ -31,6 +31,10 @@ SCENES = {
     "coupled": rf.System(BLOCK, PADS, CAP, SOIL),
     "cascade": rf.System(BLOCK, PADS, CAP, SOIL, coupling="cascade"),
 }
+OF_SOME = {
+    "toe_pressure": ("soil", "one body", "coupled", "cascade"),
+    "soil_friction_demand": ("coupled", "cascade"),  # elsewhere that of the one base there is
+}
 POINTS = {"roof": ("0 m", "9.6 m"), "right corner": ("1.2 m", "0 m"), "left": ("-1.2 m", "0 m")}
 ALL = (*GROUPS, "friction_demand", "horizontal_velocity")
 
@@ -229,6 +233,13 @@ def test_only_what_is_asked_for_is_given(scene):
         found = system.simulate(PULSE, duration="0.5 s", outputs=[group])
         assert set(ON_REQUEST) & set(found.variables) == set(names)
     assert "peak_friction_demand" not in system.simulate(PULSE, outputs=None)
+
+
+@pytest.mark.parametrize("name", ON_REQUEST)
+def test_what_is_asked_for_alone_is_given(scene, name):
+    if scene not in OF_SOME.get(name, SCENES):
+        pytest.skip("the scene has no such thing")
+    assert name in SCENES[scene].simulate(PULSE, duration="0.5 s", outputs=name)
 
 
 def test_points_go_through_a_file(tmp_path):

@@ -55,7 +55,8 @@ def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chai
     kind = RigidChain if some_rigid(links) else Chain
     rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
     for row in rows:  # what rounds the length of a stiff tie changes its force, which corners bear
-        row[at.FORCE_SIZE] += sum(one.numbers.stiffness * reach_of(one) for one in ties)
+        noise = ROUNDING * sum(one.numbers.stiffness * reach_of(one) for one in ties)
+        row[at.FORCE_SIZE] = max(row[at.FORCE_SIZE], noise / ROUNDING_OF_FORCES)
     return kind(*lists_of(rows))
 
 
