@@ -71,8 +71,8 @@ def incremental_dynamic_analysis(
         of 0.1 unless given [1].
     limits : iterable, optional
         Limit states beside overturning: ``"uplift"``, and peak rotations over the
-        overturning angle, such as 0.5; or variables of runs, as for :func:`rockframe.fragility`
-        [1].
+        overturning angle, such as 0.5; or variables that every run has, without `outputs` or
+        `points`, as for :func:`rockframe.fragility` [1].
     intensity : str, optional
         An intensity measure that the result has beside the scale, such as ``"PGA"``; see
         :func:`rockframe.fragility`.

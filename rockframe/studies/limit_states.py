@@ -153,9 +153,10 @@ def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr
     """Give a scalar of runs, of one of the points, bodies or restrainers that it is of."""
     if name not in runs:
         near = nearest(name, [str(one) for one in runs])
+        numbers = [str(one) for one, values in runs.items() if values.dtype.kind in "fiu"]
         msg = (
-            f"{owner}: the runs have no {name}{near}; "
-            f"they have {', '.join(str(one) for one in runs if str(one).startswith('peak_'))}"
+            f"{owner}: the runs have no {name}{near}; they have {', '.join(numbers)}; a sweep with "
+            "outputs=[...] or points={...} has more"
         )
         raise SchemaError(msg)
     values = runs[name]
