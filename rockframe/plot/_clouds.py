@@ -128,7 +128,7 @@ def annual_rate(
             alpha=0.35, label=f"{state}: {rate:.3g} a year",
         )  # fmt: skip
     axes.set(
-        xscale="log", ylabel="share of the rate in a range of intensities [%]",
+        xscale="log", ylabel="share of the rate [%]",
         xlabel=label_of_intensity(middle.rename(str(given.attrs["intensity"])), given),
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
