@@ -33,7 +33,7 @@ from rockframe.results.outcome import (
     without_gravity,
 )
 from rockframe.results.points import point_histories, point_labels, point_peaks
-from rockframe.results.schema import ON_REQUEST, SCHEMA
+from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
@@ -73,7 +73,8 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     setting, load, count = system.setting, system.setting.load, len(run.time)
     shown_at, ground, moved = _everything_of(system, plan, run)
     values = {name: each[:count] for name, each in shown_at.items()}
-    if _everything(plan) or not values.keys() >= set(plan.requested):
+    # energies are worked out apart; what else is no column may follow from columns
+    if _everything(plan) or set(plan.requested).difference(values, ENERGIES):
         values |= force_histories(values, moved[:count], load)
     values |= contact_histories(system.model, run)
     values |= cap_histories(values, setting)

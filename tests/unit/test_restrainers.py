@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from benchmarks.tied_runs import run as run_drawn
 
 import rockframe as rf
 from rockframe.dynamics.events import EventKind, LinkState
@@ -360,3 +361,16 @@ def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
 
     added = tied.overturning_energy - free.overturning_energy
     assert added == pytest.approx(min(stored(1.0), stored(-1.0)), rel=0.05)
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize(
+    "number",
+    [
+        755,  # a tie of 2e10 N/m, the last bit of whose length is more than the rounding of weights
+        508,  # a tie between bodies that rest on one another, taut or slack by the last bit
+    ],
+)
+def test_rounding_of_stiff_ties_does_not_hold_and_release_without_end(number):
+    _, ended, _ = run_drawn(number)
+    assert ended in ("completed", "overturned", "toppled")
