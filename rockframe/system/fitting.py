@@ -1,10 +1,11 @@
 """Whether parts fit one another."""
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 from rockframe.components import Component, RearWall, RigidGround, Stack, Tendon
 from rockframe.components.block_numbers import squat
+from rockframe.components.ground import Impact
 from rockframe.many import isfinite
 from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
@@ -168,13 +169,30 @@ def contradictions(parts: Parts) -> list[str]:
     ]
 
 
-def friction_under(part: Component, options: Options) -> tuple[float, float] | None:
-    """Give the friction of a base, at rest and of slip; None where the base holds what is on it."""
+class Friction(NamedTuple):
+    """Coefficients of friction: at rest, of slip, and in impacts; infinite where a base holds."""
+
+    static: float
+    kinetic: float
+    impulsive: float
+
+    def words(self) -> str:
+        """Tell the coefficients at rest and of slip."""
+        return "held" if math.isinf(self.static) else f"{self.static:.6g}, {self.kinetic:.6g}"
+
+
+HELD: Final = Friction(math.inf, math.inf, math.inf)
+"""Where a base holds what stands on it."""
+
+
+def friction_under(part: Component, options: Options) -> Friction | None:
+    """Give the friction of a base; None where the base holds what is on it."""
     static = getattr(part.si, "friction", None)
     if static is None or options.sliding is Sliding.CHECKED or isinstance(part, OwnBase):
         return None
-    kinetic = part.si.kinetic_friction
-    return static, static if kinetic is None else kinetic
+    kinetic = static if part.si.kinetic_friction is None else part.si.kinetic_friction
+    sticks = isinstance(part, RigidGround) and part.si.impact is Impact.STICK
+    return Friction(static, kinetic, math.inf if sticks else kinetic)
 
 
 def is_sliding(parts: Parts, options: Options) -> bool:

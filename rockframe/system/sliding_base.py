@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, cast
 from rockframe.components import Component, RigidGround
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
-from rockframe.system.fitting import SMALL_SLIDING, friction_under
+from rockframe.system.fitting import HELD, SMALL_SLIDING, Friction, friction_under
 from rockframe.system.options import Sliding
 from rockframe.system.setting import SlipRange
+from rockframe.system.sliding_ground import ill_posed
 from rockframe.system.stack import StackSetting
 from rockframe.system.words import SLIPS, Words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.friction import SlippingChain
+    from rockframe.dynamics.chain.slips import Slips
     from rockframe.dynamics.protocol import ContactModel, Ending
 
 
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
 class SlidingAloneSetting(AloneSetting):
     """A body on a base with friction."""
 
-    static: float  # coefficients of friction [1]
-    kinetic: float
+    friction: Friction
     slides = True
 
     @property
@@ -42,7 +42,7 @@ class SlidingAloneSetting(AloneSetting):
             restraint=f"{base.restraint.partition(';')[0]}; as far as friction can",
             numbers=[
                 *base.numbers,
-                ("friction at rest, and of slip", f"{self.static:.6g}, {self.kinetic:.6g}"),
+                ("friction at rest, and of slip", self.friction.words()),
             ],
             left_out=[one for one in base.left_out if one != "sliding"],
         )  # fmt: skip
@@ -57,7 +57,7 @@ class SlidingAloneSetting(AloneSetting):
             stands = self.support.standing.rest[0].state
             rest = [AtRest(stands.rotation, stands.vertical)]
         one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
-        return chain([one], self.body.mass, rest, frictions=[(self.static, self.kinetic)])
+        return chain([one], self.body.mass, rest, frictions=[self.friction])
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of slip, rotation and rise."""
@@ -65,7 +65,7 @@ class SlidingAloneSetting(AloneSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the body slipped."""
-        system = cast("SlippingChain", self._model.system)
+        system = cast("Slips", self._model.system)
         return (SlipRange(*system.slips(0, ending)),)
 
 
@@ -76,7 +76,7 @@ def alone_on(part: Component, held: AloneSetting) -> AloneSetting:
         return held
     if held.options.small:
         raise AssemblyError([SMALL_SLIDING])
-    return SlidingAloneSetting(held.load, held.support, *found, cap_offset=held.cap_offset)
+    return SlidingAloneSetting(held.load, held.support, found, cap_offset=held.cap_offset)
 
 
 @dataclass(frozen=True)
@@ -94,8 +94,8 @@ class SlidingStackSetting(StackSetting):
         """Tell bodies and bases, and their friction."""
         told = super().words()
         numbers = [
-            (f"base {k}: friction at rest, and of slip", f"{static:.6g}, {kinetic:.6g}")
-            for k, (static, kinetic) in enumerate(self.frictions, 1)
+            (f"base {k}: friction at rest, and of slip", friction.words())
+            for k, friction in enumerate(self.frictions, 1)
         ]
         return replace(
             told,
@@ -114,7 +114,7 @@ class SlidingStackSetting(StackSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far each body slipped."""
-        system = cast("SlippingChain", self._sliding_model.system)
+        system = cast("Slips", self._sliding_model.system)
         return tuple(SlipRange(*system.slips(k, ending)) for k in range(len(self.bodies)))
 
 
@@ -128,18 +128,44 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
         return held
     if held.options.sliding is Sliding.CHECKED:
         faults.append("friction in a Stack is computed: give no sliding='checked', or no friction")
+    elif any(isinstance(one, RigidGround) for one in bases):
+        faults += _misfits_of_rigid(bases, found, held)
     elif any(one is None for one in found):
-        faults.append("give every base of a Stack a friction, or none")
-    if any(isinstance(one, RigidGround) for one in bases):
         faults.append(
-            "the bodies of a Stack slide on TwoSpringSupport and WinklerSoil; where one of its "
-            "bases is rigid, give no friction"
+            "give every TwoSpringSupport and WinklerSoil under the bodies of a Stack a friction, "
+            "or none"
         )
     if held.options.small:
         faults.append(SMALL_SLIDING)
     if faults:
         raise AssemblyError(faults)
-    frictions = tuple(one for one in found if one is not None)
+    frictions = tuple(HELD if one is None else one for one in found)
     return SlidingStackSetting(
         held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties, frictions
     )
+
+
+def _misfits_of_rigid(
+    bases: Sequence[Component], found: Sequence[Friction | None], held: StackSetting
+) -> list[str]:
+    """Give what friction on rigid bases does not go with."""
+    faults = list[str]()
+    if any(
+        not isinstance(one, RigidGround) and friction
+        for one, friction in zip(bases, found, strict=True)
+    ):
+        faults.append(
+            "where a body of a Stack stands on a rigid base, give friction to the rigid ones only: "
+            "the others hold what is on them"
+        )
+    if held.ties:
+        faults.append(
+            "bodies of a Stack that slide on rigid bases have no restrainers, tendons or loads: "
+            "give these, or friction"
+        )
+    for k, friction in enumerate(found):
+        if friction is not None:
+            faults += [
+                f"body {k + 1}: {one}" for one in ill_posed(held.bodies[k], friction.kinetic)
+            ]
+    return faults

@@ -1,6 +1,5 @@
 """The scene of a block that slides on rigid ground: its numbers, its words and its model."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,7 +8,7 @@ from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
 from rockframe.many import largest, plain
 from rockframe.system.bodies import SupportedBody, load_of, resolve_restitution
-from rockframe.system.fitting import SMALL_SLIDING, friction_under
+from rockframe.system.fitting import SMALL_SLIDING, Friction, friction_under
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
@@ -25,8 +24,7 @@ if TYPE_CHECKING:
 class SlidingSetting(RigidGroundSetting):
     """A block on rigid ground with friction."""
 
-    static: float  # coefficients of friction [1]
-    kinetic: float
+    friction: Friction
     impact: Impact  # law of its impacts
     slides = True
     flies = True
@@ -43,10 +41,7 @@ class SlidingSetting(RigidGroundSetting):
 
     def system(self) -> "SlideRock":
         """Give the equations."""
-        return slide_rock_of(
-            self.body, (self.static, self.kinetic), self.impact, self.restitution,
-            self.slope.normal_gravity,
-        )  # fmt: skip
+        return slide_rock_of(self.body, self.friction, self.restitution, self.slope.normal_gravity)
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of slip, rotation and rise."""
@@ -61,11 +56,11 @@ class SlidingSetting(RigidGroundSetting):
     def cautions(self) -> list[str]:
         """Give warnings about the restitution, and of a block that its weight moves."""
         along = abs(self.slope.along_gravity)
-        if along <= self.static * self.slope.normal_gravity:
+        if along <= self.friction.static * self.slope.normal_gravity:
             return super().cautions()
         slides = (
             f"the block slides by its own weight: it needs a friction of tan(i) = "
-            f"{along / self.slope.normal_gravity:.4g}, and has {self.static:.4g}"
+            f"{along / self.slope.normal_gravity:.4g}, and has {self.friction.static:.4g}"
         )
         return [*super().cautions(), slides]
 
@@ -84,7 +79,6 @@ class SlidingSetting(RigidGroundSetting):
             if self.lands_flat
             else (f"a' after = {self.restitution.words()} a' before where it does not slip")
         )
-        static, kinetic = self.static, self.kinetic
         return Words(
             equations=[
                 ("full", "at rest while |xg''| <= mu_s (g + yg''), and until it tips"),
@@ -99,7 +93,7 @@ class SlidingSetting(RigidGroundSetting):
             "options make no difference)",
             numbers=[
                 *base.numbers[:-1],
-                ("friction at rest, and of slip", f"{static:.6g}, {kinetic:.6g}"),
+                ("friction at rest, and of slip", self.friction.words()),
                 ("friction to land without slip", f"{self.friction_to_roll_over:.6g}"),
                 ("restitution eps", "lands flat" if self.lands_flat else self.restitution.words()),
             ],
@@ -117,14 +111,14 @@ def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     setting = RigidGroundSetting(load, restitution)
     friction = None if ground is None else friction_under(ground, options)
     if ground is not None and friction is not None:
-        setting = _sliding(SlidingSetting(load, restitution, *friction, ground.si.impact))
+        setting = _sliding(SlidingSetting(load, restitution, friction, ground.si.impact))
     refuse_fall(setting)
     return setting
 
 
 def _sliding(setting: SlidingSetting) -> SlidingSetting:
     """Refuse what has no answer."""
-    faults = ill_posed(setting.body, setting.kinetic)
+    faults = ill_posed(setting.body, setting.friction.kinetic)
     if setting.options.small:
         faults.append(SMALL_SLIDING)
     if faults:
@@ -133,9 +127,8 @@ def _sliding(setting: SlidingSetting) -> SlidingSetting:
 
 
 def slide_rock_of(
-    body: SupportedBody, friction: tuple[float, float], impact: Impact,
-    restitutions: Sequence[float], gravity: float,
-) -> "SlideRock":  # fmt: skip
+    body: SupportedBody, friction: Friction, restitutions: Sequence[float], gravity: float
+) -> "SlideRock":
     """Give the equations of a block that slides and rocks, with the restitutions of its corners."""
     from rockframe.dynamics.slide_rock import SlideRock
     from rockframe.dynamics.slide_rock_model import impulse_lever
@@ -149,15 +142,14 @@ def slide_rock_of(
         )
         for own, restitution in zip((body.left, body.right), restitutions, strict=True)
     )
-    static, kinetic = friction
     return SlideRock(
         left=body.left,
         right=body.right,
         height=body.centre_height,
         inertia=body.inertia / body.mass,
-        static=static,
-        kinetic=kinetic,
-        impulsive=math.inf if impact is Impact.STICK else kinetic,
+        static=friction.static,
+        kinetic=friction.kinetic,
+        impulsive=friction.impulsive,
         left_lever=left,
         right_lever=right,
         gravity=gravity,

@@ -39,7 +39,7 @@ class TiedSlidingSetting(StackSetting):
     def cautions(self) -> list[str]:
         """Give warnings, also of a block that its restrainers move at once."""
         held = pressed(self, 0, self._tied_at_rest)
-        static = self.frictions[0][0]
+        static = self.frictions[0].static
         if abs(held.along) <= static * held.force:
             return super().cautions()
         slides = (
@@ -51,7 +51,6 @@ class TiedSlidingSetting(StackSetting):
     def words(self) -> Words:
         """Tell the block, its links and its friction."""
         told = super().words()
-        ((static, kinetic),) = self.frictions
         return Words(
             equations=[
                 ("full", "at rest while friction holds the base, and until it tips; else it slides "
@@ -68,7 +67,7 @@ class TiedSlidingSetting(StackSetting):
             "options make no difference)",
             numbers=[
                 *told.numbers,
-                ("friction at rest, and of slip", f"{static:.6g}, {kinetic:.6g}"),
+                ("friction at rest, and of slip", self.frictions[0].words()),
                 ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
             ],
             left_out=[one for one in told.left_out if one != "sliding"],
@@ -82,9 +81,8 @@ class TiedSlidingSetting(StackSetting):
 
         self._rest  # noqa: B018 - refuses a block that its links tip over
         bare = slide_rock_of(
-            self.body, self.frictions[0], self.impact, self.body.maximum_restitution,
-            self.gravity,
-        )  # fmt: skip
+            self.body, self.frictions[0], self.body.maximum_restitution, self.gravity
+        )
         if not self.chain_ties:  # of loads that are masses
             return slide_rock(bare, mass=self.body.mass)
         return tied_slide_rock(bare, self.chain_ties, mass=self.body.mass)
@@ -109,7 +107,7 @@ def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
         for one in held.ties
         if isinstance(one.part, Tendon) and one.part.si.depth == 0.0
     ]
-    faults += ill_posed(held.body, found[1])
+    faults += ill_posed(held.body, found.kinetic)
     if faults:
         raise AssemblyError(faults)
     return TiedSlidingSetting(

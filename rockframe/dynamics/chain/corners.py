@@ -14,15 +14,8 @@ from rockframe.dynamics.bed import DOWN, RAISED, both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, BodyState
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.impact import (
-    BOTH,
-    LEFT_ONLY,
-    RIGHT_ONLY,
-)
-from rockframe.dynamics.chain.motion import (
-    add_constraint,
-    coriolis_normal,
-)
+from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, RIGHT_ONLY, Attempt, attempt
+from rockframe.dynamics.chain.motion import add_constraint, coriolis_normal
 from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
@@ -100,6 +93,7 @@ class RigidCorners(Chain):
                 elif bears == RIGHT_ONLY:
                     pivot = PIVOT_RIGHT
                 new = self.with_part(new, k, Mode(contact, pivot, False))
+                new = self.standing_on(k, bears, new)
         return new
 
     @kernel
@@ -110,7 +104,7 @@ class RigidCorners(Chain):
             return body
         left = part.base.is_held(standing.contact, True)
         if left and part.base.is_held(standing.contact, False):
-            return BodyState(0.0, 0.0, body.horizontal, 0.0, 0.0, 0.0)
+            return BodyState(0.0, 0.0, body.horizontal, 0.0, 0.0, body.horizontal_velocity)
         lowered = BodyState(
             body.rotation, 0.0, body.horizontal, body.angular_velocity, 0.0,
             body.horizontal_velocity,
@@ -124,11 +118,10 @@ class RigidCorners(Chain):
 
     @kernel
     def add_corners(
-        self, k: int, count: int, standing: Mode, state: Vector, moves: bool, room: Vector,
-        rows: Vector,
-    ) -> int:  # fmt: skip
+        self, k: int, count: int, mode: int, state: Vector, moves: bool, room: Vector, rows: Vector
+    ) -> int:
         """Add the constraints of corners that bear on a rigid base, :eq:`eq-rigid-corner`."""
-        i, part = k * PLACES, self.on_base(k)
+        i, part, standing = k * PLACES, self.on_base(k), self.part_mode(mode, k)
         room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = NONE
         if not self.is_rigid(k) or part.flies(standing.contact):
             return count
@@ -143,8 +136,60 @@ class RigidCorners(Chain):
                 wanted = -coriolis_normal(i, room) - bends[side]
                 add_constraint(self, count, k, 0.0, 1.0, lever, wanted, room, rows)
                 room[i + at.LEFT_CORNER + side] = count
+                sense = self.sense_in(mode, k)
+                self.rub(k, count, sense, room[i + at.REACH], False, room, rows)
                 count += 1
         return count
+
+    @inlined
+    def slip_sense(self, k: int) -> float:
+        """Give the sense in which a body slips on its rigid base as corners are tried: 0, held."""
+        return 0.0
+
+    @inlined
+    def sense_in(self, mode: int, k: int) -> float:
+        """Give the sense in which a body slips on its rigid base in a mode; 0: none does."""
+        return 0.0
+
+    @inlined
+    def rub(
+        self, k: int, which: int, sense: float, reach: float, impulsive: bool, room: Vector,
+        rows: Vector,
+    ) -> None:  # fmt: skip
+        """Let the force of a corner that slips have friction: none slips here."""
+
+    @inlined
+    def lost_by_friction(
+        self, k: int, which: int, state: Vector, room: Vector, rows: Vector
+    ) -> float:
+        """Give the energy that friction takes in an impact at a corner that slips: 0."""
+        return 0.0
+
+    @inlined
+    def standing_on(self, k: int, bears: int, mode: int) -> int:
+        """Give the mode in which a body slips on its base, if it does: it does not."""
+        return mode
+
+    @inlined
+    def forget_slips(self, mode: int, *, impulsive: bool) -> None:
+        """Forget which slips were tried: none were."""
+
+    @inlined
+    def note_free_slips(self, mode: int, state: Vector) -> None:
+        """Note in which sense bodies that no corner bears would slip: none would."""
+
+    @inlined
+    def write_slip_guards(
+        self, k: int, mode: int, state: Vector, values: Vector, changes: Vector
+    ) -> None:
+        """Write the guards of friction: there is none here."""
+
+    @inlined
+    def try_corners(
+        self, mode: int, some: int, closed: int, impulsive: bool, noise: float, state: Vector
+    ) -> Attempt:
+        """Let a set of the closed corners bear, each held against sliding."""
+        return attempt(self, mode, some, closed, False, impulsive, noise, state)
 
     @inlined
     def stand_still(self, room: Vector, out: Vector) -> None:
@@ -186,6 +231,7 @@ class RigidCorners(Chain):
         for k in range(self.body_count):
             if self.is_rigid(k):
                 self.write_corner_guards(k, self.part_mode(mode, k), state, values, changes)
+                self.write_slip_guards(k, mode, state, values, changes)
         for k in range(self.body_count):
             standing = self.part_mode(mode, k)
             if self.is_rigid(k) and standing.contact & PULLED != 0:
@@ -206,7 +252,7 @@ class RigidCorners(Chain):
     def free_rises(self, k: int, mode: int, state: Vector, ground: Ground) -> tuple[float, float]:
         """Give the accelerations of the ends of a body that is held, as if it were let go."""
         free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
-        if k + 1 < self.body_count:
+        if k + 1 < self.body_count or self.part_mode(mode, k).slides:
             return self.end_accelerations(k, free, state, ground)
         # while the lowest body is held, its state tells where that is
         x = self.horizontal_of(k)
@@ -290,15 +336,16 @@ class RigidCorners(Chain):
                 state[first + ROTATION], state[first + VERTICAL] = body.rotation, body.vertical
                 state[n + first + ROTATION] = body.angular_velocity
                 state[n + first + VERTICAL] = body.vertical_velocity
-                place, rate = self.sway_at(k, standing, memory[HELD_PLACE + k], state)
-                self.set_sway(k, place, rate, state)
+                if not standing.slides:
+                    place, rate = self.sway_at(k, standing, memory[HELD_PLACE + k], state)
+                    self.set_sway(k, place, rate, state)
 
     @kernel
     def hold_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
         """Hold bodies where they are by the contacts of a mode, whose velocities they have."""
         for k in range(self.body_count):
             part, standing = self.on_base(k), self.part_mode(mode, k)
-            if self.is_rigid(k) and not part.flies(standing.contact):
+            if self.is_rigid(k) and not part.is_free(standing):
                 pin, place = part.body.pin(standing.pivot), state[self.horizontal_of(k)]
                 rotation = self.standing_state(k, standing, state).rotation
                 memory[HELD_PLACE + k] = place - part.body.about_pin(pin, rotation)

@@ -2,18 +2,12 @@
 
 Of each base the point that the rule of restraint names is held as long as friction can, and slips
 against it otherwise, :eq:`eq-slip-on-base`. What a base presses with follows from where its body
-is, so that no force waits for another. Which of the points slips stands in the mode, as the end
-that slides in :mod:`rockframe.dynamics.sliding`, with the sense of the slip.
+is, so that no force waits for another.
 """
 
 import math
-from collections.abc import Sequence
-from typing import Final
 
-import numpy as np
-
-from rockframe.compiled import Vector, inlined, kernel, stretch
-from rockframe.dynamics import events
+from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards, Variables
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState, accelerated
@@ -27,77 +21,20 @@ from rockframe.dynamics.chain.motion import (
     place_bodies,
     press_at,
 )
-from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, MODES, PLACES, Lists
-from rockframe.dynamics.chain.system import Chain
+from rockframe.dynamics.chain.rows import GUARDS, PLACES
+from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, OFFSET, ROUNDING, STATIC, Slips
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARATION, SILENT
 from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, Mode, SlidingGuards
-from rockframe.dynamics.protocol import (
-    HELD_PLACE,
-    IMPACT_LOSS,
-    LAST_EVENT,
-    Ending,
-    Ground,
-    Slope,
-)
+from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground, Slope
 from rockframe.dynamics.sliding import NOISE
 from rockframe.dynamics.switching import end_speed, next_pivot
 
-STATIC: Final = 0
-KINETIC: Final = 1
-FRICTIONS: Final = 2
-"""Numbers of each body behind the lists of a chain, then its slip and the rate of that."""
-SLIP_COLUMNS: Final = 2
 
-OFFSET: Final = 0  # of the slip from the place of the point that is held
-PEAK_LEFT: Final = 1
-PEAK_RIGHT: Final = 2
-KEPT: Final = 3
-"""What is remembered of the slip of each body, behind what a chain remembers."""
-
-ROUNDING: Final = 1e-12
-"""Accelerations over gravity that are rounding."""
-
-
-class SlippingChain(Chain):
+class SlippingChain(Slips):
     """Bodies upon one another that friction holds on their bases: a system."""
 
     __slots__ = ()
-
-    @inlined
-    def friction_of(self, k: int, which: int) -> float:
-        """Give a coefficient of friction under a body."""
-        return float(self.rows[self.behind_chain() + FRICTIONS * k + which])
-
-    @inlined
-    def column_room(self) -> Vector:
-        """Give the room for columns."""
-        first = self.behind_chain() + FRICTIONS * self.body_count
-        return stretch(self.rows, first, (COLUMNS + SLIP_COLUMNS) * self.body_count)
-
-    @inlined
-    def behind_friction(self) -> int:
-        """Give the place behind all these rooms."""
-        count = self.body_count
-        return self.behind_chain() + (FRICTIONS + COLUMNS + SLIP_COLUMNS) * count
-
-    @kernel
-    def modes(self) -> int:
-        """Give the number of modes: of contacts and pivots, and of the senses of slips."""
-        return (2 * MODES) ** self.body_count
-
-    @inlined
-    def sense(self, mode: int, k: int) -> float:
-        """Give the sense of the slip of a body that slips."""
-        return -1.0 if mode // MODES**self.body_count // 2**k % 2 == 1 else 1.0
-
-    @inlined
-    def slipping(self, mode: int, k: int, sense: float) -> int:
-        """Give the mode in which a body slips in a sense."""
-        was, value = self.part_mode(mode, k), MODES**self.body_count * 2**k
-        new = self.with_part(mode, k, Mode(was.contact, was.pivot, True))
-        new -= new // value % 2 * value
-        return new + value if sense < 0.0 else new
 
     @kernel
     def relaxation_in(self, mode: int) -> float:
@@ -131,33 +68,6 @@ class SlippingChain(Chain):
                 load_along(self, k, thrust, room)
                 room[i + at.THRUST] = thrust
         return count
-
-    @inlined
-    def slip_rate(self, k: int, mode: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity at which the point that would be held slips, and its noise."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
-        turning = part.body.reach(pin, part.body.attitude(body.rotation)).rate
-        turning *= body.angular_velocity
-        sway = body.horizontal_velocity
-        return sway - turning, NOISE * (abs(sway) + abs(turning))
-
-    @inlined
-    def point_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the place of the point that is held, or would be."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
-        return self.place(k, mode, state, memory) - part.body.about_pin(pin, body.rotation)
-
-    @inlined
-    def kept(self, k: int) -> int:
-        """Give where the memory of a body's slip begins."""
-        return HELD_PLACE + self.body_count + 1 + KEPT * k
-
-    @kernel
-    def slip_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give how far a body has slipped on its base."""
-        return float(memory[self.kept(k) + OFFSET]) + self.point_of(k, mode, state, memory)
 
     @kernel
     def guards_on_base(
@@ -197,10 +107,7 @@ class SlippingChain(Chain):
         k = guard // GUARDS
         which, part, was = guard - k * GUARDS, self.on_base(k), self.part_mode(mode, k)
         count, point = part.base.end_guards(), self.point_of(k, mode, state, memory)
-        for j in range(self.body_count):
-            slip = self.slip_of(j, mode, state, memory)
-            memory[self.kept(j) + PEAK_LEFT] = max(memory[self.kept(j) + PEAK_LEFT], -slip)
-            memory[self.kept(j) + PEAK_RIGHT] = max(memory[self.kept(j) + PEAK_RIGHT], slip)
+        self.keep_peaks(mode, state, memory)
         memory[HELD_PLACE + self.body_count] = k + 1.0
         if which < 2 * count:
             new = self.switch_end(k, which < count, which % count, mode, state, ground, memory)
@@ -224,32 +131,6 @@ class SlippingChain(Chain):
         elif which < 2 * count:
             new = self.wait(k, which < count, new, state, ground, memory)
         return new
-
-    @inlined
-    def kind_of(self, k: int, old: int, new: int) -> int:
-        """Give the kind of event between slipping, in either sense, and holding."""
-        slipped, slips = self.part_mode(old, k).slides, self.part_mode(new, k).slides
-        if not slips:
-            return events.STICK if slipped else SILENT
-        if not slipped:
-            return events.SLIP
-        return SILENT if self.sense(old, k) == self.sense(new, k) else events.REVERSAL
-
-    @kernel
-    def let_go(self, k: int, mode: int, state: Vector, memory: Vector) -> int:
-        """Let a body that is held move along its base; give the mode in which it may."""
-        part, was = self.on_base(k), self.part_mode(mode, k)
-        if part.is_free(was):
-            return mode
-        place, body = self.place(k, mode, state, memory), self.state_of(k, state)
-        self.set_sway(k, place, part.sway(was, body, part.body.attitude(body.rotation)), state)
-        return self.with_part(mode, k, Mode(was.contact, was.pivot, True))
-
-    @kernel
-    def end_slip(self, k: int, mode: int, state: Vector) -> None:
-        """Set the velocity of a body so that its point does not slip."""
-        rate, _ = self.slip_rate(k, mode, state)
-        state[self.coordinates() + self.horizontal_of(k)] -= rate
 
     @kernel
     def switch_end(
@@ -317,7 +198,7 @@ class SlippingChain(Chain):
             ImpulseResponse(
                 normal_by_normal, rises + lever * self.turned(k), along_by_normal, slides
             ),
-            slip, (1.0 - part.base.rebound(left)) * speed, self.friction_of(k, KINETIC),
+            slip, (1.0 - part.base.rebound(left)) * speed, self.friction_of(k, IMPULSIVE),
         )  # fmt: skip
         self.answers(k, normal, normal * lever, along, mode, state)
         self.add_slopes(state)
@@ -414,27 +295,3 @@ class SlippingChain(Chain):
         elif event == REENGAGEMENT and not grows:
             contact = part.base.unpressed(contact, left)
         return self.with_part(mode, k, Mode(contact, now.pivot, now.slides))
-
-    @inlined
-    def observe_slip(self, k: int, mode: int, state: Vector, memory: Vector, out: Vector) -> None:
-        """Write slip and rate of slip of a body, behind the columns of all bodies."""
-        j = COLUMNS * self.body_count + SLIP_COLUMNS * k
-        out[j] = self.slip_of(k, mode, state, memory)
-        moves = self.on_base(k).is_free(self.part_mode(mode, k))
-        out[j + 1] = self.slip_rate(k, mode, state)[0] if moves else 0.0
-
-    def slips(self, k: int, ending: Ending) -> tuple[float, float, float]:
-        """Give the slip of a body at the end of a run, and the most to the left and right."""
-        mode, state, memory = ending.mode, ending.state, ending.memory
-        residual, kept = self.slip_of(k, mode, state, memory), memory[self.kept(k) :]
-        return (
-            residual,
-            max(float(kept[PEAK_LEFT]), -residual),
-            max(float(kept[PEAK_RIGHT]), residual),
-        )
-
-
-def with_friction(lists: Lists, frictions: Sequence[tuple[float, float]]) -> SlippingChain:
-    """Give a chain whose bases have coefficients of friction, at rest and of slip."""
-    room = np.zeros((COLUMNS + SLIP_COLUMNS) * lists.body_count)
-    return SlippingChain(lists.body_count, np.concatenate([lists.rows, np.ravel(frictions), room]))

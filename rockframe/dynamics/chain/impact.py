@@ -86,18 +86,22 @@ def attempt(
             continue
         room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = -1.0
         bears, touches = some >> 2 * k & BOTH, closed >> 2 * k & BOTH
+        holds = touches | bears if sticks else bears
+        if holds == 0:
+            continue
+        body, part = system.state_of(k, state), system.on_base(k)
+        # where both corners are closed all points of the base move alike
+        pivot = PIVOT_LEFT if holds == LEFT_ONLY else PIVOT_RIGHT
+        reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
+        sense = 0.0 if sticks else system.slip_sense(k)
         for side in range(2):
             if bears >> side & 1 != 0:
                 lever, wanted = corner_row(system, k, side == 0, impulsive, state, room)
                 add_constraint(system, count, k, 0.0, 1.0, lever, wanted, room, rows)
                 room[i + at.LEFT_CORNER + side] = count
+                system.rub(k, count, sense, reach.rate, impulsive, room, rows)
                 count += 1
-        holds = touches | bears if sticks else bears
-        if holds != 0:
-            body, part = system.state_of(k, state), system.on_base(k)
-            # where both corners are closed all points of the base move alike
-            pivot = PIVOT_LEFT if holds == LEFT_ONLY else PIVOT_RIGHT
-            reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
+        if sense == 0.0:
             rate = body.angular_velocity
             wanted = coriolis_along(i, room) + reach.bend * rate * rate
             if impulsive:
@@ -108,8 +112,10 @@ def attempt(
     loss = pressing = 0.0
     for which in range(count):
         first = which * CONSTRAINT
-        force = rows[first + at.FORCE]
+        force, k = rows[first + at.FORCE], int(rows[first + at.BODY])
         loss += 0.5 * force * rows[first + at.VALUE]
+        if system.is_rigid(k):
+            loss += system.lost_by_friction(k, which, state, room, rows)
         pressing += abs(force)
     fault = first_fault(system, some, closed, impulsive, NOISE * pressing, noise, state)
     return Attempt(fault, loss)
@@ -181,6 +187,7 @@ def bearing_corners(
     After an impact the admissible set that loses the least energy. Where one of those that bore
     before is `leaving`, since its force has come to zero, the admissible one nearest to those.
     Where no set is admissible, that of the problem with sticking assumed, which has one solution.
+    Where friction alone has changed, `leaving` is negative.
     """
     impulsive = leaving == 0
     reference, noise = closed, noise_of(system, closed, impulsive, state)
@@ -192,8 +199,8 @@ def bearing_corners(
     some = closed
     while some >= 0:
         near, bears = not many or size_of(some ^ reference) <= NEIGHBOURS, some | pulled
-        if near and (impulsive or bears != before):
-            found = attempt(system, mode, bears, closed, False, impulsive, noise, state)
+        if near and (leaving <= 0 or bears != before):
+            found = system.try_corners(mode, bears, closed, impulsive, noise, state)
             if found.fault < 0:
                 loss = found.loss if impulsive else float(size_of(bears ^ before))
                 admissible += 1
@@ -203,11 +210,11 @@ def bearing_corners(
                     other, second = bears, loss
         some = (some - 1) & closed if some > 0 else -1
     if admissible > 0:
-        attempt(system, mode, taken, closed, False, impulsive, noise, state)
+        system.try_corners(mode, taken, closed, impulsive, noise, state)
     elif impulsive:
         taken = with_sticking(system, mode, closed, impulsive, noise, state)
     else:
-        taken = before & ~leaving
+        taken = before if leaving < 0 else before & ~leaving
     return Found(taken, admissible, other)
 
 

@@ -11,8 +11,7 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import DEGREES
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.friction import KEPT as KEPT_OF_SLIP
-from rockframe.dynamics.chain.friction import SLIP_COLUMNS, SlippingChain
+from rockframe.dynamics.chain.friction import SlippingChain
 from rockframe.dynamics.chain.link_rows import (
     LIES,
     MOVED_X,
@@ -27,6 +26,7 @@ from rockframe.dynamics.chain.linked import Linked, rows_of_links, with_room
 from rockframe.dynamics.chain.motion import place_bodies
 from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, PLACES
+from rockframe.dynamics.chain.slips import SLIP_COLUMNS
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.protocol import HELD_PLACE, Ground
 from rockframe.dynamics.trigonometry import sine_cosine, versine
@@ -165,11 +165,6 @@ class LinkedSlippingChain(LinkedLists, ChainLinks, SlippingChain):  # pyright: i
     def own_columns(self) -> int:
         """Give the number of columns of all bodies, their bases and slips."""
         return (COLUMNS + SLIP_COLUMNS) * self.body_count
-
-    @inlined
-    def link_place(self) -> int:
-        """Give the place of the last event's link in the memory."""
-        return HELD_PLACE + self.body_count + 1 + KEPT_OF_SLIP * self.body_count
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:

@@ -18,12 +18,14 @@ from rockframe.dynamics.bed import both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.friction import SlippingChain, with_friction
+from rockframe.dynamics.chain.friction import SlippingChain
 from rockframe.dynamics.chain.link_rows import ChainLink
 from rockframe.dynamics.chain.linked import Linked
 from rockframe.dynamics.chain.linked_chain import ChainLinks, LinkedRigidChain, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
+from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
+from rockframe.dynamics.chain.slips import Slips, coefficients
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
@@ -60,6 +62,12 @@ def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chai
     return kind(*lists_of(rows))
 
 
+def slipping(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
+    """Give the equations of bodies that friction holds, of those whose bases hold."""
+    kind = SlippingRigidChain if isinstance(bare, RigidChain) else SlippingChain
+    return kind(bare.body_count, np.concatenate([bare.rows, coefficients(frictions)]))
+
+
 def some_rigid(links: Sequence[ChainBody]) -> bool:
     """Whether some of the bases are rigid."""
     return any(is_rigid(one.base) for one in links)
@@ -72,7 +80,7 @@ def chain(
     limits: Sequence[tuple[float, float]] = (),
     ties: Sequence[ChainLink] = (),
     held: Callable[[float], float] | None = None,
-    frictions: Sequence[tuple[float, float]] = (),
+    frictions: Sequence[tuple[float, float, float]] = (),
 ) -> ContactModel:
     """Assemble the model of bodies upon one another.
 
@@ -93,7 +101,8 @@ def chain(
         From a rotation of the highest body to the height at which it starts there; unless
         given, that at which its base carries its weight.
     frictions : sequence of tuple of float
-        Coefficients of friction of each base, at rest and of slip; none where bases hold.
+        Coefficients of friction of each base, at rest, of slip and in impacts; none where all
+        bases hold, infinite where one does.
 
     Returns
     -------
@@ -101,7 +110,7 @@ def chain(
     """
     top, count = links[0].body, len(links)
     bare = chain_of(links, ties)
-    alone = with_friction(bare, frictions) if frictions else bare
+    alone = slipping(bare, frictions) if frictions else bare
     system = linked(alone, ties) if ties else alone
     fastest, damping_rate = fastest_vibration(links, ties)
     rigid = some_rigid(links)
@@ -318,7 +327,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
         system.write_contacts(mode, state, memory)
     if isinstance(system, LinkedRigidChain):
         system.keep_hold(mode, state, memory)
-    if isinstance(system, SlippingChain):
+    if isinstance(system, Slips):
         places = memory[HELD_PLACE : HELD_PLACE + count]
         memory = np.concatenate([memory, *([-place, 0.0, 0.0] for place in places)])
     if isinstance(system, ChainLinks):

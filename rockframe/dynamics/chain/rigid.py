@@ -51,8 +51,8 @@ class RigidChain(RigidCorners):
         memory[HELD_PLACE + self.body_count + ADMISSIBLE] = 1.0
 
     @inlined
-    def link_place(self) -> int:
-        """Give the place of the last event's link in the memory of a chain that has links."""
+    def behind_events(self) -> int:
+        """Give the place behind what is remembered of the last event."""
         return HELD_PLACE + self.body_count + 1 + len(KEPT)
 
     @kernel
@@ -68,7 +68,8 @@ class RigidChain(RigidCorners):
                     room[i + at.LEFT_IMPULSE + side] += rows[which * CONSTRAINT + at.FORCE]
                     self.keep_impulse(j, which, room, rows)
                     last = which
-            if last >= 0:  # the hold along the base stands behind its corners
+            # the hold along the base stands behind its corners
+            if last >= 0 and self.slip_sense(j) == 0.0:
                 self.keep_impulse(j, last + 1, room, rows)
 
     @kernel
@@ -110,13 +111,20 @@ class RigidChain(RigidCorners):
                 least, all_of_them = min(least, impulse), all_of_them + abs(impulse)
         return least < -NOISE * all_of_them
 
-    @kernel
+    @inlined
     def switch_body(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out the switch that a guard of a body calls for; give the new mode."""
-        k, count = guard // GUARDS, self.body_count
         self.begin_event(memory)
+        return self.switch_contacts(mode, guard, state, ground, memory)
+
+    @kernel
+    def switch_contacts(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Let corners part or land, or bodies change how they stand on bases that give way."""
+        k, count = guard // GUARDS, self.body_count
         contact, which = self.part_mode(mode, k).contact, guard - k * GUARDS
         left = which < CORNER_GUARDS
         if (
@@ -248,8 +256,11 @@ class RigidChain(RigidCorners):
             self.change_velocities(state)
         elif found.admissible == 0 and self.bears_alone(before, leaving):
             taken, pulled = before, pulled | leaving
+        if found.admissible == 0:
+            self.forget_slips(mode, impulsive=leaving == 0)
         new = self.with_bearing(mode, taken, pulled)
         self.hold_contacts(new, state, memory)
+        self.note_free_slips(new, state)
         memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
         memory[kept + ADMISSIBLE] = found.admissible
         memory[kept + TAKEN], memory[kept + OTHER] = taken, found.other

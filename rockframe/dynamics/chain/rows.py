@@ -79,7 +79,12 @@ IMPULSE_X: Final = 25
 IMPULSE_Y: Final = 26
 IMPULSE_MOMENT: Final = 27
 IMPULSES: Final = 5
-PLACES: Final = 28
+# of bodies that may slip on rigid bases: the sense that is tried, that in which a slip starts, and
+# the force along the base over that normal to it
+SLIPS: Final = 28
+STARTS: Final = 29
+RUBS: Final = 30
+PLACES: Final = 31
 
 # constraints, at most so many of each body; of each
 MOST_CONSTRAINTS: Final = 3

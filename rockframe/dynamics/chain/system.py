@@ -87,7 +87,7 @@ class Chain(Rows):
         count, rows = 0, self.constraints()
         for k in range(self.body_count):
             standing = self.part_mode(mode, k)
-            count = self.add_corners(k, count, standing, state, True, room, rows)
+            count = self.add_corners(k, count, mode, state, True, room, rows)
             count = self.hold_or_slide(k, count, standing, state, room, rows)
         return count
 
@@ -109,9 +109,8 @@ class Chain(Rows):
 
     @inlined
     def add_corners(
-        self, k: int, count: int, standing: Mode, state: Vector, moves: bool, room: Vector,
-        rows: Vector,
-    ) -> int:  # fmt: skip
+        self, k: int, count: int, mode: int, state: Vector, moves: bool, room: Vector, rows: Vector
+    ) -> int:
         """Add the constraints of corners on a rigid base: there are none here."""
         return count
 
@@ -302,9 +301,14 @@ class Chain(Rows):
         memory[HELD_PLACE + self.body_count] = 0.0
 
     @inlined
+    def behind_events(self) -> int:
+        """Give the place behind what is remembered of the last event."""
+        return HELD_PLACE + self.body_count + 1
+
+    @inlined
     def link_place(self) -> int:
         """Give the place of the last event's link in the memory of a chain that has links."""
-        return HELD_PLACE + self.body_count + 1
+        return self.behind_events()
 
     @inlined
     def switch_on_base(
@@ -434,8 +438,7 @@ class Chain(Rows):
         for j in range(self.body_count):
             i = j * PLACES
             room[i + at.RISE] = room[i + at.SWAY] = room[i + at.FRAME_RATE] = 0.0
-            standing = self.part_mode(mode, j)
-            count = self.add_corners(j, count, standing, state, False, room, rows)
+            count = self.add_corners(j, count, mode, state, False, room, rows)
             if room[i + at.HELD] != FREE:
                 wanted = -slip if j == k else 0.0
                 add_constraint(self, count, j, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
