@@ -136,7 +136,7 @@ class RigidCorners(Chain):
                 wanted = -coriolis_normal(i, room) - bends[side]
                 add_constraint(self, count, k, 0.0, 1.0, lever, wanted, room, rows)
                 room[i + at.LEFT_CORNER + side] = count
-                sense = self.sense_in(mode, k)
+                sense = self.sense_in(mode, k) if moves else 0.0
                 self.rub(k, count, sense, room[i + at.REACH], False, room, rows)
                 count += 1
         return count
@@ -171,7 +171,7 @@ class RigidCorners(Chain):
         return mode
 
     @inlined
-    def forget_slips(self, mode: int, *, impulsive: bool) -> None:
+    def forget_slips(self, mode: int, impulsive: bool) -> None:
         """Forget which slips were tried: none were."""
 
     @inlined

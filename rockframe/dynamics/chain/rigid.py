@@ -101,6 +101,11 @@ class RigidChain(RigidCorners):
             state[n + i] = blend(before[i], state[n + i], share)
         self.scale_impulses(share)
 
+    @inlined
+    def must_meet_anew(self) -> bool:
+        """Whether what rigid bases did in an event beside them is more than they can."""
+        return self.some_pull()
+
     @kernel
     def some_pull(self) -> bool:
         """Whether a corner on a rigid base would have had to pull in an event beside it."""
@@ -143,7 +148,7 @@ class RigidChain(RigidCorners):
             self.scale_impulses(0.0)
             new = self.switch_on_base(mode, guard, state, ground, memory)
             # a change of a held point is the rule's, and no blow: contacts stay as they are
-            if memory[LAST_EVENT] != IMPACT or not self.some_pull():
+            if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew():
                 return new
             new = self.meet_anew(new, state, ground, memory)
         for other in range(count):
@@ -257,7 +262,7 @@ class RigidChain(RigidCorners):
         elif found.admissible == 0 and self.bears_alone(before, leaving):
             taken, pulled = before, pulled | leaving
         if found.admissible == 0:
-            self.forget_slips(mode, impulsive=leaving == 0)
+            self.forget_slips(mode, leaving == 0)
         new = self.with_bearing(mode, taken, pulled)
         self.hold_contacts(new, state, memory)
         self.note_free_slips(new, state)

@@ -23,7 +23,7 @@ from rockframe.dynamics.chain.impact import (
     attempt,
     bearing_corners,
 )
-from rockframe.dynamics.chain.motion import coriolis_along, of_both, write_direction
+from rockframe.dynamics.chain.motion import FREE, coriolis_along, of_both, write_direction
 from rockframe.dynamics.chain.rigid import ADMISSIBLE, OTHER, TAKEN, RigidChain
 from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, MODES, MOST_CONSTRAINTS, PLACES
 from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, OFFSET, ROUNDING, STATIC, Slips
@@ -63,7 +63,7 @@ class SlippingRigidChain(Slips, RigidChain):
             room[k * PLACES + at.SLIPS] = self.sense_in(mode, k)
 
     @inlined
-    def forget_slips(self, mode: int, *, impulsive: bool) -> None:
+    def forget_slips(self, mode: int, impulsive: bool) -> None:
         """Go back to what slipped in a mode; nothing does where all is held in an impact."""
         self.note_slips(mode)
         if impulsive:
@@ -118,34 +118,21 @@ class SlippingRigidChain(Slips, RigidChain):
         room[i + at.RUBS] = ratio
 
     @kernel
-    def constrain(self, mode: int, state: Vector, room: Vector) -> int:
-        """Write the constraints of a mode; give how many there are."""
-        count, rows = 0, self.constraints()
-        for k in range(self.body_count):
-            standing = self.part_mode(mode, k)
-            count = self.add_corners(k, count, mode, state, True, room, rows)
-            if self.is_rigid(k) and standing.slides:
-                room[k * PLACES + at.THRUST] = 0.0
-            else:
-                count = self.hold_or_slide(k, count, standing, state, room, rows)
-        return count
-
-    @kernel
     def stand_still(self, room: Vector, out: Vector) -> None:
         """Write the friction of bodies that slip; of others take rounding from accelerations."""
         for k in range(self.body_count):
             i = k * PLACES
             left, right = room[i + at.LEFT_CORNER], room[i + at.RIGHT_CORNER]
-            if self.is_rigid(k) and (left != NONE or right != NONE):
-                slips = room[i + at.RUBS] != 0.0
-                if slips:
-                    press = self.corner_force(k, True) + self.corner_force(k, False)
-                    room[i + at.THRUST] = room[i + at.RUBS] * press
-                if left != NONE and right != NONE:
-                    first = BEFORE_HORIZONTAL * k
-                    out[first + ROTATION] = out[first + VERTICAL] = 0.0
-                    if not slips:
-                        out[self.horizontal_of(k)] = 0.0
+            if not self.is_rigid(k) or (left == NONE and right == NONE):
+                continue
+            if room[i + at.HELD] == FREE:
+                press = self.corner_force(k, True) + self.corner_force(k, False)
+                room[i + at.THRUST] = room[i + at.RUBS] * press
+            if left != NONE and right != NONE:
+                first = BEFORE_HORIZONTAL * k
+                out[first + ROTATION] = out[first + VERTICAL] = 0.0
+                if room[i + at.HELD] != FREE:
+                    out[self.horizontal_of(k)] = 0.0
 
     @kernel
     def lost_by_friction(
@@ -159,6 +146,17 @@ class SlippingRigidChain(Slips, RigidChain):
         slip, _ = self.slip_on(k, LEFT_ONLY if both else BOTH, state)
         leaned = of_both(self, k, first + at.HOLDS, room, rows) - rows[first + at.VALUE]
         return float(-rows[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
+
+    @kernel
+    def must_meet_anew(self) -> bool:
+        """Whether rigid bases that have friction, or would have to pull, did something."""
+        room = self.places()
+        for k in range(self.body_count):
+            i = k * PLACES
+            acts = room[i + at.LEFT_IMPULSE] != 0.0 or room[i + at.RIGHT_IMPULSE] != 0.0
+            if acts and self.friction_of(k, IMPULSIVE) < math.inf:
+                return True
+        return self.some_pull()
 
     # which corners bear, and what slips ------------------------------------------------------
 
@@ -296,34 +294,43 @@ class SlippingRigidChain(Slips, RigidChain):
 
     @kernel
     def hold_as_far(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode after an event in which no body is held that friction cannot hold."""
-        new, room = mode, self.places()
+        """Give the mode after an event in which friction holds what it can, and opposes slip."""
+        new, event = mode, memory[LAST_EVENT]
         for _ in range(self.body_count):
             self.accelerate(new, state, ground)
-            found = -1
+            amiss = False
             for k in range(self.body_count):
-                standing, friction = self.part_mode(new, k), self.friction_of(k, STATIC)
-                if found >= 0 or not self.is_rigid(k) or self.on_base(k).is_free(standing):
-                    continue
-                if friction == math.inf or standing.contact & PULLED != 0:
-                    continue
-                press = self.corner_force(k, True) + self.corner_force(k, False)
-                thrust, least = room[k * PLACES + at.THRUST], self.number(k, at.FORCE_SIZE)
-                if abs(thrust) > friction * max(press, 0.0) + ROUNDING * least:
-                    room[k * PLACES + at.STARTS] = -math.copysign(1.0, thrust)
-                    found = k
-            if found < 0:
+                amiss |= self.is_amiss(k, new, state)
+            if not amiss:
                 break
-            event = memory[LAST_EVENT]
-            self.note_slips(new)
             new = self.rearrange(new, state, ground, memory)
             memory[LAST_EVENT] = event
         return new
 
     @kernel
+    def is_amiss(self, k: int, mode: int, state: Vector) -> bool:
+        """Whether friction cannot hold a body that is held, or acts along the slip."""
+        part, standing = self.on_base(k), self.part_mode(mode, k)
+        if not self.is_rigid(k) or part.flies(standing.contact):
+            return False
+        if standing.slides:
+            rate, noise = self.slip_rate(k, mode, state)
+            return self.sense(mode, k) * rate < -noise
+        friction, room = self.friction_of(k, STATIC), self.places()
+        if friction == math.inf or standing.contact & PULLED != 0:
+            return False
+        press = self.corner_force(k, True) + self.corner_force(k, False)
+        thrust, least = room[k * PLACES + at.THRUST], ROUNDING * self.number(k, at.FORCE_SIZE)
+        if abs(thrust) <= friction * max(press, 0.0) + least:
+            return False
+        room[k * PLACES + at.STARTS] = -math.copysign(1.0, thrust)
+        return True
+
+    @kernel
     def rearrange(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Give the mode in which the forces have what bears and what slips as it is then."""
         kept, before = HELD_PLACE + self.body_count, self.bearing(mode)
+        self.note_slips(mode)
         flying, pulled = self.with_bearing(mode, 0, 0), self.pulled(mode)
         closed = before | self.resting_corners(mode, state)
         self.accelerate(flying, state, ground)

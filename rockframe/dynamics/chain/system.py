@@ -92,6 +92,11 @@ class Chain(Rows):
         return count
 
     @inlined
+    def is_rigid(self, k: int) -> bool:
+        """Whether a body stands on a rigid base: none does here."""
+        return False
+
+    @inlined
     def hold_or_slide(
         self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
     ) -> int:
@@ -102,7 +107,7 @@ class Chain(Rows):
             wanted = coriolis_along(i, room) + room[i + at.DRIFT]
             add_constraint(self, count, k, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
             count += 1
-        elif standing.slides:
+        elif standing.slides and not self.is_rigid(k):
             self.let_slide(k, count, standing, state, room, rows)
             count += 1
         return count
@@ -318,9 +323,11 @@ class Chain(Rows):
         k = guard // GUARDS
         new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
         for above in range(k):
-            new = disturbed(self, self.on_base(above), above, new, state)
+            if not self.is_rigid(above):
+                new = disturbed(self, self.on_base(above), above, new, state)
         for below in range(k + 1, self.body_count):
-            new = checked_sliding(self, self.on_base(below), below, new, state)
+            if not self.is_rigid(below):
+                new = checked_sliding(self, self.on_base(below), below, new, state)
         memory[HELD_PLACE + self.body_count] = k + 1.0
         return new
 
