@@ -206,11 +206,10 @@ def is_sliding(parts: Parts, options: Options) -> bool:
 def missizes(parts: Parts, options: Options) -> list[str]:
     """Give the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
-    bodies = [block] if parts.stack is None else parts.stack.bodies
     faults: list[str] = []
-    if not parts.own() and not is_sliding(parts, options):
-        known = [one for one in bodies if one is not None]
-        faults += [text for one in known for text in squat(one.si, type(one).__name__)]
+    # impacts in a stack let a squat body land flat
+    if block is not None and not parts.own() and not is_sliding(parts, options):
+        faults += squat(block.si, type(block).__name__)
     if block is not None and cap is not None:
         body = parts.the_cap
         width = 2.0 * body.half_width

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
-from rockframe.components import Component, RigidGround
+from rockframe.components import Component, RigidGround, Tendon
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.fitting import HELD, SMALL_SLIDING, Friction, friction_under
@@ -90,6 +90,11 @@ class SlidingStackSetting(StackSetting):
         """Name of the model."""
         return f"{super().model}-sliding"
 
+    def cautions(self) -> list[str]:
+        """Give warnings, also of bodies that their restrainers move at once."""
+        names = [f"body {k}" for k in range(1, len(self.bodies) + 1)]
+        return [*super().cautions(), *self.slides_at_rest(*names)]
+
     def words(self) -> Words:
         """Tell bodies and bases, and their friction."""
         told = super().words()
@@ -158,14 +163,20 @@ def _misfits_of_rigid(
             "where a body of a Stack stands on a rigid base, give friction to the rigid ones only: "
             "the others hold what is on them"
         )
-    if held.ties:
-        faults.append(
-            "bodies of a Stack that slide on rigid bases have no restrainers, tendons or loads: "
-            "give these, or friction"
-        )
+    faults += sheared(held)
     for k, friction in enumerate(found):
         if friction is not None:
             faults += [
                 f"body {k + 1}: {one}" for one in ill_posed(held.bodies[k], friction.kinetic)
             ]
     return faults
+
+
+def sheared(held: StackSetting) -> list[str]:
+    """Refuse tendons that are bent over edges that a slip moves apart."""
+    return [
+        f"{one.name}: a Tendon is bent over the edges of a duct that goes through, and a block "
+        "that slides shears it there: give the depth below the base at which it is held"
+        for one in held.ties
+        if isinstance(one.part, Tendon) and one.part.si.depth == 0.0
+    ]

@@ -83,6 +83,20 @@ class StackSetting(Setting):
                 first = k + 1
         return tuple(found)
 
+    def slides_at_rest(self, *names: str) -> list[str]:
+        """Warn of bodies, by what they are called, that their ties move on rigid bases at once."""
+        found = list[str]()
+        for k, (name, friction) in enumerate(zip(names, self.frictions, strict=True)):
+            if self.rigid[k] and math.isfinite(friction.static):
+                carried = pressed(self, k, self._tied_at_rest)
+                if abs(carried.along) > friction.static * carried.force:
+                    found.append(
+                        f"{name} slides under its restrainers and loads: at rest it needs a "
+                        f"friction of {abs(carried.along) / carried.force:.4g}, and has "
+                        f"{friction.static:.4g}"
+                    )
+        return found
+
     @property
     def link_names(self) -> tuple[str, ...]:
         """What results call the ties."""

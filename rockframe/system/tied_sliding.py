@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rockframe.components import RigidGround, Tendon
+from rockframe.components import RigidGround
 from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import friction_under
-from rockframe.system.rigid_base import pressed
 from rockframe.system.setting import SlipRange
+from rockframe.system.sliding_base import sheared
 from rockframe.system.sliding_ground import (
     friction_to_roll_over,
     ill_posed,
@@ -38,15 +38,7 @@ class TiedSlidingSetting(StackSetting):
 
     def cautions(self) -> list[str]:
         """Give warnings, also of a block that its restrainers move at once."""
-        held = pressed(self, 0, self._tied_at_rest)
-        static = self.frictions[0].static
-        if abs(held.along) <= static * held.force:
-            return super().cautions()
-        slides = (
-            f"the block slides under its restrainers and loads: at rest it needs a friction of "
-            f"{abs(held.along) / held.force:.4g}, and has {static:.4g}"
-        )
-        return [*super().cautions(), slides]
+        return [*super().cautions(), *self.slides_at_rest("the block")]
 
     def words(self) -> Words:
         """Tell the block, its links and its friction."""
@@ -101,12 +93,7 @@ def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
     found = friction_under(ground, held.options)
     if found is None:
         return held
-    faults = [
-        f"{one.name}: a Tendon is bent over the edges of a duct that goes through, and a block "
-        "that slides shears it there: give the depth below the base at which it is held"
-        for one in held.ties
-        if isinstance(one.part, Tendon) and one.part.si.depth == 0.0
-    ]
+    faults = sheared(held)
     faults += ill_posed(held.body, found.kinetic)
     if faults:
         raise AssemblyError(faults)

@@ -4,6 +4,7 @@ All else is that of a chain, on bases that hold, on rigid ones, or on those with
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from rockframe.dynamics.chain.link_rows import (
 from rockframe.dynamics.chain.linked import Linked, rows_of_links, with_room
 from rockframe.dynamics.chain.motion import place_bodies
 from rockframe.dynamics.chain.rigid import RigidChain
+from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, PLACES
 from rockframe.dynamics.chain.slips import SLIP_COLUMNS
 from rockframe.dynamics.chain.system import Chain
@@ -103,8 +105,8 @@ class LinkedChain(LinkedLists, ChainLinks):  # pyright: ignore[reportGeneralType
     __slots__ = ()
 
 
-class LinkedRigidChain(LinkedLists, ChainLinks, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
-    """The same where some bodies stand on rigid bases.
+class RestOnGround(ChainLinks):
+    """How bodies lie of which the lowest may stand on rigid ground. A mixin of systems.
 
     Forces of links are finite: impacts are those without them. While the lowest body is held on
     rigid ground, its horizontal coordinate is the place of what holds it, and does not move.
@@ -144,15 +146,25 @@ class LinkedRigidChain(LinkedLists, ChainLinks, RigidChain):  # pyright: ignore[
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; give the new mode."""
         new = self.switch_one(mode, guard, state, ground, memory)
+        if guard >= self.own_guards():
+            new = self.hold_again(new, state, ground, memory)
         self.keep_hold(new, state, memory)
         return new
 
+    @inlined
+    def hold_again(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Let what friction no longer holds slip: none slips here."""
+        return mode
 
-class LinkedSlippingChain(LinkedLists, ChainLinks, SlippingChain):  # pyright: ignore[reportGeneralTypeIssues]
-    """The same where friction holds the bodies on their bases.
 
-    What friction must hold follows from the forces of the links too.
-    """
+class LinkedRigidChain(LinkedLists, RestOnGround, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
+    """Bodies upon one another of which some stand on rigid bases, and what links them."""
+
+    __slots__ = ()
+
+
+class LinkedSlips(ChainLinks):
+    """Where the numbers are of bodies that friction holds, and of what links them. A mixin."""
 
     __slots__ = ()
 
@@ -166,6 +178,15 @@ class LinkedSlippingChain(LinkedLists, ChainLinks, SlippingChain):  # pyright: i
         """Give the number of columns of all bodies, their bases and slips."""
         return (COLUMNS + SLIP_COLUMNS) * self.body_count
 
+
+class LinkedSlippingChain(LinkedLists, LinkedSlips, SlippingChain):  # pyright: ignore[reportGeneralTypeIssues]
+    """The same where friction holds the bodies on their bases.
+
+    What friction must hold follows from the forces of the links too.
+    """
+
+    __slots__ = ()
+
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Carry out the switch that a guard calls for; give the new mode.
@@ -178,13 +199,32 @@ class LinkedSlippingChain(LinkedLists, ChainLinks, SlippingChain):  # pyright: i
         return new
 
 
+class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
+    LinkedLists, LinkedSlips, RestOnGround, SlippingRigidChain
+):
+    """The same where friction holds the bodies on their rigid bases."""
+
+    __slots__ = ()
+
+    @inlined
+    def hold_again(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Let what friction no longer holds slip: a link has broken, or a wall is touched."""
+        self.begin_slips(mode, state, memory)
+        new = self.hold_as_far(mode, state, ground, memory)
+        self.end_slips(new, state, memory)
+        return new
+
+
 def linked(chain: Chain, links: Sequence[ChainLink]) -> ChainLinks:
     """Give a chain with links."""
     law, rows = rows_of_links(links, chain.modes(), chain.body_count)
-    kind: type[LinkedChain | LinkedRigidChain | LinkedSlippingChain] = LinkedChain
-    if isinstance(chain, RigidChain):
+    if isinstance(chain, SlippingRigidChain):
+        kind: Any = LinkedSlippingRigidChain
+    elif isinstance(chain, RigidChain):
         kind = LinkedRigidChain
     elif isinstance(chain, SlippingChain):
         kind = LinkedSlippingChain
+    else:
+        kind = LinkedChain
     filled = np.concatenate([chain.rows, *rows])
     return with_room(kind(chain.body_count, len(links), law, filled), filled)

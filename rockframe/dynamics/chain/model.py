@@ -21,7 +21,7 @@ from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
 from rockframe.dynamics.chain.link_rows import ChainLink
 from rockframe.dynamics.chain.linked import Linked
-from rockframe.dynamics.chain.linked_chain import ChainLinks, LinkedRigidChain, linked
+from rockframe.dynamics.chain.linked_chain import ChainLinks, RestOnGround, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
@@ -325,7 +325,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
         system.write_contacts(mode, state, memory)
-    if isinstance(system, LinkedRigidChain):
+    if isinstance(system, RestOnGround):
         system.keep_hold(mode, state, memory)
     if isinstance(system, Slips):
         places = memory[HELD_PLACE : HELD_PLACE + count]

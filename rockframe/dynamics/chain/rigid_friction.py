@@ -269,11 +269,7 @@ class SlippingRigidChain(Slips, RigidChain):
         k, room = guard // GUARDS, self.places()
         which = guard - k * GUARDS - 2 * CORNER_GUARDS
         self.begin_event(memory)
-        self.keep_peaks(mode, state, memory)
-        for j in range(self.body_count):
-            memory[self.kept(j) + OFFSET] += self.point_of(j, mode, state, memory)
-            room[j * PLACES + at.STARTS] = 0.0
-        self.note_slips(mode)
+        self.begin_slips(mode, state, memory)
         if self.is_rigid(k) and which in (HOLD, SLIP):
             self.write_contacts(mode, state, memory)
             if which == HOLD:
@@ -288,9 +284,23 @@ class SlippingRigidChain(Slips, RigidChain):
         else:
             new = self.switch_contacts(mode, guard, state, ground, memory)
             new = self.hold_as_far(new, state, ground, memory)
-        for j in range(self.body_count):
-            memory[self.kept(j) + OFFSET] -= self.point_of(j, new, state, memory)
+        self.end_slips(new, state, memory)
         return new
+
+    @kernel
+    def begin_slips(self, mode: int, state: Vector, memory: Vector) -> None:
+        """Remember how far all bodies have slipped, and which of them slip."""
+        self.keep_peaks(mode, state, memory)
+        self.note_slips(mode)
+        for k in range(self.body_count):
+            memory[self.kept(k) + OFFSET] += self.point_of(k, mode, state, memory)
+            self.places()[k * PLACES + at.STARTS] = 0.0
+
+    @inlined
+    def end_slips(self, mode: int, state: Vector, memory: Vector) -> None:
+        """Let slips go on from what they were, of points that may be others."""
+        for k in range(self.body_count):
+            memory[self.kept(k) + OFFSET] -= self.point_of(k, mode, state, memory)
 
     @kernel
     def hold_as_far(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
