@@ -178,7 +178,10 @@ class Friction(NamedTuple):
 
     def words(self) -> str:
         """Tell the coefficients at rest and of slip."""
-        return "held" if math.isinf(self.static) else f"{self.static:.6g}, {self.kinetic:.6g}"
+        if math.isinf(self.static):
+            return "held"
+        sticks = ", held in impacts" if math.isinf(self.impulsive) else ""
+        return f"{self.static:.6g}, {self.kinetic:.6g}{sticks}"
 
 
 HELD: Final = Friction(math.inf, math.inf, math.inf)
