@@ -40,14 +40,14 @@ def draw(seed) -> Scene:
     """Draw bodies, frictions, and a motion that may move them.
 
     The bodies are those of ``rigid_pair``, the upper one narrower than the lower one by a tenth
-    at least, and less slender, so that friction is now more, now less than what tips them. One in eight
-    interfaces holds, one in six sticks in impacts.
+    at least, and less slender. One in eight interfaces holds, one in six sticks in impacts.
     """
     rng = np.random.default_rng(seed)
     pair = None
     while pair is None:
         pair = _pair(rng)
-    frictions = {key: _friction(rng) for key in INTERFACES}
+    sides = zip(INTERFACES, pair.limits, strict=True)
+    frictions = {key: _friction(rng, math.tan(min(-one, two))) for key, (one, two) in sides}
     return Scene(pair, frictions, _motion(rng, pair, frictions))
 
 
@@ -73,8 +73,11 @@ def _pair(rng: np.random.Generator) -> Pair | None:
     return Pair(lower, upper, offset) if stands else None
 
 
-def _friction(rng: np.random.Generator) -> Friction:
+def _friction(rng: np.random.Generator, slender: float) -> Friction:
+    """Draw a friction, of two in three near what tips the body, so that it slides and rocks."""
     static = float(rng.uniform(0.15, 0.9))
+    if rng.random() < 2.0 / 3.0:
+        static = min(max(slender * float(rng.uniform(0.6, 1.6)), 0.15), 0.9)
     kinetic = static * float(rng.choice([1.0, rng.uniform(0.7, 1.0)]))
     holds, sticks = rng.random() < 0.125, bool(rng.random() < 1.0 / 6.0)
     return Friction() if holds else Friction(static, kinetic, sticks)
@@ -82,8 +85,8 @@ def _friction(rng: np.random.Generator) -> Friction:
 
 def _motion(rng: np.random.Generator, pair: Pair, frictions: Frictions) -> dict[str, Any]:
     """Draw a motion by the least acceleration that moves something."""
-    (_, one), (_, two) = pair.limits
-    least = min(math.tan(min(one, two)), *(f.static for f in frictions.values())) * GRAVITY
+    least = min(math.tan(min(-one, two)) for one, two in pair.limits)
+    least = min(least, *(f.static for f in frictions.values())) * GRAVITY
     vertical = float(rng.uniform(0.2, 0.7)) * GRAVITY if rng.random() < 0.3 else 0.0
     form = str(rng.choice(["sine", "cosine", "noise"]))
     if form == "noise":

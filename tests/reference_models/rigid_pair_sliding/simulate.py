@@ -39,21 +39,14 @@ class OffTheTop(RuntimeError):
         self.time, self.run = time, run
 
 
-class Stuck(RuntimeError):
-    """No pattern goes with the forces. ``run`` is what was before."""
-
-    def __init__(self, time: float, run: "Run"):
-        super().__init__(f"no pattern of contacts is admissible at {time} s")
-        self.time, self.run = time, run
-
-
 @dataclass(frozen=True)
 class Event:
     """A change of the pattern.
 
-    ``kind`` is "uplift", "flight", "impact", "rest", "slip", "stick", "reversal", "press" (an end
-    bears again without an impact, as the ground jumps) or "overturning"; ``where`` the interface
-    that it is about, or the body that overturns; ``end`` the end that opens or closes, if one.
+    ``kind`` is "uplift", "flight", "impact", "rest", "slip", "stick", "reversal" or "overturning";
+    "held" where contacts stay that do not press, as no pattern is admissible, and "same" where
+    such ones press again, or where a pattern goes on that is not the only one. ``where`` is the
+    interface that it is about, or the body that overturns; ``end`` the end that opens or closes.
     """
 
     time: float
@@ -114,6 +107,7 @@ class _Running:
         self.slow = RESTING / pair.slowness
         self.lost, self.largest = 0.0, 0.0
         self.floor: dict = {}  # of gaps that begin at zero but for rounding
+        self.pulled = False  # contacts are held that do not press
         self.run = Run(output, np.full((output.size, 6), np.nan), np.full((output.size, 2), np.nan))
         self.shown = 0
         self.piece: Piece
@@ -171,10 +165,6 @@ class _Running:
         work -= masses[3] * (ax * speed[3] + ay * speed[4])
         return np.concatenate([speed, answer.motion, slips, [work], burnt])
 
-    def tidy(self):
-        """Put places and velocities back on what the pattern allows."""
-        self.state = self.tidied(self.state)
-
     def tidied(self, state):
         """Give a state without what steps add to it by rounding."""
         state = state.copy()
@@ -207,13 +197,16 @@ class _Running:
         pair, found, place = self.pair, {}, state[:6]
         touch, answer = self.forces(t, state)
         scale = pair.gravity * pair.upper.mass
+        if self.pulled:
+            found["let", "go", ""] = -1.0 if self._followed(t, state) else 1.0
         for name, push in answer.normal.items():
-            found["press", *name] = push / scale
+            if not self.pulled:
+                found["press", *name] = push / scale
         rates = self.slip_rates(touch, state)
         for key, bearing, rate in zip(INTERFACES, self.pattern, rates, strict=True):
             if bearing.slip:
                 found["slip", key, ""] = bearing.slip * rate
-            elif bearing.ends and not self.frictions[key].holds:
+            elif bearing.ends and not self.pulled and not self.frictions[key].holds:
                 most = self.frictions[key].static * answer.pressed(key)
                 for end, way in SIGN.items():
                     found["grip", key, end] = (most - way * answer.friction[key]) / scale
@@ -249,39 +242,46 @@ class _Running:
 
     # changes ------------------------------------------------------------------------------------
 
-    def note(self, kind, where, end, before, outcome: Outcome | None = None):
+    def note(self, kind, where, end, before, outcome: Outcome | None = None, admissible=1):
         """Keep an event."""
         if len(self.run.events) >= MOST_EVENTS:
             msg = f"too many events, at {self.now} s"
             raise RuntimeError(msg)
-        admissible, lost = (1, 0.0) if outcome is None else (outcome.admissible, outcome.lost)
+        lost = 0.0
+        if outcome is not None:
+            admissible, lost = outcome.admissible, outcome.lost
         self.run.events.append(
             Event(self.now, kind, where, end, before, self.pattern, admissible, lost)
         )
 
     def take(self, pattern: Pattern):
         """Enter a pattern."""
-        self.pattern, self.floor = pattern, {}
-        self.tidy()
+        self.pattern, self.floor, self.pulled = pattern, {}, False
+        self.state = self.tidied(self.state)
+
+    def _followed(self, t, state, ended: Ended | None = None) -> Outcome | None:
+        """Give the pattern that the forces ask for."""
+        before, moving = self.pattern, {}
+        touch = self.touch(state[:6], state[6:12])
+        for key, bearing in zip(INTERFACES, before, strict=True):
+            moving[key] = 0
+            if bearing.slip:
+                rate = touch.along(key, bearing.ends[0], state[6:12], False)
+                moving[key] = bearing.slip if bearing.slip * rate > GONE else 0
+        return follow(touch, before, moving, self.piece.across(t), self.piece.up(t), ended)
 
     def settle(self, ended: Ended | None = None):
         """Let contacts open, slip and hold as the forces demand."""
-        across, up = self.piece.across(self.now), self.piece.up(self.now)
-        before, moving = self.pattern, {}
-        touch = self.touch(self.place, self.speed)
-        for key, bearing in zip(INTERFACES, before, strict=True):
-            moving[key] = bearing.slip
-            if bearing.slip:
-                rate = touch.along(key, bearing.ends[0], self.speed, False)
-                moving[key] = bearing.slip if bearing.slip * rate > GONE else 0
-        found = follow(touch, before, moving, across, up, ended)
-        if found is None and ended is not None:
-            found = follow(touch, before, moving, across, up)
+        found = self._followed(self.now, self.state, ended)
         if found is None:
-            raise Stuck(self.now, self.run)
-        if found.pattern == before:
-            if found.admissible != 1:
-                self.note("same", "", "", before, found)
+            # no pattern does: hold what touches, though it does not press
+            if not self.pulled:
+                self.pulled = True
+                key, end = ("", "") if ended is None else ended
+                self.note("held", key, end, self.pattern, admissible=0)
+            return
+        before, pulled = self.pattern, self.pulled
+        if found.pattern == before and not pulled and found.admissible == 1:
             return
         self.take(found.pattern)
         self.note(*_change(before, found.pattern), before, found)
@@ -427,9 +427,11 @@ class _Running:
                 if solver.t < stop:
                     self.step = solver.step_size
                 dense = solver.dense_output()
+                kept = dict(armed)
                 hit, again = self._first(solver, dense, armed)
                 if again:
                     # a guard that began at zero is negative: look more closely
+                    armed = kept
                     cut *= 0.125
                     break
                 cut = 1.0
@@ -462,6 +464,8 @@ class _Running:
                     if solver.t - solver.t_old < 1e-10 * self.pair.slowness:
                         return (solver.t, name), False
                     return None, True
+            if fired and i == 0:
+                return (solver.t_old, fired[0]), False
             if fired:
                 found = [
                     (brentq(lambda t, n=n: self.guards(t, dense(t))[n], looks[i - 1], looks[i],
@@ -498,6 +502,8 @@ class _Running:
             self.settle(Ended(key, end))
         elif kind == "grip":
             self.settle(Ended(key))
+        elif kind == "let":
+            self.settle()
         elif kind == "slip":
             self.stop_slip(key)
         else:
@@ -514,12 +520,12 @@ def _change(before: Pattern, after: Pattern) -> tuple[str, str, str]:
             kind = "uplift" if two.ends else "flight"
             return kind, key, gone[0] if len(gone) == 1 else ""
     for key, one, two in both:
-        if one.ends != two.ends:
-            return "press", key, ""
-    for key, one, two in both:
         if one.slip and one.slip != two.slip:
             return ("reversal" if two.slip else "stick"), key, ""
-    return "slip", next(key for key, one, two in both if one != two), ""
+    for key, one, two in both:
+        if one != two:
+            return "slip", key, ""
+    return "same", "", ""
 
 
 def simulate(scene: Scene, output_step: float = 0.01, **options) -> Run:
@@ -568,8 +574,6 @@ def simulate_pair(
         The upper base does not stand within the top of the lower body.
     OffTheTop
         It leaves it.
-    Stuck
-        No pattern goes with the forces.
     """
     if abs(pair.offset) + pair.upper.half_width > pair.lower.half_width * (1.0 + 1e-12):
         msg = "the upper base must stand within the top of the lower body"
@@ -582,22 +586,33 @@ def simulate_pair(
     if start is not None:
         now.pattern = start[0]
         now.state[:6], now.state[6:12] = start[1], start[2]
-        now.tidy()
+        now.state = now.tidied(now.state)
         now.peak(now.state)
     now.start = now.energy()
-    goes_on, before = True, np.full(2, np.inf)
+    try:
+        _go(now, pieces)
+    finally:
+        _finish(now, output)
+    return now.run
+
+
+def _go(now: _Running, pieces: Sequence[Piece]) -> None:
+    """Run through the pieces of the ground motion."""
+    before = np.full(2, np.inf)
     for piece in pieces:
         now.piece = piece
-        if not goes_on:
-            break
         values = np.array([piece.across(piece.start), piece.up(piece.start)])
-        if np.any(np.abs(values - before) > 1e-9 * pair.gravity):
+        if np.any(np.abs(values - before) > 1e-9 * now.pair.gravity):
             now.settle()  # the ground acceleration jumps here
         before = np.array([piece.across(piece.stop), piece.up(piece.stop)])
-        while goes_on and now.now < piece.stop:
+        while now.now < piece.stop:
             name = now.wait(piece.stop) if now.rests() else now.advance(piece.stop)
-            if name is not None:
-                goes_on = now.answer(name)
+            if name is not None and not now.answer(name):
+                return
+
+
+def _finish(now: _Running, output) -> None:
+    """Keep what the end of a run gives."""
     run = now.run
     run.end, run.final = now.now, now.state
     run.energies = {
@@ -607,5 +622,3 @@ def simulate_pair(
     run.imbalance /= max(now.largest, 1e-300)
     run.time, run.place = output[: now.shown], run.place[: now.shown]
     run.slip = run.slip[: now.shown]
-    return run
-
