@@ -32,12 +32,16 @@ class Answer(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """The pattern that follows, how many different motions are admissible, and the energy lost."""
+    """The pattern that follows, how many different motions are admissible, and the energy lost.
+
+    ``others`` are the admissible patterns that were not taken.
+    """
 
     pattern: Pattern
     answer: Answer
     admissible: int
     lost: float = 0.0
+    others: tuple[Pattern, ...] = ()
 
 
 class Touch:
@@ -158,8 +162,9 @@ def strike(pair: Pair, frictions: Frictions, place, speed, touching: Touching) -
     if not found:
         pattern, answer = hooked_strike(touch)
         return Outcome(pattern, answer, 0, before - 0.5 * float(masses @ answer.motion**2))
-    lost, pattern, answer = min(found, key=lambda one: one[0])
-    return Outcome(pattern, answer, len(found), lost)
+    found.sort(key=lambda one: one[0])
+    lost, pattern, answer = found[0]
+    return Outcome(pattern, answer, len(found), lost, tuple(one[1] for one in found[1:]))
 
 
 def _sizes(pair: Pair, speed, energy: float) -> tuple[float, float]:
@@ -288,7 +293,7 @@ def follow(
             continue
         if not any(np.max(np.abs(answer.motion - one.motion)) < 1e-7 * size for _, one in kept):
             kept.append((pattern, answer))
-    return Outcome(*kept[0], len(kept))
+    return Outcome(*kept[0], len(kept), others=tuple(one[0] for one in kept[1:]))
 
 
 def _again(pattern: Pattern, ended: Ended) -> bool:

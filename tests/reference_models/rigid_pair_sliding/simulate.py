@@ -57,6 +57,7 @@ class Event:
     after: Pattern
     admissible: int = 1
     lost: float = 0.0
+    others: tuple[Pattern, ...] = ()
 
 
 @dataclass
@@ -247,11 +248,11 @@ class _Running:
         if len(self.run.events) >= MOST_EVENTS:
             msg = f"too many events, at {self.now} s"
             raise RuntimeError(msg)
-        lost = 0.0
+        lost, others = 0.0, ()
         if outcome is not None:
-            admissible, lost = outcome.admissible, outcome.lost
+            admissible, lost, others = outcome.admissible, outcome.lost, outcome.others
         self.run.events.append(
-            Event(self.now, kind, where, end, before, self.pattern, admissible, lost)
+            Event(self.now, kind, where, end, before, self.pattern, admissible, lost, others)
         )
 
     def take(self, pattern: Pattern):
@@ -311,7 +312,11 @@ class _Running:
             level = abs(angle) < LEVEL and abs(rate) < 1e3 * self.slow
             touching[key] = ENDS if level else (end,)
         closed = Pattern(*(Bearing(touching[one], 1) for one in INTERFACES))
+        high = self.pair.gravity * self.pair.weights @ self.place
         self.state[:6] = tidied(self.pair, closed, self.place)
+        if not before[INTERFACES.index(key)].ends and len(touching[key]) == 2:
+            # laid down from hardly any height
+            self.lost += high - self.pair.gravity * self.pair.weights @ self.place
         outcome = strike(self.pair, self.frictions, self.place, self.speed, touching)
         self.lost += outcome.lost
         self.state[6:12] = outcome.answer.motion
