@@ -5,8 +5,8 @@ from itertools import combinations, product
 from typing import NamedTuple
 
 import numpy as np
+from reference_models.rigid_pair.pair import Pair
 
-from ..rigid_pair.pair import Pair
 from .contacts import INTERFACES, Bearing, Contact, Friction, Pattern, contact
 
 SMALL = 1e-10
@@ -123,8 +123,6 @@ class Touch:
         return np.array([-across, -g, 0.0, -across, -g, 0.0])
 
 
-
-
 def patterns(touching: Touching, senses: dict[str, tuple[int, ...]]) -> list[Pattern]:
     """Give all patterns of touching ends and of the senses that each interface may slip in."""
     found = []
@@ -209,7 +207,7 @@ def hooked_strike(touch: Touch) -> tuple[Pattern, Answer]:
         size = max((abs(one) for one in pushes), default=0.0) + 1e-300
         quick = float(np.max(np.abs(speed)))
         faults = [-push / size for push in answer.normal.values()]
-        for (key, end), _ in touch.contacts.items():
+        for key, end in touch.contacts:
             bearing = pattern[INTERFACES.index(key)]
             if end not in bearing.ends:
                 faults.append(-touch.opening((key, end), answer.motion, False) / quick)
@@ -238,7 +236,11 @@ class Ended(NamedTuple):
 
 
 def follow(
-    touch: Touch, before: Pattern, moving: dict[str, int], across: float, up: float,
+    touch: Touch,
+    before: Pattern,
+    moving: dict[str, int],
+    across: float,
+    up: float,
     ended: Ended | None = None,
 ) -> Outcome | None:
     """Give the pattern whose accelerations go with its forces.

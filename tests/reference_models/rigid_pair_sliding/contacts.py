@@ -4,8 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-
-from ..rigid_pair.pair import ENDS, SIGN, Pair, turned
+from reference_models.rigid_pair.pair import ENDS, SIGN, Pair, turned
 
 INTERFACES = ("ground", "joint")
 

@@ -4,11 +4,11 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from reference_models.rigid_pair import drawing
+from reference_models.rigid_pair.drawing import log_between
+from reference_models.rigid_pair.ground import Piece, pieces_of, still
+from reference_models.rigid_pair.pair import GRAVITY, Body, Pair
 
-from ..rigid_pair import drawing
-from ..rigid_pair.drawing import log_between
-from ..rigid_pair.ground import Piece, pieces_of, still
-from ..rigid_pair.pair import GRAVITY, Body, Pair
 from .choices import Frictions
 from .contacts import INTERFACES, Friction
 

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from reference_models.rigid_pair.ground import Piece
+from reference_models.rigid_pair.pair import ENDS, SIGN, Pair
+from reference_models.rigid_pair.simulate import LEVEL, LOOKS, MOST_EVENTS, RESTING
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
-from ..rigid_pair.ground import Piece
-from ..rigid_pair.pair import ENDS, SIGN, Pair
-from ..rigid_pair.simulate import LEVEL, LOOKS, MOST_EVENTS, RESTING
 from .choices import Ended, Frictions, Outcome, Touch, follow, strike
 from .contacts import (
     INTERFACES,
@@ -31,7 +31,7 @@ STATE = 17
 """Six places, six velocities, slips of ground and joint, work of the ground, of both frictions."""
 
 
-class OffTheTop(RuntimeError):
+class OffTheTopError(RuntimeError):
     """An end of the upper base leaves the top of the lower body. ``run`` is what was before."""
 
     def __init__(self, time: float, run: "Run"):
@@ -107,6 +107,8 @@ class _Running:
         self.now, self.step, self.longest = 0.0, 0.01 * pair.slowness, longest
         self.slow = RESTING / pair.slowness
         self.lost, self.largest = 0.0, 0.0
+        self.least = np.full(STATE, 1e-14)  # absolute tolerances
+        self.least[14:] *= pair.gravity * pair.weights @ self.state[:6]
         self.floor: dict = {}  # of gaps that begin at zero but for rounding
         self.pulled = False  # contacts are held that do not press
         self.run = Run(output, np.full((output.size, 6), np.nan), np.full((output.size, 2), np.nan))
@@ -340,7 +342,9 @@ class _Running:
                 return
             closed = {key: before[INTERFACES.index(key)]._replace(ends=ENDS) for key in some}
             pattern = before._replace(**closed)
-            speed = self.projected(pattern, self.place, self.speed)
+            # of many small bounces normal impulses and friction add up to these
+            touch = self.touch(self.place, self.speed, self.touching(pattern))
+            speed = touch.solve(pattern, self.speed, turning=False).motion
             touch = self.touch(self.place, speed, self.touching(pattern))
             moving = dict(zip(INTERFACES, (one.slip for one in pattern), strict=True))
             found = follow(touch, pattern, moving, across, up)
@@ -421,7 +425,7 @@ class _Running:
         while self.now < stop:
             solver = DOP853(
                 self.slopes, self.now, self.state, stop, max_step=self.longest * cut,
-                rtol=self.accuracy, atol=1e-14,
+                rtol=self.accuracy, atol=self.least,
                 first_step=min(self.step, self.longest, stop - self.now) * cut,
             )  # fmt: skip
             while solver.status == "running":
@@ -502,7 +506,7 @@ class _Running:
             self.note("overturning", key, end, self.pattern)
             return False
         if kind == "off":
-            raise OffTheTop(self.now, self.run)
+            raise OffTheTopError(self.now, self.run)
         if kind == "press":
             self.settle(Ended(key, end))
         elif kind == "grip":
@@ -577,7 +581,7 @@ def simulate_pair(
     ------
     ValueError
         The upper base does not stand within the top of the lower body.
-    OffTheTop
+    OffTheTopError
         It leaves it.
     """
     if abs(pair.offset) + pair.upper.half_width > pair.lower.half_width * (1.0 + 1e-12):
