@@ -23,7 +23,8 @@ from reference_models.rigid_pair_sliding.contacts import (
     tidied,
 )
 from reference_models.rigid_pair_sliding.drawing import draw
-from reference_models.rigid_pair_sliding.simulate import OffTheTopError, simulate, simulate_pair
+from reference_models.rigid_pair_sliding.events import OffTheTopError
+from reference_models.rigid_pair_sliding.simulate import simulate, simulate_pair
 
 pytestmark = pytest.mark.reference_models
 

@@ -23,11 +23,8 @@ if __package__ in (None, ""):
 from reference_models.rigid_pair import compare as held  # noqa: E402
 from reference_models.rigid_pair_sliding.contacts import Friction  # noqa: E402
 from reference_models.rigid_pair_sliding.drawing import FREE, STEP, Scene, draw  # noqa: E402
-from reference_models.rigid_pair_sliding.simulate import (  # noqa: E402
-    OffTheTopError,
-    Run,
-    simulate,
-)
+from reference_models.rigid_pair_sliding.events import OffTheTopError, Run  # noqa: E402
+from reference_models.rigid_pair_sliding.simulate import simulate  # noqa: E402
 
 import rockframe as rf  # noqa: E402
 from rockframe.dynamics.events import EventKind  # noqa: E402

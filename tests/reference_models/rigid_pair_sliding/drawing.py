@@ -40,7 +40,8 @@ def draw(seed) -> Scene:
     """Draw bodies, frictions, and a motion that may move them.
 
     The bodies are those of ``rigid_pair``, the upper one narrower than the lower one by a tenth
-    at least, and less slender. One in eight interfaces holds, one in six sticks in impacts.
+    at least, and some too squat to rock. One in eight interfaces holds, one in six sticks in
+    impacts.
     """
     rng = np.random.default_rng(seed)
     pair = None
@@ -54,7 +55,7 @@ def draw(seed) -> Scene:
 def _pair(rng: np.random.Generator) -> Pair | None:
     bodies, width = [], float(rng.uniform(0.6, 2.0))
     for _ in range(2):
-        height = width * log_between(rng, 0.4, 4.0)
+        height = width * log_between(rng, 0.6, 4.0)
         mass = 2000.0 * width * height * log_between(rng, 0.5, 2.0)
         body = Body.uniform(width, height, mass)
         if rng.random() < 1.0 / 3.0:
