@@ -21,9 +21,9 @@ if __package__ in (None, ""):
     sys.path.append(str(HERE.parents[3]))
 
 from reference_models.rigid_pair import compare as held  # noqa: E402
-from reference_models.rigid_pair_sliding.contacts import Friction  # noqa: E402
+from reference_models.rigid_pair_sliding.contacts import INTERFACES, Friction  # noqa: E402
 from reference_models.rigid_pair_sliding.drawing import FREE, STEP, Scene, draw  # noqa: E402
-from reference_models.rigid_pair_sliding.events import OffTheTopError, Run  # noqa: E402
+from reference_models.rigid_pair_sliding.events import Event, OffTheTopError, Run  # noqa: E402
 from reference_models.rigid_pair_sliding.simulate import simulate  # noqa: E402
 
 import rockframe as rf  # noqa: E402
@@ -60,26 +60,33 @@ class Compared:
     ours: list
     all_ours: list
     theirs: list
+    off: bool  # the reference ends, as the upper base leaves the top
 
     @property
     def same_verdict(self) -> bool:
-        """Whether both overturn or neither does."""
-        return bool(self.package["overturned"]) == self.reference.overturned
+        """Whether both overturn or neither does, as far as the reference goes."""
+        return self.off or bool(self.package["overturned"]) == self.reference.overturned
 
     @property
     def missing(self) -> list:
         """What the reference has and the package has not, at the same time."""
-        return [one for one in self.ours if not _has(self.theirs, one)]
+        return [one for one in self.ours if not _at(self.theirs, one)]
 
     @property
     def added(self) -> list:
         """What the package has and the reference has not."""
-        return [one for one in self.theirs if not _has(self.all_ours, one)]
+        return [one for one in self.theirs if not _at(self.all_ours, one)]
+
+    @property
+    def renamed(self) -> list:
+        """What both have, by names of which none is the same."""
+        both = [(one, _at(self.theirs, one)) for one in self.ours]
+        return [(*one, what) for one, what in both if what and not what & one[1]]
 
 
-def _has(instants: list, wanted) -> bool:
-    """Tell whether one of some instants is that of another, with something that is the same."""
-    return any(abs(t - wanted[0]) < TOGETHER and what & wanted[1] for t, what in instants)
+def _at(instants: list, wanted) -> set:
+    """Give all that is said to happen at a time."""
+    return set().union(*(what for t, what in instants if abs(t - wanted[0]) < TOGETHER))
 
 
 def ground_of(friction: Friction) -> rf.RigidGround:
@@ -114,7 +121,7 @@ def instants(events, until: float) -> list:
     """Gather events, as time and what, by the instants before a time."""
     found: list = []
     for time, what in events:
-        if time >= until:
+        if time > until:
             break
         if found and time - found[-1][0] < SOON:
             found[-1][1].add(what)
@@ -123,17 +130,32 @@ def instants(events, until: float) -> list:
     return found
 
 
+def changes_of(event: Event) -> list:
+    """Give what an event is, as kind and body, with all that changes besides."""
+    found = [(KINDS[event.kind], BODIES[key]) for key in event.where.split("+")]
+    if event.kind == "overturning":
+        return [("OVERTURNING", body) for body in (1, 2)]  # both may, at once
+    for key, one, two in zip(INTERFACES, event.before, event.after, strict=True):
+        if set(one.ends) - set(two.ends):
+            found.append(("UPLIFT" if two.ends else "SEPARATION", BODIES[key]))
+        if two.ends and one.slip != two.slip:
+            kind = "STICK" if not two.slip else "SLIP_REVERSAL" if one.slip else "SLIP"
+            found.append((kind, BODIES[key]))
+    return found
+
+
 def compared(scene: Scene, accuracy: str = "reference") -> Compared:
     """Run a scene by both."""
+    off = False
     try:
         reference = simulate(scene, OUTPUT)
     except OffTheTopError as fault:
-        reference = fault.run
+        reference, off = fault.run, True
     package = system_of(scene).simulate(
         motion_of(scene.motion), free_vibration=f"{FREE!r} s", accuracy=accuracy,
         output_step=f"{OUTPUT!r} s",
     )  # fmt: skip
-    until = min(reference.unique_until, reference.end)
+    until = min(np.nextafter(reference.unique_until, 0.0), reference.end + TOGETHER)
     count = min(len(reference.time), package.sizes["time"])
     within = reference.time[:count] < until
     differences = []
@@ -147,7 +169,7 @@ def compared(scene: Scene, accuracy: str = "reference") -> Compared:
         apart = float(np.max(np.abs(ours - theirs), initial=0.0)) / largest
         differences.append(math.inf if math.isnan(apart) else apart)
     named = [e for e in reference.events if e.kind in KINDS]
-    ours = [(e.time, (KINDS[e.kind], BODIES[key])) for e in named for key in e.where.split("+")]
+    ours = [(e.time, what) for e in named for what in changes_of(e)]
     strongest = max((e.lost for e in named), default=0.0)
     bounces = [e.time for e in named if e.kind in ("impact", "rest")]
     counted = [e.time for e in named if e.kind == "impact" and e.lost > SLIGHT * strongest]
@@ -164,7 +186,7 @@ def compared(scene: Scene, accuracy: str = "reference") -> Compared:
     all_ours = instants(ours, until)
     return Compared(
         reference, package, until, *differences, [one for one in all_ours if one[0] not in slight],
-        all_ours, instants(theirs, until),
+        all_ours, instants(theirs, until), off,
     )  # fmt: skip
 
 
@@ -174,7 +196,8 @@ def tell(number: int, one: Compared) -> None:
     print(
         number, f"rotation {one.rotation:.1e} of {run.peaks.max():.1e}",
         f"slip {one.slip:.1e} of {run.peak_slips.max():.1e}",
-        f"instants {len(one.ours)}, missing {len(one.missing)}, added {len(one.added)}",
+        f"instants {len(one.ours)}, missing {len(one.missing)}, added {len(one.added)}, "
+        f"renamed {len(one.renamed)}",
         "" if math.isinf(run.unique_until) else f"unique until {run.unique_until:.6f}",
         "" if one.same_verdict else "OTHER VERDICT", flush=True,
     )  # fmt: skip
@@ -200,13 +223,15 @@ def table_of(seed: int, numbers) -> dict:
         "refused": len(refused),
         "agree": len(scenes) - len(beyond),
         "median": float(f"{np.median([max(one.rotation, one.slip) for one in scenes]):.1e}"),
-        "same events": sum(not one.missing and not one.added for one in scenes),
+        "same events": sum(not (o.missing or o.added or o.renamed) for o in scenes),
         "instants": sum(len(one.ours) for one in scenes),
         "missing": sum(len(one.missing) for one in scenes),
         "added": sum(len(one.added) for one in scenes),
+        "renamed": sum(len(one.renamed) for one in scenes),
         "sliding": sum(bool(one.reference.peak_slips.max() > 1e-6) for one in scenes),
         "rocking": sum(bool(one.reference.peaks.max() > 1e-6) for one in scenes),
         "overturning": sum(one.reference.overturned for one in scenes),
+        "left the top": sum(one.off for one in scenes),
         "in flight": sum(any(e.kind == "flight" for e in o.reference.events) for o in scenes),
         "unique to the end": sum(math.isinf(one.reference.unique_until) for one in scenes),
         "verdicts agree where unique": sum(
@@ -230,6 +255,7 @@ def main() -> None:
             one = compared(draw([given.seed, number]))
             tell(number, one)
             print("    missing", one.missing[:3], "added", one.added[:3])
+            print("    renamed", one.renamed[:3])
         return
     print(json.dumps(table_of(given.seed, range(given.scenes)), indent=1))
 
