@@ -1,0 +1,332 @@
+"""The forces of a pattern, and which pattern follows an event: all of them are tried."""
+
+import math
+from itertools import combinations, product
+from typing import NamedTuple
+
+import numpy as np
+from reference_models.rigid_pair.pair import Pair
+
+from .contacts import INTERFACES, Bearing, Contact, Friction, Pattern, contact
+
+SMALL = 1e-10
+"""What counts as no push and no speed in an impact, as a share of the largest there is."""
+SLIGHT = 1e-9
+"""What counts as no push and no acceleration, as a share of gravity's."""
+
+Frictions = dict[str, Friction]
+Touching = dict[str, tuple[str, ...]]
+"""Of the ground and of the joint, the ends that touch."""
+
+
+class Answer(NamedTuple):
+    """Accelerations, or velocities after an impact, with the forces or impulses that give them."""
+
+    motion: np.ndarray
+    normal: dict[tuple[str, str], float]
+    friction: dict[str, float]
+
+    def pressed(self, key: str) -> float:
+        """Give the sum of the normal forces of an interface."""
+        return sum(push for (one, _), push in self.normal.items() if one == key)
+
+
+class Outcome(NamedTuple):
+    """The pattern that follows, how many different motions are admissible, and the energy lost.
+
+    ``others`` are the admissible patterns that were not taken.
+    """
+
+    pattern: Pattern
+    answer: Answer
+    admissible: int
+    lost: float = 0.0
+    others: tuple[Pattern, ...] = ()
+
+
+class Touch:
+    """All ends that touch, with their rows at one instant."""
+
+    def __init__(self, pair: Pair, frictions: Frictions, place, speed, touching: Touching):
+        self.pair, self.frictions, self.touching = pair, frictions, touching
+        self.speed = np.asarray(speed, dtype=float)
+        self.inverse = 1.0 / pair.masses
+        self.contacts: dict[tuple[str, str], Contact] = {
+            (key, end): contact(pair, place, speed, key, end)
+            for key in INTERFACES
+            for end in touching[key]
+        }
+
+    def solve(self, pattern: Pattern, motion, turning: bool, hooked=()) -> Answer:
+        """Add forces to a motion so that bearing ends stay, held interfaces too.
+
+        Parameters
+        ----------
+        pattern : Pattern
+        motion : numpy.ndarray
+            Accelerations without contacts, or velocities before an impact.
+        turning : bool
+            Whether accelerations are meant, which turning adds to.
+        hooked : tuple of str
+            Interfaces that are held along themselves although nothing may press there.
+        """
+        wanted, pushes, stays, names = [], [], [], []
+        for key, bearing in zip(INTERFACES, pattern, strict=True):
+            drag = bearing.slip * self.frictions[key].kinetic if bearing.slip else 0.0
+            for end in bearing.ends:
+                one = self.contacts[key, end]
+                wanted.append(one.normal)
+                stays.append(one.turns[1])
+                pushes.append([n - drag * t for n, t in zip(one.normal, one.along, strict=True)])
+                names.append((key, end))
+            if bearing.slip == 0 and (bearing.ends or key in hooked):
+                one = self.contacts[key, (bearing.ends or self.touching[key])[0]]
+                wanted.append(one.along)
+                stays.append(one.turns[0])
+                pushes.append(one.along)
+                names.append((key, ""))
+        if not names:
+            return Answer(motion, {}, {})
+        rows, forces = np.array(wanted), np.array(pushes)
+        offset = rows @ motion + (np.array(stays) if turning else 0.0)
+        # rows of bodies that differ in mass, made alike
+        size = 1.0 / np.sqrt((rows * rows) @ self.inverse)
+        scaled, spread = rows * size[:, None], (forces * size[:, None]) * self.inverse
+        found = np.linalg.solve(scaled @ spread.T, -offset * size)
+        answer = motion + spread.T @ found
+        found = found * size
+        normal, friction = {}, {}
+        for (key, end), force in zip(names, found, strict=True):
+            if end:
+                normal[key, end] = float(force)
+            else:
+                friction[key] = float(force)
+        one = Answer(answer, normal, friction)
+        for key, bearing in zip(INTERFACES, pattern, strict=True):
+            if bearing.slip:
+                friction[key] = -bearing.slip * self.frictions[key].kinetic * one.pressed(key)
+        return one
+
+    def opening(self, name, motion, turning: bool) -> float:
+        """Give how fast an end leaves its surface."""
+        one = self.contacts[name]
+        return float(np.dot(one.normal, motion)) + (one.turns[1] if turning else 0.0)
+
+    def along(self, key: str, end: str, motion, turning: bool) -> float:
+        """Give how fast an end goes along its surface."""
+        one = self.contacts[key, end]
+        return float(np.dot(one.along, motion)) + (one.turns[0] if turning else 0.0)
+
+    def fall(self, across: float, up: float) -> np.ndarray:
+        """Give the accelerations of bodies that nothing touches."""
+        g = self.pair.gravity + up
+        return np.array([-across, -g, 0.0, -across, -g, 0.0])
+
+
+def patterns(touching: Touching, senses: dict[str, tuple[int, ...]]) -> list[Pattern]:
+    """Give all patterns of touching ends and of the senses that each interface may slip in."""
+    found = []
+    for key in INTERFACES:
+        ends = touching[key]
+        some = [one for count in (2, 1) for one in combinations(ends, count)]
+        found.append([Bearing(one, sense) for one in some for sense in senses[key]] + [Bearing()])
+    return [Pattern(*one) for one in product(*found)]
+
+
+def strike(pair: Pair, frictions: Frictions, place, speed, touching: Touching) -> Outcome:
+    """Give what follows a plastic impact in which all touching ends take part.
+
+    Ends that bear stop, those that do not part. Each interface is held if |T| <= mu_k N, or slips
+    after the impact against T = mu_k N (Moreau 1988). Of several motions it is the one that loses
+    least energy. Where nothing slips there may be none; then as `hooked_strike`.
+    """
+    touch = Touch(pair, frictions, place, speed, touching)
+    senses = {key: (0,) if frictions[key].sticks else (0, 1, -1) for key in INTERFACES}
+    masses, speed = pair.masses, touch.speed
+    before = 0.5 * float(masses @ speed**2)
+    push, quick = _sizes(pair, speed, before)
+    found: list[tuple[float, Pattern, Answer]] = []
+    for pattern in patterns(touching, senses):
+        try:
+            answer = touch.solve(pattern, speed, turning=False)
+        except np.linalg.LinAlgError:
+            continue
+        if min(answer.normal.values(), default=0.0) < -push:
+            continue
+        if not _fits(touch, pattern, answer, push, quick):
+            continue
+        if not any(np.max(np.abs(answer.motion - one[2].motion)) < 100.0 * quick for one in found):
+            found.append((before - 0.5 * float(masses @ answer.motion**2), pattern, answer))
+    if not found:
+        pattern, answer = hooked_strike(touch)
+        return Outcome(pattern, answer, 0, before - 0.5 * float(masses @ answer.motion**2))
+    found.sort(key=lambda one: one[0])
+    lost, pattern, answer = found[0]
+    return Outcome(pattern, answer, len(found), lost, tuple(one[1] for one in found[1:]))
+
+
+def _sizes(pair: Pair, speed, energy: float) -> tuple[float, float]:
+    """Give what counts as no impulse and no velocity."""
+    heavy, light = max(pair.masses[[0, 3]]), min(pair.masses[[0, 3]])
+    quick = SMALL * math.sqrt(2.0 * energy / heavy) + 1e-300
+    push = quick * light
+    arm = math.hypot(pair.upper.half_width, pair.upper.below)
+    return push, max(quick, SMALL * arm * float(np.max(np.abs(speed[[2, 5]]))))
+
+
+def _fits(touch: Touch, pattern: Pattern, answer: Answer, push: float, quick: float) -> bool:
+    """Tell whether ends part that do not bear, and friction is as Coulomb has it."""
+    for key, bearing in zip(INTERFACES, pattern, strict=True):
+        for end in touch.touching[key]:
+            if end not in bearing.ends and touch.opening((key, end), answer.motion, False) < -quick:
+                return False
+        if not bearing.ends:
+            continue
+        if bearing.slip:
+            if bearing.slip * touch.along(key, bearing.ends[0], answer.motion, False) < -quick:
+                return False
+        elif not touch.frictions[key].sticks:
+            most = touch.frictions[key].kinetic * answer.pressed(key)
+            if abs(answer.friction[key]) > most + push:
+                return False
+    return True
+
+
+def hooked_strike(touch: Touch) -> tuple[Pattern, Answer]:
+    """Give the impact in which interfaces that stick do so although nothing presses there."""
+    hooked = tuple(k for k in INTERFACES if touch.frictions[k].sticks and touch.touching[k])
+    senses = {key: (0,) if touch.frictions[key].sticks else (0, 1, -1) for key in INTERFACES}
+    best = None
+    speed = touch.speed
+    for pattern in patterns(touch.touching, senses):
+        try:
+            answer = touch.solve(pattern, speed, turning=False, hooked=hooked)
+        except np.linalg.LinAlgError:
+            continue
+        pushes = [*answer.normal.values(), *answer.friction.values()]
+        size = max((abs(one) for one in pushes), default=0.0) + 1e-300
+        quick = float(np.max(np.abs(speed)))
+        faults = [-push / size for push in answer.normal.values()]
+        for key, end in touch.contacts:
+            bearing = pattern[INTERFACES.index(key)]
+            if end not in bearing.ends:
+                faults.append(-touch.opening((key, end), answer.motion, False) / quick)
+        for key, bearing in zip(INTERFACES, pattern, strict=True):
+            if bearing.slip:
+                going = touch.along(key, bearing.ends[0], answer.motion, False)
+                faults.append(-bearing.slip * going / quick)
+            elif bearing.ends and not touch.frictions[key].sticks:
+                most = touch.frictions[key].kinetic * answer.pressed(key)
+                faults.append((abs(answer.friction[key]) - most) / size)
+        fault = max(faults, default=0.0)
+        if best is None or fault < best[0] - 1e-12:
+            best = fault, pattern, answer
+    assert best is not None
+    if best[0] > 1e-8:
+        msg = f"no impulses stop the bodies, {best[0]:.1e}"
+        raise ArithmeticError(msg)
+    return best[1], best[2]
+
+
+class Ended(NamedTuple):
+    """What an event has ended: an end that bore, or an interface that was held."""
+
+    key: str
+    end: str = ""  # of an end that bears no longer
+
+
+def follow(
+    touch: Touch,
+    before: Pattern,
+    moving: dict[str, int],
+    across: float,
+    up: float,
+    ended: Ended | None = None,
+) -> Outcome | None:
+    """Give the pattern whose accelerations go with its forces.
+
+    Of several the one with fewest ends changed, then the one that holds most.
+
+    Parameters
+    ----------
+    touch : Touch
+    before : Pattern
+    moving : dict
+        Senses in which interfaces slip already, 0 without slip.
+    across, up : float
+        Ground acceleration [m/s²].
+    ended : Ended, optional
+
+    Returns
+    -------
+    Outcome or None
+        None if no pattern does that.
+    """  # fmt: skip
+    fall = touch.fall(across, up)
+    size = touch.pair.gravity + math.hypot(across, up)
+    push = SLIGHT * size * min(touch.pair.masses[[0, 3]])
+    senses = {
+        key: (0,) if touch.frictions[key].holds else (moving[key],) if moving[key] else (0, 1, -1)
+        for key in INTERFACES
+    }
+    found: list[tuple[tuple[int, int], Pattern, Answer]] = []
+    for pattern in patterns(touch.touching, senses):
+        if ended is not None and _again(pattern, ended):
+            continue
+        try:
+            answer = touch.solve(pattern, fall, turning=True)
+        except np.linalg.LinAlgError:
+            continue
+        if min(answer.normal.values(), default=0.0) < -push:
+            continue
+        if _goes(touch, pattern, answer, moving, push, SLIGHT * size):
+            changed = sum(
+                len(set(one.ends) ^ set(two.ends)) for one, two in zip(before, pattern, strict=True)
+            )
+            starts = sum(one.slip != 0 for one in pattern)
+            found.append(((changed, starts), pattern, answer))
+    if not found:
+        return None
+    found.sort(key=lambda one: one[0])
+    kept: list[tuple[Pattern, Answer]] = []
+    for _, pattern, answer in found:
+        # friction at rest exceeds that of slip: what may stay held is not let go
+        if any(_freer(pattern, other) for other, _ in kept):
+            continue
+        if not any(np.max(np.abs(answer.motion - one.motion)) < 1e-7 * size for _, one in kept):
+            kept.append((pattern, answer))
+    return Outcome(*kept[0], len(kept), others=tuple(one[0] for one in kept[1:]))
+
+
+def _again(pattern: Pattern, ended: Ended) -> bool:
+    bearing = pattern[INTERFACES.index(ended.key)]
+    if ended.end:
+        return ended.end in bearing.ends
+    return bool(bearing.ends) and bearing.slip == 0
+
+
+def _freer(pattern: Pattern, other: Pattern) -> bool:
+    """Tell whether a pattern lets slip what another one with the same ends holds."""
+    return pattern != other and all(
+        one.ends == two.ends and (one.slip == two.slip or two.slip == 0)
+        for one, two in zip(pattern, other, strict=True)
+    )
+
+
+def _goes(touch: Touch, pattern, answer, moving, push: float, slight: float) -> bool:
+    """Tell whether ends part that do not bear, and interfaces are held or slip as they may."""
+    for key, bearing in zip(INTERFACES, pattern, strict=True):
+        for end in touch.touching[key]:
+            if end not in bearing.ends and touch.opening((key, end), answer.motion, True) < -slight:
+                return False
+        if not bearing.ends:
+            continue
+        if bearing.slip:
+            going = touch.along(key, bearing.ends[0], answer.motion, True)
+            if not moving[key] and bearing.slip * going < -slight:
+                return False
+        elif not touch.frictions[key].holds:
+            most = touch.frictions[key].static * answer.pressed(key)
+            if abs(answer.friction[key]) > most + push:
+                return False
+    return True

@@ -1,0 +1,113 @@
+"""Random scenes of two rigid blocks that slide and rock."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from reference_models.rigid_pair import drawing
+from reference_models.rigid_pair.drawing import log_between
+from reference_models.rigid_pair.ground import Piece, pieces_of, still
+from reference_models.rigid_pair.pair import GRAVITY, Body, Pair
+
+from .choices import Frictions
+from .contacts import INTERFACES, Friction
+
+FREE = drawing.FREE
+"""Still ground after a motion [s]."""
+STEP = 0.1
+"""Between the samples of noise [s]."""
+SAMPLES = 26
+
+
+class Scene(NamedTuple):
+    """A pair, the frictions under its bodies, and a motion, whose ``form`` says of what kind."""
+
+    pair: Pair
+    frictions: Frictions
+    motion: dict[str, Any]
+
+    def mirrored(self) -> "Scene":
+        """Give the scene as seen from behind."""
+        motion = dict(self.motion)
+        if motion["form"] == "noise":
+            motion["across"] = [-one for one in motion["across"]]
+        else:
+            motion["peak"] = -motion["peak"]
+        return self._replace(pair=self.pair.mirrored(), motion=motion)
+
+
+def draw(seed) -> Scene:
+    """Draw bodies, frictions, and a motion that may move them.
+
+    The bodies are those of ``rigid_pair``, the upper one narrower than the lower one by a tenth
+    at least, and some too squat to rock. One in eight interfaces holds, one in six sticks in
+    impacts.
+    """
+    rng = np.random.default_rng(seed)
+    pair = None
+    while pair is None:
+        pair = _pair(rng)
+    sides = zip(INTERFACES, pair.limits, strict=True)
+    frictions = {key: _friction(rng, math.tan(min(-one, two))) for key, (one, two) in sides}
+    return Scene(pair, frictions, _motion(rng, pair, frictions))
+
+
+def _pair(rng: np.random.Generator) -> Pair | None:
+    bodies, width = [], float(rng.uniform(0.6, 2.0))
+    for _ in range(2):
+        height = width * log_between(rng, 0.6, 4.0)
+        mass = 2000.0 * width * height * log_between(rng, 0.5, 2.0)
+        body = Body.uniform(width, height, mass)
+        if rng.random() < 1.0 / 3.0:
+            level = height * float(rng.uniform(0.4, 0.55))
+            beside = width * float(rng.uniform(-0.08, 0.08))
+            heavier = float(rng.uniform(0.7, 1.1))
+            body = Body(mass, body.inertia * heavier, 0.5 * width, level, height - level, beside)
+        bodies.append(body)
+        width *= float(rng.uniform(0.3, 0.9))
+    lower, upper = bodies
+    spare = lower.half_width - upper.half_width
+    offset = spare * float(rng.uniform(-0.6, 0.6)) if rng.random() < 0.6 else 0.0
+    total = lower.mass + upper.mass
+    foot = (lower.mass * lower.beside + upper.mass * (offset + upper.beside)) / total
+    stands = abs(foot) < 0.9 * lower.half_width
+    return Pair(lower, upper, offset) if stands else None
+
+
+def _friction(rng: np.random.Generator, slender: float) -> Friction:
+    """Draw a friction, of two in three near what tips the body, so that it slides and rocks."""
+    static = float(rng.uniform(0.15, 0.9))
+    if rng.random() < 2.0 / 3.0:
+        static = min(max(slender * float(rng.uniform(0.6, 1.6)), 0.15), 0.9)
+    kinetic = static * float(rng.choice([1.0, rng.uniform(0.7, 1.0)]))
+    holds, sticks = rng.random() < 0.125, bool(rng.random() < 1.0 / 6.0)
+    return Friction() if holds else Friction(static, kinetic, sticks)
+
+
+def _motion(rng: np.random.Generator, pair: Pair, frictions: Frictions) -> dict[str, Any]:
+    """Draw a motion by the least acceleration that moves something."""
+    least = min(math.tan(min(-one, two)) for one, two in pair.limits)
+    least = min(least, *(f.static for f in frictions.values())) * GRAVITY
+    vertical = float(rng.uniform(0.2, 0.7)) * GRAVITY if rng.random() < 0.3 else 0.0
+    form = str(rng.choice(["sine", "cosine", "noise"]))
+    if form == "noise":
+        size = least * log_between(rng, 0.8, 3.0)
+        across, up = size * rng.normal(size=SAMPLES), rng.uniform(-1.0, 1.0, SAMPLES) * vertical
+        across[0] = across[-1] = up[0] = up[-1] = 0.0
+        return {"form": form, "across": across.tolist(), "up": up.tolist()}
+    peak = float(rng.choice([-1.0, 1.0])) * least * log_between(rng, 1.0, 5.0)
+    size = math.hypot(pair.lower.half_width, pair.lower.below + pair.upper.below)
+    pace = math.sqrt(0.75 * GRAVITY / size)
+    frequency = round(pace * log_between(rng, 1.0, 6.0) / (2.0 * math.pi), 3)
+    cycles = float(rng.choice([0.5, 1.0, 1.5]))
+    return {
+        "form": form, "peak": peak, "vertical": vertical, "frequency": frequency, "cycles": cycles,
+    }  # fmt: skip
+
+
+def pieces_for(motion: dict[str, Any]) -> tuple[list[Piece], float]:
+    """Give the pieces of a motion and of still ground after it, and its least period [s]."""
+    if motion["form"] != "noise":
+        return drawing.pieces_for(motion)
+    pieces = pieces_of(STEP, motion["across"], motion["up"])
+    return [*pieces, still(pieces[-1].stop, pieces[-1].stop + FREE)], math.inf
