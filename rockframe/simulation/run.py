@@ -122,6 +122,7 @@ class Response:
     def cautions(self) -> list[Caution]:
         """Give what is to be warned of."""
         summary, plan, missing = self.trajectory, self.plan, self.missing
+        setting = self.system.setting
         moving = [STILL_MOVING] if self.in_motion else []
         audit = or_missing(
             lambda: unbalanced(
@@ -149,6 +150,7 @@ class Response:
             *((SolverWarning, text) for text in moving),
             *([] if audit is None else [(SolverWarning, audit)]),
             *((ModelWarning, text) for text in (self.uniqueness or NOT_LOOKED_AT).cautions),
+            *((ModelWarning, text) for text in setting.beyond_edges(summary.ending)),
             *(caution for found in others for caution in found),
             *((SolverWarning, text) for text in missing),
         ]

@@ -200,6 +200,10 @@ class Setting(ABC):
         """Tell how far each body slipped, by the end of a run; nothing of bodies that are held."""
         return ()
 
+    def beyond_edges(self, ending: Ending) -> list[str]:
+        """Warn of bodies that slipped beyond the edge of what they stand on, which has no end."""
+        return []
+
     @abstractmethod
     def contact_model(self) -> ContactModel:
         """Give the equations, with limits of the rotation as of a level base."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Final, cast
 
 from rockframe.components import Component, RigidGround, Tendon
 from rockframe.errors import AssemblyError
@@ -18,6 +18,9 @@ from rockframe.system.words import SLIPS, Words
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.slips import Slips
     from rockframe.dynamics.protocol import ContactModel, Ending
+
+ROUNDING: Final = 1e-9
+"""Share of a slip by which it is not known."""
 
 
 @dataclass(frozen=True)
@@ -121,6 +124,20 @@ class SlidingStackSetting(StackSetting):
         """Tell how far each body slipped."""
         system = cast("Slips", self._sliding_model.system)
         return tuple(SlipRange(*system.slips(k, ending)) for k in range(len(self.bodies)))
+
+    def beyond_edges(self, ending: "Ending") -> list[str]:
+        """Warn of bodies that slipped beyond the edge of what they stand on, which has no end."""
+        found = list[str]()
+        pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
+        for k, (upper, lower, offset, slips) in enumerate(pairs, 1):
+            room = lower.half_width - upper.half_width
+            over = max(slips.right + offset, slips.left - offset) - room
+            if over > slips.peak * ROUNDING and slips.peak > 0.0:
+                found.append(
+                    f"body {k} slides {over:.3g} m beyond the edge of body {k + 1}, whose top goes "
+                    "on without end in the model: what follows is not what would happen"
+                )
+        return found
 
 
 def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
