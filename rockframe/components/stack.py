@@ -174,7 +174,7 @@ class Stack(Component):
             As the constructor.
         """
         offsets = self._arguments()["offsets"]
-        given = {"interfaces": self.interfaces, "offsets": offsets, **changes}
+        given: dict[str, Any] = {"interfaces": self.interfaces, "offsets": offsets, **changes}
         return type(self)(*given.pop("bodies", self.bodies), **given)
 
     def with_scaled(self, name: str, factor: float) -> Self:

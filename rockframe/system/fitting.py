@@ -169,7 +169,7 @@ def contradictions(parts: Parts) -> list[str]:
     ]
 
 
-class Friction(NamedTuple):
+class BaseFriction(NamedTuple):
     """Coefficients of friction: at rest, of slip, and in impacts; infinite where a base holds."""
 
     static: float
@@ -184,18 +184,18 @@ class Friction(NamedTuple):
         return f"{self.static:.6g}, {self.kinetic:.6g}{sticks}"
 
 
-HELD: Final = Friction(math.inf, math.inf, math.inf)
+HELD: Final = BaseFriction(math.inf, math.inf, math.inf)
 """Where a base holds what stands on it."""
 
 
-def friction_under(part: Component, options: Options) -> Friction | None:
+def friction_under(part: Component, options: Options) -> BaseFriction | None:
     """Give the friction of a base; None where the base holds what is on it."""
     static = getattr(part.si, "friction", None)
     if static is None or options.sliding is Sliding.CHECKED or isinstance(part, OwnBase):
         return None
     kinetic = static if part.si.kinetic_friction is None else part.si.kinetic_friction
     sticks = isinstance(part, RigidGround) and part.si.impact is Impact.STICK
-    return Friction(static, kinetic, math.inf if sticks else kinetic)
+    return BaseFriction(static, kinetic, math.inf if sticks else kinetic)
 
 
 def is_sliding(parts: Parts, options: Options) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, cast
 from rockframe.components import Component, RigidGround, Tendon
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
-from rockframe.system.fitting import HELD, SMALL_SLIDING, Friction, friction_under
+from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Sliding
 from rockframe.system.setting import SlipRange
 from rockframe.system.sliding_ground import ill_posed
@@ -16,9 +16,11 @@ from rockframe.system.stack import StackSetting
 from rockframe.system.words import SLIPS, Words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.slips import Slips
+    from rockframe.dynamics.chain.slips import SlippingBodies
     from rockframe.dynamics.protocol import ContactModel, Ending
 
+MOST_THAT_SLIDE: Final = 7
+"""Bodies of a stack that may slide; more have more modes than can be numbered."""
 ROUNDING: Final = 1e-9
 """Share of a slip by which it is not known."""
 
@@ -27,7 +29,7 @@ ROUNDING: Final = 1e-9
 class SlidingAloneSetting(AloneSetting):
     """A body on a base with friction."""
 
-    friction: Friction
+    friction: BaseFriction
     slides = True
 
     @property
@@ -68,7 +70,7 @@ class SlidingAloneSetting(AloneSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the body slipped."""
-        system = cast("Slips", self._model.system)
+        system = cast("SlippingBodies", self._model.system)
         return (SlipRange(*system.slips(0, ending)),)
 
 
@@ -122,7 +124,7 @@ class SlidingStackSetting(StackSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far each body slipped."""
-        system = cast("Slips", self._sliding_model.system)
+        system = cast("SlippingBodies", self._sliding_model.system)
         return tuple(SlipRange(*system.slips(k, ending)) for k in range(len(self.bodies)))
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
@@ -159,6 +161,10 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
         )
     if held.options.small:
         faults.append(SMALL_SLIDING)
+    if len(held.bodies) > MOST_THAT_SLIDE:
+        faults.append(
+            f"bodies of a Stack that slide are at most {MOST_THAT_SLIDE}, got {len(held.bodies)}"
+        )
     if faults:
         raise AssemblyError(faults)
     frictions = tuple(HELD if one is None else one for one in found)
@@ -168,7 +174,7 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
 
 
 def _misfits_of_rigid(
-    bases: Sequence[Component], found: Sequence[Friction | None], held: StackSetting
+    bases: Sequence[Component], found: Sequence[BaseFriction | None], held: StackSetting
 ) -> list[str]:
     """Give what friction on rigid bases does not go with."""
     faults = list[str]()

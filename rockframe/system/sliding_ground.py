@@ -8,7 +8,7 @@ from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
 from rockframe.many import largest, plain
 from rockframe.system.bodies import SupportedBody, load_of, resolve_restitution
-from rockframe.system.fitting import SMALL_SLIDING, Friction, friction_under
+from rockframe.system.fitting import SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class SlidingSetting(RigidGroundSetting):
     """A block on rigid ground with friction."""
 
-    friction: Friction
+    friction: BaseFriction
     impact: Impact  # law of its impacts
     slides = True
     flies = True
@@ -127,7 +127,7 @@ def _sliding(setting: SlidingSetting) -> SlidingSetting:
 
 
 def slide_rock_of(
-    body: SupportedBody, friction: Friction, restitutions: Sequence[float], gravity: float
+    body: SupportedBody, friction: BaseFriction, restitutions: Sequence[float], gravity: float
 ) -> "SlideRock":
     """Give the equations of a block that slides and rocks, with the restitutions of its corners."""
     from rockframe.dynamics.slide_rock import SlideRock

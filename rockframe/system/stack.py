@@ -11,7 +11,7 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import BaseLoad, SupportedBody, body_of_block, with_mass
-from rockframe.system.fitting import Friction
+from rockframe.system.fitting import BaseFriction
 from rockframe.system.links import PlacedLink, base_of, placed
 from rockframe.system.options import Options, restraint_words
 from rockframe.system.parts import support_of
@@ -49,7 +49,7 @@ class StackSetting(Setting):
     offsets: tuple[float, ...]
     bases: tuple[Support, ...]  # what each stands on, under all that it carries
     ties: tuple[PlacedLink, ...] = ()  # what links their points
-    frictions: tuple[Friction, ...] = ()  # of each base; none where all bases hold
+    frictions: tuple[BaseFriction, ...] = ()  # of each base; none where all bases hold
 
     @property
     def model(self) -> str:

@@ -1,5 +1,6 @@
 """Stacks: the part, its scenes, and what a run shows of its bodies."""
 
+import math
 import pickle
 
 import numpy as np
@@ -10,8 +11,10 @@ import rockframe as rf
 from rockframe.components import stack
 from rockframe.dynamics.chain import rows
 from rockframe.dynamics.events import ContactState
+from rockframe.dynamics.protocol import MOST_MODES
 from rockframe.errors import AssemblyError, ComponentError
 from rockframe.simulation.certify.perturbations import parameters
+from rockframe.system.sliding_base import MOST_THAT_SLIDE
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
 PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
@@ -20,6 +23,8 @@ GROUND = rf.TwoSpringSupport(frequency_ratio=30, damping_ratio=0.1)
 SOIL = rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2)
 PULSE = rf.GroundMotion.sine_pulse(amplitude="-3 m/s^2", frequency="1.5 Hz")
 STACK = rf.Stack(STATUE, PLINTH, interfaces=[JOINT])
+SLIPPERY = rf.Stack(STATUE, PLINTH, interfaces=[JOINT.replace(friction=0.5)])
+TALLEST = rf.Stack(*[PLINTH] * 8, interfaces=[rf.RigidGround(friction=0.5)] * 7)
 PLAN = {"free_vibration": "1 s", "accuracy": "fast", "second_look": False}
 
 
@@ -41,6 +46,17 @@ def test_a_stack_gives_back_what_it_was_made_of():
     assert "offsets=['0.02 m']" in repr(made)
     with pytest.raises(AttributeError, match="immutable"):
         made.bodies = ()
+
+
+def test_a_stack_is_changed_by_copying():
+    made = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
+    assert made.replace() == made
+    assert made.replace(offsets=None) == STACK
+    assert made.replace(bodies=(STATUE, PLINTH.replace(mass="3 t"))).bodies[1] != PLINTH
+    other = JOINT.replace(frequency_ratio=70)
+    assert made.replace(interfaces=[other]).interfaces == (other,)
+    with pytest.raises(TypeError, match="interface"):
+        made.replace(interface=[other])
 
 
 @pytest.mark.parametrize(
@@ -66,8 +82,9 @@ def test_what_makes_no_stack_is_refused(bodies, given, words):
         ((STACK, GROUND, SOIL), "give one of them"),
         ((STACK, STATUE, GROUND), "a Stack and a Block are both given"),
         ((STACK, rf.CushionCap(height="1 m", mass="1 t"), SOIL), "as its lowest body"),
-        ((STACK, JOINT.replace(friction=0.5)), "every base of a Stack a friction, or none"),
-        ((STACK, rf.RigidGround(friction=0.5)), "where one of its bases is rigid"),
+        ((STACK, JOINT.replace(friction=0.5)), "a friction, or none"),
+        ((SLIPPERY, rf.RigidGround(friction=0.5)), "give friction to the rigid ones only"),
+        ((TALLEST, rf.RigidGround()), "slide are at most 7"),
         ((STACK, rf.RigidGround(restitution=0.9)), "restitution must not be given"),
         ((STACK, GROUND, rf.RigidGround()), "both given"),
     ],
@@ -79,6 +96,7 @@ def test_parts_that_do_not_fit_a_stack_are_refused(parts, words):
 
 def test_a_stack_has_as_many_bodies_as_its_modes_can_tell_apart():
     assert stack.MOST_BODIES == rows.MOST_BODIES
+    assert int(math.log(MOST_MODES, 2 * rows.MODES)) == MOST_THAT_SLIDE
 
 
 def test_no_slope_under_a_stack():

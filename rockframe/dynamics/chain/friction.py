@@ -22,7 +22,14 @@ from rockframe.dynamics.chain.motion import (
     press_at,
 )
 from rockframe.dynamics.chain.rows import GUARDS, PLACES
-from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, OFFSET, ROUNDING, STATIC, Slips
+from rockframe.dynamics.chain.slips import (
+    IMPULSIVE,
+    KINETIC,
+    OFFSET,
+    ROUNDING,
+    STATIC,
+    SlippingBodies,
+)
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARATION, SILENT
 from rockframe.dynamics.on_base import HOLD, PIVOT, SLIP, Mode, SlidingGuards
@@ -31,7 +38,7 @@ from rockframe.dynamics.sliding import NOISE
 from rockframe.dynamics.switching import end_speed, next_pivot
 
 
-class SlippingChain(Slips):
+class SlippingChain(SlippingBodies):
     """Bodies upon one another that friction holds on their bases: a system."""
 
     __slots__ = ()

@@ -28,7 +28,7 @@ from rockframe.dynamics.chain.motion import place_bodies
 from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, PLACES
-from rockframe.dynamics.chain.slips import SLIP_COLUMNS
+from rockframe.dynamics.chain.slips import SLIP_COLUMNS, SlippingBodies
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.protocol import HELD_PLACE, Ground
 from rockframe.dynamics.trigonometry import sine_cosine, versine
@@ -163,7 +163,7 @@ class LinkedRigidChain(LinkedLists, RestOnGround, RigidChain):  # pyright: ignor
     __slots__ = ()
 
 
-class LinkedSlips(ChainLinks):
+class LinkedSlips(ChainLinks, SlippingBodies):
     """Where the numbers are of bodies that friction holds, and of what links them. A mixin."""
 
     __slots__ = ()

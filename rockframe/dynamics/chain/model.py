@@ -25,7 +25,7 @@ from rockframe.dynamics.chain.linked_chain import ChainLinks, RestOnGround, link
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.chain.rows import GUARDS, OBSERVED, lists_of, row_of
-from rockframe.dynamics.chain.slips import Slips, coefficients
+from rockframe.dynamics.chain.slips import SlippingBodies, coefficients
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
@@ -327,7 +327,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
         system.write_contacts(mode, state, memory)
     if isinstance(system, RestOnGround):
         system.keep_hold(mode, state, memory)
-    if isinstance(system, Slips):
+    if isinstance(system, SlippingBodies):
         places = memory[HELD_PLACE : HELD_PLACE + count]
         memory = np.concatenate([memory, *([-place, 0.0, 0.0] for place in places)])
     if isinstance(system, ChainLinks):

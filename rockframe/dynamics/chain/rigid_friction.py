@@ -26,7 +26,14 @@ from rockframe.dynamics.chain.impact import (
 from rockframe.dynamics.chain.motion import FREE, coriolis_along, of_both, write_direction
 from rockframe.dynamics.chain.rigid import ADMISSIBLE, OTHER, TAKEN, RigidChain
 from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, MODES, MOST_CONSTRAINTS, PLACES
-from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, OFFSET, ROUNDING, STATIC, Slips
+from rockframe.dynamics.chain.slips import (
+    IMPULSIVE,
+    KINETIC,
+    OFFSET,
+    ROUNDING,
+    STATIC,
+    SlippingBodies,
+)
 from rockframe.dynamics.on_base import HOLD, SLIP
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground
@@ -38,7 +45,7 @@ TRIES: Final = 6
 """Changes of what slips, of each body, after which a set of corners is given up."""
 
 
-class SlippingRigidChain(Slips, RigidChain):
+class SlippingRigidChain(SlippingBodies, RigidChain):
     """Bodies upon one another of which some slip on rigid bases: a system."""
 
     __slots__ = ()

@@ -35,7 +35,7 @@ ROUNDING: Final = 1e-12
 """Accelerations over gravity that are rounding."""
 
 
-class Slips(Chain):
+class SlippingBodies(Chain):
     """Bodies upon one another of which some may slip on their bases. A mixin of systems."""
 
     __slots__ = ()
