@@ -396,3 +396,17 @@ def test_an_upper_base_that_leaves_the_top_is_told():
     assert along == pytest.approx(FLAT.lower.half_width, abs=1e-6)
     with pytest.raises(ValueError, match="within the top"):
         simulate_pair(replace(FLAT, offset=1.1), frictions, jolt(5.0, 0.3, 2.0), 0.01)
+
+
+def test_motion_whose_events_have_no_end_is_told():
+    """Slips that end and begin on both bases rock the bodies, each time less."""
+    pair = Pair(
+        Body.uniform(0.86, 2.0, 6600.0), Body(4900.0, 1720.0, 0.333, 1.053, 1.109, 0.0134), -0.003
+    )
+    frictions = {"ground": Friction(0.27, 0.27), "joint": Friction(0.2325, 0.2325)}
+    pieces = harmonic(-7.55, 5.764076163622018, 1.56, 0.5, 0.5 * math.pi, 1.0)
+    run = simulate_pair(pair, frictions, pieces, 0.01, quickest=1.0 / 1.56)
+    assert run.events[-1].kind == "chatter"
+    assert run.unique_until == run.events[-1].time
+    assert run.end < pieces[-1].stop
+    assert run.imbalance < 1e-9

@@ -269,9 +269,12 @@ def follow(
         key: (0,) if touch.frictions[key].holds else (moving[key],) if moving[key] else (0, 1, -1)
         for key in INTERFACES
     }
+    # where two interfaces can be held no longer at once, either may slip first, or both
+    loose = _loose(touch, before, fall, push)
+    loose = loose if len(loose) == 2 else set()
     found: list[tuple[tuple[int, int], Pattern, Answer]] = []
     for pattern in patterns(touch.touching, senses):
-        if ended is not None and _again(pattern, ended):
+        if ended is not None and _again(pattern, ended, loose):
             continue
         try:
             answer = touch.solve(pattern, fall, turning=True)
@@ -291,25 +294,43 @@ def follow(
     kept: list[tuple[Pattern, Answer]] = []
     for _, pattern, answer in found:
         # friction at rest exceeds that of slip: what may stay held is not let go
-        if any(_freer(pattern, other) for other, _ in kept):
+        if any(_freer(pattern, other, loose) for other, _ in kept):
             continue
         if not any(np.max(np.abs(answer.motion - one.motion)) < 1e-7 * size for _, one in kept):
             kept.append((pattern, answer))
     return Outcome(*kept[0], len(kept), others=tuple(one[0] for one in kept[1:]))
 
 
-def _again(pattern: Pattern, ended: Ended) -> bool:
-    bearing = pattern[INTERFACES.index(ended.key)]
+def _loose(touch: Touch, before: Pattern, fall, push: float) -> set[str]:
+    """Give the interfaces that friction at rest cannot hold, or only just, as they were."""
+    try:
+        answer = touch.solve(before, fall, turning=True)
+    except np.linalg.LinAlgError:
+        return set()
+    return {
+        key
+        for key, bearing in zip(INTERFACES, before, strict=True)
+        if bearing.ends and not bearing.slip and not touch.frictions[key].holds
+        and abs(answer.friction[key]) >= touch.frictions[key].static * answer.pressed(key) - push
+    }  # fmt: skip
+
+
+def _again(pattern: Pattern, ended: Ended, loose: set[str]) -> bool:
+    """Tell whether a pattern goes on with what has ended."""
     if ended.end:
-        return ended.end in bearing.ends
-    return bool(bearing.ends) and bearing.slip == 0
+        return ended.end in pattern[INTERFACES.index(ended.key)].ends
+    held = [key for key, one in zip(INTERFACES, pattern, strict=True) if one.ends and not one.slip]
+    return set(held) >= (loose or {ended.key})
 
 
-def _freer(pattern: Pattern, other: Pattern) -> bool:
+def _freer(pattern: Pattern, other: Pattern, loose: set[str]) -> bool:
     """Tell whether a pattern lets slip what another one with the same ends holds."""
-    return pattern != other and all(
-        one.ends == two.ends and (one.slip == two.slip or two.slip == 0)
-        for one, two in zip(pattern, other, strict=True)
+    both = list(zip(INTERFACES, pattern, other, strict=True))
+    freed = {key for key, one, two in both if one.slip != two.slip}
+    return (
+        all(one.ends == two.ends and (one.slip == two.slip or not two.slip) for _, one, two in both)
+        and pattern != other
+        and not freed <= loose
     )
 
 

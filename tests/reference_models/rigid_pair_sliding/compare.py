@@ -165,7 +165,7 @@ def compared(scene: Scene, accuracy: str = "reference") -> Compared:
             continue
         ours = ours[:count, ::-1][within]
         theirs = package[name].transpose("time", "body").to_numpy()[:count][within]
-        largest = max(float(np.max(np.abs(ours), initial=0.0)), 1e-6)
+        largest = max(float(np.max(np.abs(ours), initial=0.0)), 1e-5)  # less is no motion
         apart = float(np.max(np.abs(ours - theirs), initial=0.0)) / largest
         differences.append(math.inf if math.isnan(apart) else apart)
     named = [e for e in reference.events if e.kind in KINDS]
