@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 import xarray as xr
 
-from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RockframeWarning, SchemaError
+from rockframe.proposals import hinted
 from rockframe.shared_arguments import Argument, completed, with_raises
+from rockframe.units import POSITIVE, to_ratio
 from rockframe.units.shown import KINDS as SHOWN_KINDS
 from rockframe.units.shown import reader_units
 
@@ -250,6 +251,11 @@ def check_motion(given: object, function: str) -> None:
 
     if not isinstance(given, GroundMotion):
         raise ComponentError(refuse(function, given))
+
+
+def above_zero(given: object, function: str, name: str) -> float:
+    """Read a number above zero."""
+    return to_ratio(given, owner=f"rf.plot.{function}", name=name, condition=POSITIVE, example="2")
 
 
 def require_system(given: object, function: str) -> None:

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import hinted, text
+from rockframe.arguments import text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError, nearest, shown, warn
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, declared_times
 from rockframe.motion.value import UNNAMED, Made
+from rockframe.proposals import hinted
 from rockframe.records import PathLike, RecordLike, read_record, request_of
 from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
@@ -239,6 +240,8 @@ def example(
         got = f"{shown(name)}{nearest(name, records)}"
         msg = f"{kind.__name__}.example: name must be one of {known}, got {got}"
         raise ComponentError(msg)
+    if component is not None:
+        text(component, owner=f"{kind.__name__}.example", name="component")
     file = io.BytesIO((folder / record["file"]).read_bytes())
     file.name = record["file"]
     motion = read(kind, file, component=component or record["component"])
