@@ -67,7 +67,8 @@ def several(given: object, *, owner: str, name: str, of: str) -> list[Any]:
 
 def by_names(given: object, *, owner: str, name: str, example: str) -> Mapping[str, Any]:
     """Read an argument that is a mapping, whose keys are texts."""
-    if isinstance(given, Mapping) and all(isinstance(key, str) for key in given):
+    plain = isinstance(given, Mapping) and not isinstance(given, xr.Dataset)
+    if plain and all(isinstance(key, str) for key in cast("Mapping[Any, Any]", given)):
         return cast("Mapping[str, Any]", given)
     msg = f"{owner}: {name} must be a mapping, such as {example}, got {shown(given)}"
     raise ComponentError(msg)

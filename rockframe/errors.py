@@ -220,8 +220,10 @@ def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentE
 
 def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessError:
     """Say what Python says of an attribute that there is not, and which one may be meant."""
-    public = (one for one in known if not one.startswith("_"))
-    return AccessError(f"{owner} has no attribute {name!r}{nearest(name, public)}", name=name)
+    words = f"{owner} has no attribute {name!r}"
+    if not name.startswith("_"):  # these are asked for by programs
+        words += nearest(name, (one for one in known if not one.startswith("_")))
+    return AccessError(words, name=name)
 
 
 PLEASE_REPORT: Final = "this is an error in rockframe; please report it"

@@ -15,8 +15,11 @@ from rockframe.errors import ArgumentError, unexpected_argument, unknown_attribu
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Class = TypeVar("Class", bound=type)
-_BOUND: Final = ("self", "cls", "kind", "motion")
-"""What methods have first, which nobody gives by name."""
+_BOUND: Final = {
+    "self": "", "cls": "", "kind": "rockframe.motion.", "motion": "rockframe.motion.",
+    "suite": "rockframe.suites.",
+}  # fmt: skip
+"""What methods have first, which nobody gives by name; and where functions are methods."""
 
 
 def hinted(**hints: str) -> Callable[[Function], Function]:
@@ -26,7 +29,8 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
         parameters = list(signature(function).parameters.values())
         by_name = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
         known = [one.name for one in parameters if one.kind in by_name]
-        bound = bool(parameters) and parameters[0].name in _BOUND
+        home = _BOUND.get(parameters[0].name) if parameters else None
+        bound = home is not None and function.__module__.startswith(home)
         listed = known[1:] if bound else known
         any_name = any(one.kind is one.VAR_KEYWORD for one in parameters)
 

@@ -8,7 +8,14 @@ from pathlib import Path
 from typing import Any, Final
 
 from rockframe.command.files.studies import AXES, DescribedStudy, read_study
-from rockframe.command.shared import given_of, run_from, suite_from, taken_by, values_of
+from rockframe.command.shared import (
+    given_of,
+    refuse_of_record,
+    run_from,
+    suite_from,
+    taken_by,
+    values_of,
+)
 from rockframe.errors import ComponentError, FileError
 
 SCALE: Final = "scale"
@@ -22,6 +29,8 @@ _NUMBER: Final = re.compile(r"[-+]?\.?\d")
 def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
     """Read a scene or a study, with the motions, scales and runs that were typed instead."""
     found = read_study(arguments.scene, varied=False)
+    if not arguments.records:
+        refuse_of_record(arguments, "name records behind the scene")
     if arguments.records:
         suite = suite_from(arguments.records, arguments)
         files = (*found.files, *map(Path, arguments.records))

@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, one_of_names, several
+from rockframe.arguments import checked_dataset, several
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
@@ -74,7 +74,12 @@ def listed_limits(given: object, *, owner: str) -> list[Any]:
 def _share(given: Any, owner: str) -> float:
     """Read a rotation over the overturning angle."""
     if isinstance(given, str) and not any(letter.isdigit() for letter in given):
-        one_of_names(given, (UPLIFT, OVERTURNING), owner=owner, name="limits")
+        words = (
+            f"{owner}: limits must be {UPLIFT!r}, {OVERTURNING!r}, a rotation over the overturning "
+            "angle such as 0.5, or a variable of runs and a value such as ('peak_slip', '5 cm')"
+        )
+        msg = f"{words}, got {shown(given)}{nearest(given, (UPLIFT, OVERTURNING))}"
+        raise ComponentError(msg)
     return to_ratio(given, owner=owner, name="limits", condition=_SHARE, example="0.5")
 
 
