@@ -1,13 +1,12 @@
 """Which rung to take for an error that one can live with."""
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_names
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.proposals import hinted, proposing
 from rockframe.units import POSITIVE, to_ratio
 
@@ -78,7 +77,10 @@ def recommend(
         )
         raise ComponentError(msg)
     dataset = _checked(dataset)
-    one_of_names(error, _ERRORS, owner=_OWNER, name="error")
+    if not isinstance(cast("object", error), str) or error not in _ERRORS:
+        known, near = " or ".join(map(repr, _ERRORS)), nearest(error, _ERRORS)
+        msg = f"{_OWNER}: error must be {known}, got {shown(error)}{near}"
+        raise SchemaError(msg)
     missing = [name for name in (error, *_NEEDED) if name not in dataset]
     if missing:
         msg = f"{_OWNER}: found a dataset without {missing[0]!r}; expected one of tradeoff()"

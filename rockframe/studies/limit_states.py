@@ -87,7 +87,8 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
     """Read a limit state on a scalar of runs: its name, from where on, and of which point."""
     name, value, label = (*given, None, None)[:3] if len(given) in (2, 3) else ("", None, None)
     if isinstance(name, str) and name and name not in SCHEMA:
-        msg = f"{owner}: limits: runs have no variable {name!r}{nearest(name, SCHEMA)}"
+        example = nearest(name, SCHEMA) or "; give one such as in ('peak_slip', '5 cm')"
+        msg = f"{owner}: limits: runs have no variable {name!r}{example}"
         raise ComponentError(msg)
     if not isinstance(name, str) or not name:
         msg = (

@@ -431,7 +431,7 @@ VALUES = {
     "rf.tradeoff(SYSTEM, PULSE, accuracies=None)": "accuracies must be several accuracies",
     "rf.tradeoff(SYSTEM, PULSE, repeats=0)": "repeats must be a whole number",
     "rf.recommend(run)": "expected one of tradeoff()",
-    "rf.recommend(run, error=['x'])": "error must be one of 'peak_error'",
+    "rf.recommend(run, error=['x'])": "error must be 'peak_error'",
     "rf.model_ladder(BLOCK)": "system needs a System, got Block",
     # results
     "rf.concat(run)": "expected a list of datasets",
