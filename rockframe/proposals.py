@@ -113,6 +113,9 @@ class Proposing(ABCMeta):
         def __getattr__(cls, name: str) -> NoReturn:
             raise unknown_attribute(cls.__name__, name, dir(cls))
 
+    def __dir__(cls) -> list[str]:
+        return [name for name in super().__dir__() if name != "_abc_impl"]
+
 
 def attributes_of(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:
     """Give what a module calls ``__getattr__``: it proposes one of its public names."""

@@ -240,11 +240,9 @@ def example(
         got = f"{shown(name)}{nearest(name, records)}"
         msg = f"{kind.__name__}.example: name must be one of {known}, got {got}"
         raise ComponentError(msg)
-    if component is not None:
-        text(component, owner=f"{kind.__name__}.example", name="component")
     file = io.BytesIO((folder / record["file"]).read_bytes())
     file.name = record["file"]
-    motion = read(kind, file, component=component or record["component"])
+    motion = read(kind, file, component=record["component"] if component is None else component)
     metadata: dict[str, Any] = record["metadata"]
     return kind(
         motion.si,
