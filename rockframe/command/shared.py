@@ -216,7 +216,8 @@ class Outputs:
     ) -> None:
         """Let something write itself to a file, or to the standard output; and say so."""
         if str(path) != STREAM:
-            check_not_read(path, self._given["read"])
+            if Path(path).suffix.lower() == ending.lower():  # else the name is refused
+                check_not_read(path, self._given["read"])
             save(Path(path))
             self._answer.wrote(title, path)
             return

@@ -48,13 +48,13 @@ def component_from_dict(description: Mapping[str, float | str]) -> "Component":
     except TypeError as problem:
         known = [name for name in signature(_KINDS[kind]).parameters if name != _TYPE]
         strange = [
-            f"{shown(name)}{nearest(name, known)}"
+            f"{shown(name)} in {kind}{nearest(name, known)}"
             for name in description
             if name not in (_TYPE, *known)
         ]
         if not strange:
             raise
-        msg = f"found {', '.join(strange)} in {kind}; expected some of {', '.join(known)}"
+        msg = f"found {', '.join(strange)}; expected some of {', '.join(known)}"
         raise SchemaError(msg) from problem
 
 
