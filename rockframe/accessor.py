@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from rockframe.errors import RockframeError
+from rockframe.proposals import proposing
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,6 +28,7 @@ _SHOWN = (
 
 
 @xr.register_dataset_accessor("rockframe")
+@proposing
 class RockframeAccessor:
     """Figures, tables and a summary of a result of rockframe, also of one read back from a file.
 

@@ -1,52 +1,17 @@
 """Arguments without a unit: one of a few words, a text, a whole number, or a dataset."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from enum import StrEnum
-from functools import wraps
-from inspect import Parameter, signature
+from inspect import signature
 from operator import index
-from typing import Any, Final, SupportsIndex, TypeVar, cast
+from typing import Any, SupportsIndex, TypeVar, cast
 
 import xarray as xr
 
-from rockframe.errors import ComponentError, SchemaError, nearest, shown, unexpected_argument
+from rockframe.errors import ComponentError, SchemaError, nearest, shown
 
 Words = TypeVar("Words", bound=StrEnum)
-Function = TypeVar("Function", bound=Callable[..., Any])
-_BOUND: Final = ("self", "cls", "kind", "motion")
-"""What methods have first, which nobody gives by name."""
-
-
-def hinted(**hints: str) -> Callable[[Function], Function]:
-    """Say more of arguments that a function does not take: hints, or which one was meant."""
-
-    def decorate(function: Function) -> Function:
-        first, *rest = signature(function).parameters.values()
-        by_name = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
-        known = [one.name for one in (first, *rest) if one.kind in by_name]
-        listed = known[1:] if first.name in _BOUND else known
-        any_name = any(one.kind is one.VAR_KEYWORD for one in rest)
-
-        @wraps(function)
-        def call(*given: Any, **named: Any) -> Any:
-            for name in named:
-                if name in hints:
-                    msg = f"{function.__qualname__}() takes no {name!r}: {hints[name]}"
-                    raise TypeError(msg)
-                if name not in known and not any_name:
-                    words = f"{function.__qualname__}()"
-                    raise unexpected_argument(words, name, listed)
-            return function(*given, **named)
-
-        call.hints = hints  # type: ignore[attr-defined]
-        return cast("Function", call)
-
-    return decorate
-
-
-def hints_of(function: Callable[..., Any]) -> Mapping[str, str]:
-    """Give the hints of a function that is :func:`hinted`; none of any other."""
-    return getattr(function, "hints", {})
 
 
 def by_words(given: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
@@ -77,6 +42,54 @@ def text(given: object, *, owner: str, name: str) -> str:
         return given
     msg = f"{owner}: {name} must be a text, got {shown(given)}"
     raise ComponentError(msg)
+
+
+def one_of_names(given: object, known: Iterable[str], *, owner: str, name: str) -> str:
+    """Read an argument that is one of some names."""
+    listed = list(known)
+    if isinstance(given, str) and given in listed:
+        return given
+    near = nearest(given, listed)
+    msg = f"{owner}: {name} must be one of {', '.join(map(repr, listed))}, got {shown(given)}{near}"
+    raise ComponentError(msg)
+
+
+def several(given: object, *, owner: str, name: str, of: str) -> list[Any]:
+    """Read an argument that is several things in an order; one text is one of them."""
+    if isinstance(given, str):
+        return [given]
+    if isinstance(given, Iterable) and not isinstance(given, Mapping | bytes):
+        with suppress(TypeError):  # such as of an array without dimensions
+            return list(cast("Iterable[Any]", given))
+    msg = f"{owner}: {name} must be several {of} in a list, got {shown(given)}"
+    raise ComponentError(msg)
+
+
+def by_names(given: object, *, owner: str, name: str, example: str) -> Mapping[str, Any]:
+    """Read an argument that is a mapping, whose keys are texts."""
+    plain = isinstance(given, Mapping) and not isinstance(given, xr.Dataset)
+    if plain and all(isinstance(key, str) for key in cast("Mapping[Any, Any]", given)):
+        return cast("Mapping[str, Any]", given)
+    msg = f"{owner}: {name} must be a mapping, such as {example}, got {shown(given)}"
+    raise ComponentError(msg)
+
+
+def function_of(given: object, *arguments: str, owner: str, name: str) -> Callable[..., Any]:
+    """Read an argument that is a function of some values, which are given in their order."""
+    wanted = f"a function of {' and '.join(arguments)}"
+    if not callable(given):
+        msg = f"{owner}: {name} must be {wanted}, got {shown(given)}"
+        raise ComponentError(msg)
+    try:
+        takes = signature(given)
+    except ValueError:  # such as those of NumPy, which do not tell what they take
+        return given
+    try:
+        takes.bind(*arguments)
+    except TypeError as problem:
+        msg = f"{owner}: {name} must be {wanted}, got {shown(given)}: {problem}"
+        raise ComponentError(msg) from None
+    return given
 
 
 def truth(given: object, *, owner: str, name: str) -> bool:

@@ -12,7 +12,7 @@ from contextvars import ContextVar
 from difflib import get_close_matches
 from inspect import currentframe
 from types import TracebackType
-from typing import Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 Found = TypeVar("Found")
 
@@ -27,7 +27,12 @@ class RockframeError(Exception):
         """Give what IPython and Jupyter show: the lines that led here, and none of rockframe's."""
         console: Any = sys.modules["IPython"]
         shown_by = console.get_ipython().InteractiveTB
-        return shown_by.structured_traceback(type(self), self, _outside(self.__traceback__))
+        before = (self.__cause__, self.__context__)
+        self.__cause__ = self.__context__ = None  # whose lines would be shown too, and first
+        try:
+            return shown_by.structured_traceback(type(self), self, _outside(self.__traceback__))
+        finally:
+            self.__context__, self.__cause__ = before[1], before[0]
 
 
 def _outside(trace: TracebackType | None) -> TracebackType | None:
@@ -155,6 +160,20 @@ class SchemaError(RockframeError, ValueError):
     """A dataset does not follow rockframe's schema, or a name is not in it."""
 
 
+class ArgumentError(RockframeError, TypeError):
+    """A function does not take an argument, or needs one that is not given."""
+
+
+class AccessError(RockframeError, AttributeError):
+    """An attribute that there is not is asked for, or one that stays is to be changed."""
+
+
+class LabelError(RockframeError, KeyError):
+    """Nothing has that label in a mapping."""
+
+    __str__ = Exception.__str__  # that of a KeyError is the repr
+
+
 class RockframeWarning(UserWarning):
     """Base class of rockframe's warnings."""
 
@@ -192,11 +211,19 @@ def nearest(given: object, known: Iterable[str]) -> str:
     return f"; was {' or '.join(repr(words[one]) for one in near)} meant?" if near else ""
 
 
-def unexpected_argument(call: str, name: str, known: Iterable[str]) -> TypeError:
+def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentError:
     """Say what Python says of an argument that there is not, and which one may have been meant."""
     names = list(known)
     words = f"{call} got an unexpected keyword argument {name!r}{nearest(name, names) or '.'}"
-    return TypeError(f"{words} It takes {', '.join(names)}")
+    return ArgumentError(f"{words} It takes {', '.join(names) or 'none'}")
+
+
+def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessError:
+    """Say what Python says of an attribute that there is not, and which one may be meant."""
+    words = f"{owner} has no attribute {name!r}"
+    if not name.startswith("_"):  # these are asked for by programs
+        words += nearest(name, (one for one in known if not one.startswith("_")))
+    return AccessError(words, name=name)
 
 
 PLEASE_REPORT: Final = "this is an error in rockframe; please report it"
@@ -239,6 +266,13 @@ def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: li
         kind = "" if isinstance(problem, RockframeError) else f"{type(problem).__name__}: "
         missing.append(f"{what} could not be computed: {kind}{problem}")
         return instead
+
+
+if not TYPE_CHECKING:  # or no name would be unknown to type checkers
+
+    def __getattr__(name: str) -> NoReturn:
+        owner = "module 'rockframe.errors'"
+        raise unknown_attribute(owner, name, __dir__())
 
 
 def __dir__() -> list[str]:

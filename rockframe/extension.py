@@ -7,6 +7,8 @@ of :class:`~rockframe.dynamics.protocol.Equations`, in a :class:`ContactModel`.
 :func:`rockframe.register` makes either known.
 """
 
+from typing import TYPE_CHECKING
+
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.components import Choice, Component, OneOf, Parameter, Ratio, Text
 from rockframe.components.parameters import DampingRatio
@@ -32,6 +34,7 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.dynamics.protocol import Equations as System
+from rockframe.proposals import attributes_of
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.variables.variable import EVENT, TIME, Variable
 from rockframe.system.bodies import BaseLoad
@@ -110,6 +113,9 @@ __all__ = [
     "point_law",
     "springs_under",
 ]
+
+if not TYPE_CHECKING:  # or no name would be unknown to type checkers
+    __getattr__ = attributes_of(__name__, __all__)
 
 
 def __dir__() -> list[str]:

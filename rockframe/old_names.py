@@ -1,7 +1,7 @@
 """Names of version 0.1 that have moved; they are given for one version, with a warning."""
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from typing import Any, Final
 
@@ -54,8 +54,8 @@ _BECAME: Final[dict[str, tuple[Callable[..., Any], str]]] = {
 }
 
 
-def old_name(name: str) -> Any:
-    """Give what a name stands for, and warn with the new name."""
+def old_name(name: str, known: Iterable[str]) -> Any:
+    """Give what a name stands for, and warn with the new name; of others propose a known one."""
     if name in _BECAME:
         found, now = _BECAME[name]
     elif name in MOVED:
@@ -63,8 +63,8 @@ def old_name(name: str) -> Any:
         home, _, attribute = now.rpartition(".")
         found = getattr(import_module(home), attribute)
     else:
-        msg = f"module 'rockframe' has no attribute {name!r}"
-        raise AttributeError(msg)
+        owner = "module 'rockframe'"
+        raise errors.unknown_attribute(owner, name, known)
     text = f"rockframe.{name} is now {now}{_SHORTER.get(name, '')}"
     warnings.warn(text, DeprecationWarning, stacklevel=3)
     return found

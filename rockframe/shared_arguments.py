@@ -8,7 +8,8 @@ from functools import wraps
 from textwrap import fill
 from typing import Any, Final, TypeVar, cast, get_type_hints
 
-from rockframe.errors import nearest
+from rockframe.errors import ArgumentError, nearest
+from rockframe.proposals import raise_refused
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -65,10 +66,15 @@ def takes(kind: type, **otherwise: object) -> Callable[[Function], Function]:
         def call(*given: Any, **named: Any) -> Any:
             for name in named:
                 if name not in whole.parameters:
-                    raise TypeError(_unknown(function.__qualname__, name, whole.parameters))
-            return function(*given, **{**otherwise, **named})
+                    raise ArgumentError(_unknown(function.__qualname__, name, whole.parameters))
+            try:
+                return function(*given, **{**otherwise, **named})
+            except TypeError as problem:
+                raise_refused(problem, whole.parameters)
+                raise
 
         cast("Any", call).__signature__ = whole
+        cast("Any", call).hints = {}  # nothing of it has to be hinted
         call.__doc__ = completed(function.__doc__ or "", whole.parameters, declared)
         return cast("Function", call)
 

@@ -111,16 +111,31 @@ def _fault_of_place(named: Path, place: Path, kind: FileKind) -> str | None:
     return None
 
 
-def _fault_of_present(
-    place: Path, kind: FileKind, overwrite: bool, read: Iterable[PathLike]
-) -> str | None:
-    """Say why a file is not replaced: it is read, it is no file, or it is somebody else's."""
+def check_not_read(path: PathLike, read: Iterable[PathLike]) -> None:
+    """Refuse to write over a file that is read, or in a folder that is."""
+    place = Path(os.path.realpath(Path(path).expanduser()))
+    fault = _fault_of_read(place, read) if os.path.lexists(place) else None
+    if fault is not None:
+        raise FileError(os.fspath(path), [(None, fault)])
+
+
+def _fault_of_read(place: Path, read: Iterable[PathLike]) -> str | None:
     for one in read:
         source = Path(one).expanduser()
         if source.is_dir() and source.resolve() in place.parents:
             return f"this is a file in {str(one)!r}, which is read; name another one"
         if source.exists() and source.samefile(place):
             return "this file is read, and so is not written over; name another one"
+    return None
+
+
+def _fault_of_present(
+    place: Path, kind: FileKind, overwrite: bool, read: Iterable[PathLike]
+) -> str | None:
+    """Say why a file is not replaced: it is read, it is no file, or it is somebody else's."""
+    fault = _fault_of_read(place, read)
+    if fault is not None:
+        return fault
     if not place.is_file():
         return "this is no file; name one that is, or a new one"
     if not overwrite and not kind.is_own(place):

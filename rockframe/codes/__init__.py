@@ -1,12 +1,18 @@
 """Checks by codes of practice, each formula with its clause, beside the motion of the body."""
 
+from typing import TYPE_CHECKING
+
 from rockframe.codes.asce import asce_7_22 as asce_7_22
 from rockframe.codes.check import CheckedLine as CheckedLine
 from rockframe.codes.check import CheckedVerdict as CheckedVerdict
 from rockframe.codes.check import CodeCheck as CodeCheck
 from rockframe.codes.circolare import circolare_2019 as circolare_2019
+from rockframe.proposals import attributes_of
 
 __all__ = ["CheckedLine", "CheckedVerdict", "CodeCheck", "asce_7_22", "circolare_2019"]
+
+if not TYPE_CHECKING:  # or no name would be unknown to type checkers
+    __getattr__ = attributes_of(__name__, __all__)
 
 
 def __dir__() -> list[str]:

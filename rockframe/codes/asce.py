@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from typing import Final
 
-from rockframe.arguments import hinted
 from rockframe.codes.check import (
     CheckedLine,
     CheckedVerdict,
@@ -14,6 +13,7 @@ from rockframe.codes.check import (
 )
 from rockframe.components import Block
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.simulation.system import System
 from rockframe.units import POSITIVE, QuantityLike, RatioLike, Unit, to_ratio
 
@@ -88,12 +88,16 @@ def asce_7_22(
     system = System(block) if isinstance(block, Block) else block
     setting = rocking_block(system, _OWNER)
     numbers = {
-        "S_DS": spectral_acceleration, "I_p": importance, "H_f": height_factor,
-        "R_mu": ductility_factor, "C_AR": resonance_factor, "R_po": strength_factor,
-    }  # fmt: skip
+        "S_DS": ("spectral_acceleration", spectral_acceleration),
+        "I_p": ("importance", importance),
+        "H_f": ("height_factor", height_factor),
+        "R_mu": ("ductility_factor", ductility_factor),
+        "C_AR": ("resonance_factor", resonance_factor),
+        "R_po": ("strength_factor", strength_factor),
+    }
     given = {
-        name: to_ratio(value, owner=_OWNER, name=name, condition=POSITIVE, example="1.5")
-        for name, value in numbers.items()
+        symbol: to_ratio(value, owner=_OWNER, name=name, condition=POSITIVE, example="1.5")
+        for symbol, (name, value) in numbers.items()
     }
     body, weight = setting.body, setting.body.mass * setting.gravity
     arm = min(body.left, body.right)

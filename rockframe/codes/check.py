@@ -5,12 +5,14 @@ from dataclasses import dataclass, field
 from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import Final, cast
+from typing import Any, Final, cast
 
+from rockframe.arguments import one_of_names
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import check_some
 from rockframe.motion import GroundMotion
 from rockframe.notebook import card, number_with_unit
+from rockframe.proposals import proposing
 from rockframe.reports import page
 from rockframe.simulation.system import System
 from rockframe.system.rigid_ground import RigidGroundSetting
@@ -21,6 +23,7 @@ _KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"
 _SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
 
 
+@proposing
 @dataclass(frozen=True)
 class CheckedLine:
     """A number of a check.
@@ -56,6 +59,7 @@ class CheckedLine:
         return number_with_unit(self.value, unit)
 
 
+@proposing
 @dataclass(frozen=True)
 class CheckedVerdict:
     """What a check says.
@@ -78,6 +82,7 @@ class CheckedVerdict:
     source: str
 
 
+@proposing
 @dataclass(frozen=True)
 class CodeCheck:
     """A check by a code of practice.
@@ -121,10 +126,7 @@ class CodeCheck:
             No number has that symbol.
         """
         found = {one.symbol: one.value for several in self.lines.values() for one in several}
-        if symbol not in found:
-            msg = f"CodeCheck: no number is called {shown(symbol)}; it has {', '.join(found)}"
-            raise ComponentError(msg)
-        return found[symbol]
+        return found[one_of_names(symbol, found, owner="CodeCheck.value", name="symbol")]
 
     @property
     def passed(self) -> dict[str, bool]:
@@ -211,6 +213,10 @@ def read_motions(given: object, owner: str) -> dict[str, GroundMotion]:
         raise ComponentError(msg)
     motions = cast("Mapping[str, GroundMotion]", several)
     check_some(motions, owner=owner)
+    for label, motion in motions.items():
+        if not isinstance(cast("Any", motion), GroundMotion):
+            msg = f"{owner}: {label!r} needs a GroundMotion, got {shown(motion)}"
+            raise ComponentError(msg)
     return {str(label): motion for label, motion in motions.items()}
 
 

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.arguments import hinted
+from rockframe.arguments import one_of_names
 from rockframe.codes.check import (
     CheckedLine,
     CheckedVerdict,
@@ -15,13 +15,23 @@ from rockframe.codes.check import (
     read_motions,
     rocking_block,
 )
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError
 from rockframe.measures import response_spectrum
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.simulation.system import System
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.units import Condition, QuantityLike, RatioLike, Unit, to_ratio
+from rockframe.units import (
+    POSITIVE,
+    TIME,
+    Condition,
+    QuantityLike,
+    RatioLike,
+    Unit,
+    to_ratio,
+    to_si,
+)
 
 _OWNER: Final = "circolare_2019"
 _CODE: Final = "Circolare C.S.LL.PP. 21 January 2019, n. 7, to the NTC 2018, C8.7.1"
@@ -92,9 +102,8 @@ def circolare_2019(
     factor = to_ratio(
         confidence_factor, owner=_OWNER, name="confidence_factor", condition=_FACTOR, example="1.35"
     )
-    if limit_state not in LIMIT_STATES:
-        msg = f"{_OWNER}: limit_state must be one of 'SLV', 'SLC', got {shown(limit_state)}"
-        raise ComponentError(msg)
+    one_of_names(limit_state, LIMIT_STATES, owner=_OWNER, name="limit_state")
+    to_si(free_vibration, TIME, owner=_OWNER, name="free_vibration", condition=POSITIVE)
     capacity = _capacity(setting, factor)
     values = {one.symbol: one.value for one in capacity}
     _, _, damping, _ = LIMIT_STATES[limit_state]

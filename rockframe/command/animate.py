@@ -9,6 +9,7 @@ import xarray as xr
 from rockframe.command.answer import Answer
 from rockframe.command.shared import (
     Outputs,
+    check_format,
     given_of,
     is_result,
     read_result,
@@ -29,6 +30,7 @@ _OF_SCENES: Final = (
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Write a run as a page or a film."""
+    check_format(arguments)
     path = arguments.output
     ending = f".{arguments.format or 'html'}" if path == STREAM else Path(path).suffix.lower()
     if ending not in (*_PAGES, *_FILMS):

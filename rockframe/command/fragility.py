@@ -71,7 +71,16 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 def _kept(arguments: argparse.Namespace) -> xr.Dataset:
     """Read the runs of a study, from its file or its store."""
-    more = ("records", "scales", "store", "accuracy", "free_vibration", "duration")
+    more = (
+        "records",
+        "unit",
+        "time_step",
+        "scales",
+        "store",
+        "accuracy",
+        "free_vibration",
+        "duration",
+    )
     if any(getattr(arguments, name) for name in more):
         words = "its runs have been made; records, scales, a store or lengths of runs go with a "
         raise FileError(arguments.scene, [(None, f"this is a result: {words}scene")])

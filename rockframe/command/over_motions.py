@@ -8,10 +8,15 @@ from pathlib import Path
 from typing import Any, Final
 
 from rockframe.command.files.studies import AXES, DescribedStudy, read_study
-from rockframe.command.shared import given_of, run_from, suite_from, taken_by, values_of
+from rockframe.command.shared import (
+    given_of,
+    refuse_of_record,
+    run_from,
+    suite_from,
+    taken_by,
+    values_of,
+)
 from rockframe.errors import ComponentError, FileError
-from rockframe.results.schema import SCHEMA
-from rockframe.shared_arguments import meant
 
 SCALE: Final = "scale"
 _NO_MOTIONS: Final = (
@@ -24,6 +29,8 @@ _NUMBER: Final = re.compile(r"[-+]?\.?\d")
 def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
     """Read a scene or a study, with the motions, scales and runs that were typed instead."""
     found = read_study(arguments.scene, varied=False)
+    if not arguments.records:
+        refuse_of_record(arguments, "name records behind the scene")
     if arguments.records:
         suite = suite_from(arguments.records, arguments)
         files = (*found.files, *map(Path, arguments.records))
@@ -57,8 +64,4 @@ def _limit(word: str) -> object:
     name, equals, value = word.partition("=")
     if not equals:
         return word
-    name = name.strip()
-    if name not in SCHEMA:
-        msg = f"--limits: runs have no variable {name!r}{meant(name, [*SCHEMA])}"
-        raise ComponentError(msg)
-    return name, float(value) if re.fullmatch(r"[\d.]+", value.strip()) else value.strip()
+    return name.strip(), float(value) if re.fullmatch(r"[\d.]+", value.strip()) else value.strip()

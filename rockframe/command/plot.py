@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe import plot
 from rockframe.command.answer import Answer
-from rockframe.command.shared import Outputs, read_result
+from rockframe.command.shared import Outputs, check_format, read_result
 from rockframe.command.streams import STREAM
 from rockframe.errors import ComponentError
 from rockframe.plot._checks import drawn_by
@@ -30,6 +30,7 @@ PICTURE: Final = FileKind.marked("a picture", tuple(_SIGNED), _MARK)
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Draw what a file holds."""
+    check_format(arguments)
     outputs = Outputs(arguments, [arguments.dataset], answer)
     outputs.check(arguments.output, PICTURE)
     dataset = read_result(arguments.dataset)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rockframe.command.answer import Answer
-from rockframe.command.shared import motion_from
+from rockframe.command.shared import motion_from, refuse_of_record
 from rockframe.command.streams import STREAM, tell
 from rockframe.errors import FileError
 from rockframe.serve import Server
@@ -15,6 +15,8 @@ from rockframe.serve.controls import NamedRecord
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Serve the page until Ctrl-C."""
+    if arguments.record is None:
+        refuse_of_record(arguments, "name one, too")
     record = None if arguments.record is None else _record(arguments)
     with Server(arguments.port, record) as server:
         words = f"the page is at {server.address}, for this machine alone; Ctrl-C ends it"

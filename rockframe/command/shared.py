@@ -26,7 +26,7 @@ from rockframe.solve.accuracy import accuracy_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.suites import MotionSuite, read_suite
 from rockframe.units import Unit
-from rockframe.writing import Content, FileKind, checked_path, write_file
+from rockframe.writing import Content, FileKind, check_not_read, checked_path, write_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -76,6 +76,8 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
     """Read the scene, with the motion and the arguments of the run that options give instead."""
     found = read_scene(arguments.scene)
     motion, files = found.motion, found.files
+    if arguments.motion is None:
+        refuse_of_record(arguments, "name one with --motion")
     if moved and motion is None and arguments.motion is None:
         raise FileError(arguments.scene, [(None, _NO_MOTION)])
     if arguments.motion is not None:
@@ -84,6 +86,26 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
     if arguments.scale is not None and motion is not None:
         motion = motion.scaled(arguments.scale)
     return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
+
+
+def refuse_of_record(arguments: argparse.Namespace, way: str) -> None:
+    """Refuse options that say how a record is read, where none is named."""
+    for name in ("component", "unit", "time_step"):
+        given = getattr(arguments, name, None)
+        if given is not None:
+            option = f"--{name.replace('_', '-')}"
+            msg = f"{option} {given}: this says how a record is read; {way}"
+            raise ComponentError(msg)
+
+
+def check_format(arguments: argparse.Namespace) -> None:
+    """Refuse a format beside the name of a file, whose ending tells it."""
+    if arguments.format is not None and arguments.output != STREAM:
+        msg = (
+            f"--format {arguments.format}: this is of the standard output, -o -; of a file its "
+            f"ending tells the format, that of {arguments.output}"
+        )
+        raise ComponentError(msg)
 
 
 def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
@@ -194,6 +216,8 @@ class Outputs:
     ) -> None:
         """Let something write itself to a file, or to the standard output; and say so."""
         if str(path) != STREAM:
+            if Path(path).suffix.lower() == ending.lower():  # else the name is refused
+                check_not_read(path, self._given["read"])
             save(Path(path))
             self._answer.wrote(title, path)
             return
@@ -322,6 +346,7 @@ def _accuracy(text: str) -> str | float:
     try:
         accuracy_of(given)
     except SolverError as problem:
-        msg = f"--accuracy: {problem}"
+        words = str(problem).replace(" or an Accuracy(...)", "").removeprefix("Accuracy: ")
+        msg = f"--accuracy: {words}"
         raise ComponentError(msg) from problem
     return given

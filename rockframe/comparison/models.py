@@ -4,10 +4,10 @@ import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from rockframe.arguments import hinted
 from rockframe.components import Component
 from rockframe.components.block_numbers import squat
 from rockframe.errors import ComponentError, ModelWarning
+from rockframe.proposals import hinted
 from rockframe.simulation.system import System
 from rockframe.system.options import Coupling, Rotation, Sliding
 from rockframe.system.own_base import OwnBase

@@ -1,21 +1,23 @@
 """Which rung to take for an error that one can live with."""
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.proposals import hinted, proposing
 from rockframe.units import POSITIVE, to_ratio
 
 _OWNER: Final = "recommend"
 _LEAST_PERCENTAGE: Final = 1e-4
 """Errors below are written as shares: a percentage with an exponent is read wrongly."""
+_NEEDED: Final = ("run_time", "verdict_agrees", "model", "accuracy")
 _ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotation along time"}
 
 
+@proposing
 @dataclass(frozen=True)
 class Recommendation:
     """The cheapest rung that meets a tolerance; its text is a sentence.
@@ -75,10 +77,13 @@ def recommend(
         )
         raise ComponentError(msg)
     dataset = _checked(dataset)
-    needed = ("run_time", "verdict_agrees", "model", "accuracy")
-    if error not in _ERRORS or any(name not in dataset for name in (error, *needed)):
-        known = " or ".join(repr(name) for name in _ERRORS)
-        msg = f"{_OWNER}: expected a dataset of tradeoff() and error {known}, got error {error!r}"
+    if not isinstance(cast("object", error), str) or error not in _ERRORS:
+        known, near = " or ".join(map(repr, _ERRORS)), nearest(error, _ERRORS)
+        msg = f"{_OWNER}: error must be {known}, got {shown(error)}{near}"
+        raise SchemaError(msg)
+    missing = [name for name in (error, *_NEEDED) if name not in dataset]
+    if missing:
+        msg = f"{_OWNER}: found a dataset without {missing[0]!r}; expected one of tradeoff()"
         raise SchemaError(msg)
     errors = np.where(dataset["verdict_agrees"], dataset[error], np.inf)
     times = dataset["run_time"].to_numpy()

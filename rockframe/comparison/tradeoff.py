@@ -5,14 +5,14 @@ import time
 import warnings
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import Final, TypeAlias, Unpack
+from typing import Any, Final, TypeAlias, Unpack
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import several, whole_number
 from rockframe.comparison.models import check_system, model_ladder
-from rockframe.errors import ComponentError, ModelWarning, SolverWarning, shown
+from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import verdict_of
@@ -136,8 +136,14 @@ def tradeoff(
     check_system(system, _OWNER)
     repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)
     models_of_scene = model_ladder(system)
-    chosen = _chosen(models_of_scene, (models,) if isinstance(models, str) else models)
-    given = (accuracies,) if isinstance(accuracies, str | float | int | Accuracy) else accuracies
+    chosen = _chosen(models_of_scene, models)
+    alone = isinstance(accuracies, str | float | int | Accuracy)
+    given: list[Any] = [accuracies] if alone else several(
+        accuracies, owner=_OWNER, name="accuracies", of="accuracies"
+    )  # fmt: skip
+    if not given:
+        msg = f"{_OWNER}: accuracies must be one or more, got {shown(accuracies)}"
+        raise ComponentError(msg)
     settings = {_label(accuracy): accuracy_of(accuracy) for accuracy in given}
     record = system.motion if motion is None else motion
 
@@ -212,15 +218,17 @@ def _timed(scene: System, plan: Plan) -> float:
     return time.perf_counter() - start
 
 
-def _chosen(known: dict[str, System], models: Sequence[str] | None) -> dict[str, System]:
+def _chosen(known: dict[str, System], models: object) -> dict[str, System]:
     if models is None:
         return known
-    unknown = [name for name in models if name not in known]
-    if unknown or not models:
+    asked = several(models, owner=_OWNER, name="models", of="models")
+    unknown = [name for name in asked if not isinstance(name, str) or name not in known]
+    if unknown or not asked:
         names = ", ".join(repr(name) for name in known)
-        msg = f"{_OWNER}: models must be some of {names}, got {shown(list(models))}"
+        near = nearest(unknown[0], known) if unknown else ""
+        msg = f"{_OWNER}: models must be some of {names}, got {shown(asked)}{near}"
         raise ComponentError(msg)
-    return {name: known[name] for name in models}
+    return {name: known[name] for name in asked}
 
 
 def _label(given: AccuracyLike) -> str:

@@ -7,13 +7,24 @@ from inspect import Signature, cleandoc
 from textwrap import fill
 from typing import Any, ClassVar, Final, NoReturn, Self
 
-from rockframe.arguments import hinted, hints_of
+from rockframe.arguments import by_names, several
 from rockframe.components.alternatives import OneOf
 from rockframe.components.parameters import DERIVED, REQUIRED, Declared, SIValues
 from rockframe.components.registry import register_class
-from rockframe.errors import ComponentError, ModelWarning, shown, unexpected_argument, warn
+from rockframe.errors import (
+    AccessError,
+    ArgumentError,
+    ComponentError,
+    ModelWarning,
+    nearest,
+    shown,
+    unexpected_argument,
+    warn,
+)
 from rockframe.many import Many, isfinite
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
+from rockframe.proposals import Proposing, proposing
+from rockframe.units import to_ratio
 
 _SECTION: Final = re.compile(r"^\w[\w ]*\n-{3,}$", re.MULTILINE)
 _WIDTH: Final = 79
@@ -41,7 +52,8 @@ def _row(parameter: Declared[Any, Any]) -> str:
     return f"{parameter.name} : {parameter.written_as}{optional}\n{words}"
 
 
-class Component:
+@proposing
+class Component(metaclass=Proposing):
     """A frozen value object, made of the parameters that its class declares.
 
     A class of components declares each of its parameters once, as an attribute:
@@ -85,8 +97,7 @@ class Component:
         cls._declared = {**cls._declared, **own}
         if own and "__init__" not in vars(cls):
             cls.__init__ = _constructor(cls)
-        elif "__init__" in vars(cls) and not hints_of(cls.__init__):
-            cls.__init__ = hinted()(cls.__init__)
+        proposing(cls)
         if cls.__doc__ is not None:
             cls.__doc__ = with_parameters(cls.__doc__, cls._declared.values())
         register_class(cls)
@@ -157,11 +168,11 @@ class Component:
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
         msg = f"{type(self).__name__} is immutable; build a new one to change {name}"
-        raise AttributeError(msg)
+        raise AccessError(msg)
 
     def __delattr__(self, name: str) -> NoReturn:
         msg = f"{type(self).__name__} is immutable; {name} cannot be deleted"
-        raise AttributeError(msg)
+        raise AccessError(msg)
 
     def __dir__(self) -> list[str]:
         return [name for name in super().__dir__() if not name.startswith("_")]
@@ -227,6 +238,12 @@ class Component:
     @classmethod
     def _described(cls, description: Mapping[str, float | str]) -> dict[str, Any]:
         """Give the arguments in a description; refuse that of another class."""
+        description = by_names(
+            description,
+            owner=f"{cls.__name__}.from_dict",
+            name="description",
+            example=f"that of {cls.__name__}.to_dict()",
+        )
         kind = description.get("type", cls.__name__)
         if kind != cls.__name__:
             msg = (
@@ -279,6 +296,8 @@ class Component:
         tuple of str
             Names of parameters; none, unless a class tells of such.
         """
+        for name in several(changed, owner=type(self).__name__, name="changed", of="names"):
+            self._check_name(name, self._declared or self.parameters())
         return ()
 
     def with_si(self, values: Mapping[str, Any]) -> Self:
@@ -299,15 +318,23 @@ class Component:
         ComponentError
             A value is out of range, or does not fit the others.
         """
+        example = "{'width': 0.8}"
+        kind = type(self).__name__
+        values = by_names(values, owner=f"{kind}.with_si", name="values", example=example)
+        if not values:
+            return self
+        for name in values:
+            self._check_name(name, self._declared)
         gone = dict.fromkeys(name for each in self.alternatives for name in each.displaced(values))
         changed = {**vars(self.given), **gone, **values}
         owner = self._owner(changed)
         for name, value in values.items():
             one = self._declared[name]
-            holds = _is_finite if one.condition is None else one.condition.holds
-            if not holds(value):
+            holds: Any = _is_finite if one.condition is None else one.condition.holds
+            if not isinstance(value, float | Many) or not holds(value):
                 # which also says what is wrong
-                written = value if isinstance(value, str) else one.write(value)
+                plain = isinstance(value, str) or one.measure is None
+                written = value if plain else one.write(value)
                 changed[name] = one.read(written, owner)
         part = object.__new__(type(self))
         part._check(changed, owner)
@@ -342,11 +369,18 @@ class Component:
         ComponentError
             No such parameter, or its new value is out of range.
         """
-        if name not in self.parameters():
-            known = ", ".join(self.parameters())
-            msg = f"{type(self).__name__}: no parameter is called {shown(name)} (it has {known})"
-            raise ComponentError(msg)
-        return self.with_si({name: factor * vars(self.given)[name]})
+        self._check_name(name, self.parameters())
+        ratio = to_ratio(factor, owner=type(self).__name__, name="factor", example="1.1")
+        return self.with_si({name: ratio * vars(self.given)[name]})
+
+    def _check_name(self, name: object, known: Iterable[str]) -> None:
+        """Refuse a parameter that there is not."""
+        listed = list(known)
+        if isinstance(name, str) and name in listed:
+            return
+        called, has = f"{shown(name)}{nearest(name, listed)}", ", ".join(listed) or "none"
+        msg = f"{type(self).__name__}: no parameter is called {called} (it has {has})"
+        raise ComponentError(msg)
 
 
 def replaced(
@@ -374,7 +408,7 @@ def _every_argument(kind: type[Component], given: Mapping[str, object]) -> dict[
     if missing:
         count = f"{len(missing)} required keyword-only argument{'s' if len(missing) > 1 else ''}"
         msg = f"{call} missing {count}: {' and '.join(missing)}"
-        raise TypeError(msg)
+        raise ArgumentError(msg)
     defaults = {name: _default(one, None) for name, one in declared.items()}
     return {**defaults, **given}
 
@@ -388,8 +422,15 @@ def _default(one: Declared[Any, Any], required: object) -> object:
 def _constructor(kind: type[Component]) -> Any:
     """Make a constructor with the signature that the declarations give."""
 
-    def __init__(self: Component, **given: object) -> None:  # noqa: N807
+    def __init__(self: Component, *strange: object, **given: object) -> None:  # noqa: N807
+        if strange:
+            names = ", ".join(kind._declared)  # pyright: ignore[reportPrivateUsage]
+            call, count = f"{kind.__qualname__}.__init__()", 1 + len(strange)
+            msg = f"{call} takes 1 positional argument but {count} were given. It takes {names}"
+            raise ArgumentError(msg)
         Component.__init__(self, **given)
+
+    __init__.hints = {}  # type: ignore[attr-defined]  # it answers itself, also of derived classes
 
     arguments = [
         Argument(

@@ -3,7 +3,6 @@
 from collections.abc import Collection
 from typing import Any, ClassVar, Final, Self, cast
 
-from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.block_numbers import (
@@ -171,7 +170,7 @@ class Block(Component):
             place = _pair(type(self).__name__, changes.pop("centre_of_mass"), height, beside)
             changes |= {"centre_height": place[0], "eccentricity": place[1]}
         made = super().replace(**changes)
-        behind = self.left_behind(changes)
+        behind = self.left_behind([*changes])
         if behind:
             left = " and ".join(
                 f"{name}, {getattr(self.si, name):.4g} {self._declared[name].unit}"
@@ -201,6 +200,7 @@ class Block(Component):
         tuple of str
             ``"inertia"``, ``"centre_height"``, both or none.
         """
+        super().left_behind(changed)
         if self.given.inertia is None:
             return ()
         behind: list[str] = []
@@ -242,7 +242,6 @@ class Block(Component):
         return [Polygon("block", outline), Polygon("block", [(si.eccentricity, si.centre_height)])]
 
     @classmethod
-    @hinted()
     def from_density(
         cls,
         *,
@@ -281,7 +280,6 @@ class Block(Component):
         return cls(width=width, height=height, mass=mass, shape_factor=shape_factor)
 
     @classmethod
-    @hinted()
     def from_size(
         cls,
         *,

@@ -6,7 +6,6 @@ from typing import Any, Final, Self
 
 import xarray as xr
 
-from rockframe.arguments import hinted
 from rockframe.components.base import replaced
 from rockframe.components.block import Block
 from rockframe.components.frame_building import Building, building_of
@@ -62,7 +61,6 @@ class FrameEquivalent(Block):
     _building: Building | None = None
 
     @classmethod
-    @hinted()
     def from_members(
         cls,
         members: Iterable[Member | Mapping[str, Any]] | None = None,

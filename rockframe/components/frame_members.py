@@ -7,7 +7,6 @@ from typing import Any, ClassVar, Final, Self
 
 import xarray as xr
 
-from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import DERIVED, Parameter, SIValues, Text
@@ -148,7 +147,6 @@ class Member(Component):
         )
 
     @classmethod
-    @hinted()
     def box(
         cls,
         name: str,

@@ -8,7 +8,8 @@ from typing import Any, Final, Generic, NoReturn, Self, TypeVar, overload
 import numpy as np
 
 from rockframe.arguments import one_of_words
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import AccessError, ComponentError, shown
+from rockframe.proposals import hinted
 from rockframe.units import (
     LENGTH,
     NOT_NEGATIVE,
@@ -62,6 +63,7 @@ class Declared(Generic[Public, Usual]):
     def __init__(
         self, measure: Measure | None, condition: Condition | None, *, doc: str, default: Usual
     ) -> None:
+        _check_declaration(type(self).__name__, measure, condition, doc)
         self.measure = measure
         self.condition = condition
         self.default = default
@@ -88,7 +90,7 @@ class Declared(Generic[Public, Usual]):
 
     def __set__(self, instance: object, value: Any) -> NoReturn:
         msg = f"{type(instance).__name__} is immutable; build a new one to change {self.name}"
-        raise AttributeError(msg)
+        raise AccessError(msg)
 
     def accept(self, given: object, owner: str) -> Any:
         """Read what was given, where that may be nothing; `owner` is named in messages."""
@@ -112,6 +114,18 @@ class Declared(Generic[Public, Usual]):
         return None
 
 
+def _check_declaration(owner: str, measure: object, condition: object, doc: object) -> None:
+    """Refuse a declaration that is none."""
+    for name, given, kind in (
+        ("measure", measure, Measure), ("condition", condition, Condition), ("doc", doc, str)
+    ):  # fmt: skip
+        missing = given is None and name != "doc"
+        if not missing and not isinstance(given, kind):
+            wanted = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
+            msg = f"{owner}: {name} must be {wanted}, got {shown(given)}"
+            raise ComponentError(msg)
+
+
 class Parameter(Declared[Quantity, Usual]):
     """A parameter with a unit.
 
@@ -132,6 +146,7 @@ class Parameter(Declared[Quantity, Usual]):
     annotation = QuantityLike
     measure: Measure
 
+    @hinted()
     def __init__(
         self,
         measure: Measure,
@@ -175,6 +190,7 @@ class Ratio(Declared[float, Usual]):
     annotation = RatioLike
     measure: Measure
 
+    @hinted()
     def __init__(
         self,
         condition: Condition | None = None,
@@ -207,7 +223,11 @@ class Choice(Declared[Words, Words]):
 
     annotation = str
 
+    @hinted()
     def __init__(self, default: Words, *, doc: str) -> None:
+        if not isinstance(default, StrEnum):  # pyright: ignore[reportUnnecessaryIsInstance]
+            msg = f"Choice: default must be one of the words of a StrEnum, got {shown(default)}"
+            raise ComponentError(msg)
         super().__init__(None, None, doc=doc, default=default)
         self.written_as = "{" + ", ".join(f'"{word}"' for word in type(default)) + "}"
 
@@ -234,6 +254,7 @@ class Text(Declared[str, Usual]):
     written_as = "str"
     annotation = str
 
+    @hinted()
     def __init__(self, *, doc: str, default: Usual = REQUIRED) -> None:
         super().__init__(None, None, doc=doc, default=default)
 
@@ -265,8 +286,8 @@ class Flag(Declared[bool, bool]):
         """Take the truth value, or the word for it."""
         if isinstance(given, bool | np.bool_):
             return bool(given)
-        if given in _TRUTHS:
-            return _TRUTHS[str(given)]
+        if isinstance(given, str) and given in _TRUTHS:
+            return _TRUTHS[given]
         msg = f"{owner}: {self.name} must be True or False, got {shown(given)}"
         raise ComponentError(msg)
 
@@ -274,6 +295,9 @@ class Flag(Declared[bool, bool]):
         """Write the word, unless it is the usual one."""
         return None if value is self.default else str(value).lower()
 
+
+MOST_COUNTED: Final = 1_000_000
+"""Things that are counted, above which a number is surely wrong."""
 
 _TRUTHS: Final = {"true": True, "false": False}
 
@@ -290,8 +314,10 @@ class Count(Declared[int, Usual]):
     def read(self, given: object, owner: str) -> int:
         """Take the number."""
         number = given if not isinstance(given, bool) else None
-        if isinstance(number, int | np.integer | float) and number == int(number) and number >= 1:
-            return int(number)
+        if isinstance(number, int | np.integer | float) and 1 <= number <= MOST_COUNTED:
+            whole = int(number)
+            if whole == number:
+                return whole
         msg = f"{owner}: {self.name} must be a whole number from 1 on, got {shown(given)}"
         raise ComponentError(msg)
 
@@ -341,11 +367,11 @@ class SIValues(SimpleNamespace):
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
         msg = f"values of a component are immutable; {name} cannot be set"
-        raise AttributeError(msg)
+        raise AccessError(msg)
 
     def __delattr__(self, name: str) -> NoReturn:
         msg = f"values of a component are immutable; {name} cannot be deleted"
-        raise AttributeError(msg)
+        raise AccessError(msg)
 
 
 class SIProperty:
@@ -412,6 +438,7 @@ class DampingRatio(Ratio[None]):
         What it is, in a sentence.
     """
 
+    @hinted()
     def __init__(self, *, doc: str) -> None:
         super().__init__(NOT_NEGATIVE, doc=doc, default=None)
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from inspect import signature
 from typing import TYPE_CHECKING, Final
 
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, nearest, shown
 
 if TYPE_CHECKING:
     from rockframe.components.base import Component
@@ -32,22 +32,29 @@ def kinds() -> Mapping[str, "type[Component]"]:
 
 def component_from_dict(description: Mapping[str, float | str]) -> "Component":
     """Build any component from its :meth:`Component.to_dict`."""
+    if not isinstance(description, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
+        msg = f"found {shown(description)}; expected the description of a component, a mapping"
+        raise SchemaError(msg)
     kind = description.get(_TYPE)
     if not isinstance(kind, str) or kind not in _KINDS:
         known = ", ".join(sorted(_KINDS))
         msg = (
-            f"found a component of type {shown(kind)}; expected one of {known}, or of a class of "
-            "your own in a module that has been imported"
+            f"found a component of type {shown(kind)}{nearest(kind, _KINDS)}; expected one of "
+            f"{known}, or of a class of your own in a module that has been imported"
         )
         raise SchemaError(msg)
     try:
         return _KINDS[kind].from_dict(description)
     except TypeError as problem:
         known = [name for name in signature(_KINDS[kind]).parameters if name != _TYPE]
-        strange = [shown(name) for name in description if name not in (_TYPE, *known)]
+        strange = [
+            f"{shown(name)} in {kind}{nearest(name, known)}"
+            for name in description
+            if name not in (_TYPE, *known)
+        ]
         if not strange:
             raise
-        msg = f"found {', '.join(strange)} in {kind}; expected some of {', '.join(known)}"
+        msg = f"found {', '.join(strange)}; expected some of {', '.join(known)}"
         raise SchemaError(msg) from problem
 
 

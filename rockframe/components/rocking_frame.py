@@ -168,6 +168,7 @@ class RockingFrame(Component):
         ComponentError
             No such parameter, or its new value is out of range.
         """
+        self._check_name(name, self.parameters())
         own = name.removesuffix(_OF_COLUMN)
         if own == name:
             return super().with_scaled(name, factor)

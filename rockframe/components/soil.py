@@ -3,7 +3,6 @@
 from enum import StrEnum
 from typing import ClassVar, Literal, Self, TypeAlias
 
-from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import (
@@ -15,6 +14,7 @@ from rockframe.components.parameters import (
     SIValues,
     check_frictions,
 )
+from rockframe.proposals import hinted
 from rockframe.units import (
     BED_DAMPING,
     BED_STIFFNESS,
@@ -122,7 +122,6 @@ class WinklerSoil(Component):
         return check_frictions("WinklerSoil", given)
 
     @classmethod
-    @hinted()
     def from_subgrade_modulus(
         cls,
         modulus: QuantityLike,

@@ -5,12 +5,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final, Self
 
+from rockframe.arguments import several
 from rockframe.components.base import Component
 from rockframe.components.block import Block
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import SIValues
 from rockframe.components.registry import component_from_dict
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, shown, unexpected_argument
 from rockframe.units import LENGTH, QuantityLike, to_si
 
 MOST_BODIES: Final = 8
@@ -73,13 +74,11 @@ class Stack(Component):
         self._keep(bodies, interfaces, offsets)
         self._warn()
 
-    def _keep(
-        self,
-        bodies: Sequence[Any],
-        interfaces: Sequence[Any],
-        offsets: Sequence[QuantityLike] | None,
-    ) -> None:
+    def _keep(self, bodies: Sequence[Any], interfaces: object, offsets: object) -> None:
         """Check what is given, and keep it."""
+        interfaces = several(interfaces, owner="Stack", name="interfaces", of="bases")
+        if offsets is not None:
+            offsets = several(offsets, owner="Stack", name="offsets", of="lengths")
         faults = [
             f"a body of a stack is a Block, got {shown(one)}"
             for one in bodies
@@ -197,9 +196,7 @@ class Stack(Component):
             No such parameter, or its new value is out of range, or a body is then wider than what
             it stands on.
         """
-        if name not in self.parameters():
-            msg = f"Stack: no parameter is called {shown(name)}"
-            raise ComponentError(msg)
+        self._check_name(name, self.parameters())
         own, _, place = name.partition(" of ")
         kind, _, k = place.partition(" ")
         bodies, interfaces = list(self.bodies), list(self.interfaces)
@@ -208,6 +205,33 @@ class Stack(Component):
         part = object.__new__(type(self))
         part._keep(bodies, interfaces, self._arguments()["offsets"])
         return part
+
+    def replace(self, **changes: Any) -> Self:
+        """Build a stack of which the bodies, the interfaces or the offsets are others.
+
+        Parameters
+        ----------
+        **changes
+            `bodies`, `interfaces` and `offsets`, each as a sequence from the top down.
+
+        Returns
+        -------
+        Stack
+
+        Raises
+        ------
+        TypeError, UnitsError, ComponentError
+            As the constructor.
+        """
+        given = {"bodies": self.bodies, "interfaces": self.interfaces,
+                 "offsets": self._arguments()["offsets"]}  # fmt: skip
+        for name in changes:
+            if name not in given:
+                call = f"{type(self).__name__}.replace()"
+                raise unexpected_argument(call, name, given)
+        bodies, interfaces, offsets = (changes.get(name, old) for name, old in given.items())
+        kept = several(bodies, owner="Stack", name="bodies", of="blocks")
+        return type(self)(*kept, interfaces=interfaces, offsets=offsets)
 
     def _arguments(self) -> dict[str, Any]:
         return {
@@ -248,7 +272,12 @@ class Stack(Component):
         described = cls._described(arguments)
         part = object.__new__(cls)
         bodies, interfaces = (
-            [component_from_dict(one) for one in described.get(name, ())]
+            [
+                component_from_dict(one)
+                for one in several(
+                    described.get(name, ()), owner="Stack.from_dict", name=name, of="descriptions"
+                )
+            ]
             for name in ("bodies", "interfaces")
         )
         part._keep(bodies, interfaces, described.get("offsets"))

@@ -21,6 +21,8 @@ from rockframe.dynamics.events import (
     SILENT,
 )
 from rockframe.dynamics.point_law import methods_of_law
+from rockframe.errors import ArgumentError
+from rockframe.proposals import hinted
 
 Law = TypeVar("Law")
 NEEDED: Final = ("force", "energy")
@@ -118,6 +120,7 @@ class LinkLaw:
         return filled(self, numbers)
 
 
+@hinted()
 def link_law(law: type[Law]) -> type[Law]:
     """Make a named tuple the law of a link: mark its methods, and give it those it lacks.
 
@@ -133,7 +136,7 @@ def link_law(law: type[Law]) -> type[Law]:
 
     Raises
     ------
-    TypeError
+    ArgumentError
         It is no named tuple, lacks a method, or a field has the name of a method.
     """
     own, faults = methods_of_law(law, LinkLaw, NEEDED)
@@ -141,7 +144,7 @@ def link_law(law: type[Law]) -> type[Law]:
     if together & own.keys() and not together <= own.keys():
         faults.append(f"{law.__name__} has only some of states, guard and switch")
     if faults:
-        raise TypeError("; ".join(faults))
+        raise ArgumentError("; ".join(faults))
     for name, method in own.items():
         if not name.startswith("_"):
             (inlined if name in ("force", "power", "with_numbers") else kernel)(method)

@@ -18,6 +18,8 @@ from rockframe.compiled import Vector, inlined, kernel, stretch
 from rockframe.dynamics.base import Variables
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.protocol import Guards
+from rockframe.errors import ArgumentError, shown
+from rockframe.proposals import hinted
 
 Law = TypeVar("Law")
 FREE: Final = -1
@@ -180,6 +182,9 @@ def methods_of_law(
     law: type[Law], known: type, needed: Collection[str]
 ) -> tuple[dict[str, Any], list[str]]:
     """Give a law's own methods, and what is wrong with its class and the names of its fields."""
+    if not isinstance(law, type):  # pyright: ignore[reportUnnecessaryIsInstance]
+        msg = f"a law is a NamedTuple, got {shown(law)}"
+        raise ArgumentError(msg)
     own = {name: each for name, each in vars(law).items() if inspect.isfunction(each)}
     fields = getattr(law, "_fields", None)
     faults = [] if fields is not None else [f"{law.__name__} is no NamedTuple"]
@@ -192,6 +197,7 @@ def methods_of_law(
     return own, faults
 
 
+@hinted()
 def point_law(law: type[Law]) -> type[Law]:
     """Make a named tuple a law: mark its methods for compiling, and give it those it lacks.
 
@@ -207,14 +213,14 @@ def point_law(law: type[Law]) -> type[Law]:
 
     Raises
     ------
-    TypeError
+    ArgumentError
         It is no named tuple, lacks a method, or a field has the name of a method.
     """
     own, faults = methods_of_law(law, PointLaw, NEEDED)
     if ("states" in own) != ("guard" in own) or ("variables" in own) != ("rates" in own):
         faults.append(f"{law.__name__} has only one of states and guard, or variables and rates")
     if faults:
-        raise TypeError("; ".join(faults))
+        raise ArgumentError("; ".join(faults))
     for name, method in own.items():
         if not name.startswith("_"):
             (kernel if name == "settle" else inlined)(method)

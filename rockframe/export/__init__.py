@@ -1,9 +1,15 @@
 """Results and scenes for other programs: pelicun, OpenQuake and OpenSees."""
 
+from typing import TYPE_CHECKING
+
 from rockframe.export._fragility import to_openquake, to_pelicun
 from rockframe.export._opensees import to_opensees
+from rockframe.proposals import attributes_of
 
 __all__ = ["to_openquake", "to_opensees", "to_pelicun"]
+
+if not TYPE_CHECKING:  # or no name would be unknown to type checkers
+    __getattr__ = attributes_of(__name__, __all__)
 
 
 def __dir__() -> list[str]:

@@ -11,11 +11,13 @@ from typing import Any, Final
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, hinted
+from rockframe.arguments import by_names, checked_dataset, one_of_names, text, truth, whole_number
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.proposals import hinted
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.studies.intensities import PERIOD_OF, SHORT
+from rockframe.units import POSITIVE, to_ratio
 from rockframe.version import __version__
 from rockframe.writing import FileKind, write_file
 
@@ -28,6 +30,7 @@ _KIND: Final = FileKind.marked("a fragility model", (".xml",), _MARK)
 _LOSSES: Final = ("structural", "nonstructural", "contents", "business_interruption")
 _WORD: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
+_MOST_STOREYS: Final = 1000
 _PELICUN_MEASURES: Final = {
     # (demand type, unit, SI units in it)
     SHORT["PGA"]: ("Peak Ground Acceleration", "g", STANDARD_GRAVITY),
@@ -98,6 +101,11 @@ def to_pelicun(
     """
     import pandas as pd
 
+    identifier = text(component, owner=_PELICUN, name="component")
+    if demand is not None:
+        text(demand, owner=_PELICUN, name="demand")
+    storeys = whole_number(offset, owner=_PELICUN, name="offset", lowest=-_MOST_STOREYS)
+    truth(directional, owner=_PELICUN, name="directional")
     measure, states = _fits(fragility, _PELICUN_MEASURES, owner=_PELICUN)
     kind, unit, size = _PELICUN_MEASURES[measure]
     if measure == SHORT["SA"]:
@@ -106,7 +114,7 @@ def to_pelicun(
         "Incomplete": 0,
         "Demand-Type": kind if demand is None else demand,
         "Demand-Unit": unit,
-        "Demand-Offset": offset,
+        "Demand-Offset": storeys,
         "Demand-Directional": int(directional),
     }
     for number, (_, median, dispersion) in enumerate(states, start=1):
@@ -116,7 +124,7 @@ def to_pelicun(
             f"LS{number}-Theta_1": dispersion,
             f"LS{number}-DamageStateWeights": None,
         }
-    return pd.DataFrame([row], index=pd.Index([component], name="ID"))
+    return pd.DataFrame([row], index=pd.Index([identifier], name="ID"))
 
 
 @hinted()
@@ -175,9 +183,15 @@ def to_openquake(
     logarithm: with median theta and dispersion beta theta exp(beta^2/2), and that times
     sqrt(exp(beta^2) - 1). It takes intensities above the greatest of the fragility for that one.
     """
-    if loss not in _LOSSES:
-        msg = f"{_OPENQUAKE}: loss must be one of {', '.join(_LOSSES)}, got {shown(loss)}"
-        raise ComponentError(msg)
+    one_of_names(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
+    for what, given in (("description", description), ("category", category)):
+        text(given, owner=_OPENQUAKE, name=what)
+    limit_given = None if no_damage_limit is None else to_ratio(
+        no_damage_limit, owner=_OPENQUAKE, name="no_damage_limit", condition=POSITIVE
+    )  # fmt: skip
+    fragilities = by_names(
+        fragilities, owner=_OPENQUAKE, name="fragilities", example="{'bookcase': fragility}"
+    )
     if not fragilities:
         msg = f"{_OPENQUAKE}: found no fragilities; expected one at least"
         raise ComponentError(msg)
@@ -205,7 +219,7 @@ def to_openquake(
             model, "fragilityFunction", id=taxonomy, format="continuous", shape="logncdf"
         )
         levels = fragilities[taxonomy][measure].to_numpy() / size
-        limit = float(levels[0]) if no_damage_limit is None else no_damage_limit
+        limit = float(levels[0]) if limit_given is None else limit_given
         # what lies below minIML counts as minIML, so that the limit must lie above
         least = min(float(levels[0]), 0.5 * limit)
         range_of = {"minIML": least, "maxIML": levels[-1], "noDamageLimit": limit}
@@ -222,8 +236,8 @@ def to_openquake(
                 stddev=f"{deviation:.10g}",
             )
     Tree.indent(root)
-    text = f"{_PROLOGUE}<!-- {_MARK}{__version__} -->\n{Tree.tostring(root, encoding='unicode')}\n"
-    return write_file(path, _KIND, text.encode(), overwrite=overwrite)
+    page = f"{_PROLOGUE}<!-- {_MARK}{__version__} -->\n{Tree.tostring(root, encoding='unicode')}\n"
+    return write_file(path, _KIND, page.encode(), overwrite=overwrite)
 
 
 def _fits(

@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from rockframe.arguments import hinted, one_of_words, whole_number
+from rockframe.arguments import one_of_words, whole_number
 from rockframe.components import (
     Block,
     FrameEquivalent,
@@ -20,6 +20,7 @@ from rockframe.components import (
 )
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.simulation.system import System
 from rockframe.system.options import Restraint, Rotation
 from rockframe.units import QuantityLike

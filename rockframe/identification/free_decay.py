@@ -5,7 +5,7 @@ from typing import Final
 
 import xarray as xr
 
-from rockframe.arguments import hinted, one_of_words
+from rockframe.arguments import one_of_words, several
 from rockframe.errors import ComponentError, shown
 from rockframe.identification.fitting import fit_history, fit_peaks
 from rockframe.identification.measured import (
@@ -19,6 +19,7 @@ from rockframe.identification.prediction import Prediction, starts_of
 from rockframe.identification.report import fit_dataset
 from rockframe.identification.swings import swings_of
 from rockframe.identification.unknowns import Circumstance, TrialSystems
+from rockframe.proposals import hinted
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel, accuracy_of
 from rockframe.system.options import AccuracyLike
@@ -167,7 +168,7 @@ def _check_level(system: System) -> None:
 
 
 def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
-    names = (parameters,) if isinstance(parameters, str) else tuple(parameters)
+    names = tuple(several(parameters, owner=_OWNER, name="parameters", of="names"))
     if names and len(set(names)) == len(names):
         return names
     msg = f"{_OWNER}: parameters must name one or more, each once, got {shown(parameters)}"
@@ -187,7 +188,7 @@ def _sought(
         return tuple(circumstances)
     if isinstance(data, MeasuredPeaks) and data.signed:
         circumstances.append(Circumstance.GAUGE_OFFSET)
-    listed = (given,) if isinstance(given, str) else given
+    listed = several(given, owner=_OWNER, name="circumstances", of="names")
     names = [one_of_words(Circumstance, one, owner=_OWNER, name="circumstances") for one in listed]
     for name in names:
         if name not in circumstances:

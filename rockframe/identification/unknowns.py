@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockframe.components import Component, RigidGround
 from rockframe.components.parameters import Ratio
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, nearest, shown
 from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly, assemble
 
@@ -140,5 +140,6 @@ def _place_of(name: object, known: Mapping[str, PartParameter | None], owner: st
         raise ComponentError(msg)
     choice = ", ".join(repr(full) for full in (matches or known))
     found = "several parts have" if matches else "no part of the system has"
-    msg = f"{owner}: {found} the parameter {shown(name)}; expected one of {choice}"
+    near = "" if matches else nearest(name, {one.rpartition(".")[2] for one in known})
+    msg = f"{owner}: {found} the parameter {shown(name)}{near}; expected one of {choice}"
     raise ComponentError(msg)

@@ -1,5 +1,7 @@
 """Intensity measures and spectra of ground motions."""
 
+from typing import TYPE_CHECKING
+
 from rockframe.measures.average import (
     average_spectral_acceleration as average_spectral_acceleration,
 )
@@ -9,3 +11,21 @@ from rockframe.measures.histories import fourier_spectrum as fourier_spectrum
 from rockframe.measures.histories import velocity_and_displacement as velocity_and_displacement
 from rockframe.measures.intensity import intensity_measures as intensity_measures
 from rockframe.measures.response import response_spectrum as response_spectrum
+from rockframe.proposals import attributes_of
+
+__all__ = [
+    "average_spectral_acceleration",
+    "fourier_spectrum",
+    "intensity_measures",
+    "principal_axes",
+    "response_spectrum",
+    "rotated_spectrum",
+    "velocity_and_displacement",
+]
+
+if not TYPE_CHECKING:  # or no name would be unknown to type checkers
+    __getattr__ = attributes_of(__name__, __all__)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -6,13 +6,13 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted
 from rockframe.errors import ComponentError
 from rockframe.measures.directions import rotated_spectrum
 from rockframe.measures.response import checked_periods, response_spectrum
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.motion.quantities import ArrayLike
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.units import PERIOD, QuantityLike, RatioLike
 

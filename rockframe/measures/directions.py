@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted, whole_number
+from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, check_some
 from rockframe.measures.response import (
@@ -18,6 +18,7 @@ from rockframe.measures.response import (
 from rockframe.motion.pair import HorizontalPair, axis_and_intensities
 from rockframe.motion.processing.samples import say_coarse
 from rockframe.motion.quantities import ArrayLike
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import (

@@ -5,7 +5,6 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted
 from rockframe.measures.common import (
     GroundComponent,
     build_over,
@@ -14,6 +13,7 @@ from rockframe.measures.common import (
     signal_of,
 )
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.signals.integrals import ground_path, transform_of
 from rockframe.signals.polynomials import knots_of

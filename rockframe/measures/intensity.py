@@ -7,12 +7,12 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted
 from rockframe.components import Block
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import GroundComponent, component_of, read_inputs
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.integrals import (

@@ -8,13 +8,14 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted, one_of_words
+from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, read_inputs
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.timing import Interpolation
 from rockframe.motion.processing.samples import band_limited, say_coarse
 from rockframe.motion.quantities import ArrayLike
+from rockframe.proposals import hinted
 from rockframe.signals import Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra, spectral_peaks

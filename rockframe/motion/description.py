@@ -9,8 +9,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from rockframe.arguments import truth
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import SchemaError, shown
+from rockframe.errors import SchemaError, nearest, shown
 from rockframe.motion.constructors.analytic import PULSES
 from rockframe.motion.value import Made, MotionValue
 from rockframe.notebook import card, curve
@@ -95,7 +96,7 @@ def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
     if motion.recipe is not None:
         return {**kind, **motion.recipe}
     known = {**kind, "constructor": None, "name": motion.name, "sha256": motion.sha256}
-    if not samples:
+    if not truth(samples, owner=f"{type(motion).__name__}.to_dict", name="samples"):
         return known
     return {
         **known,
@@ -140,8 +141,8 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         msg = f"found only {known or 'a description'} of a record; supply the record itself"
         raise SchemaError(msg)
     if constructor not in CONSTRUCTORS:
-        known = ", ".join(CONSTRUCTORS)
-        msg = f"found the constructor {shown(constructor)}; expected one of {known}"
+        found = f"{shown(constructor)}{nearest(constructor, CONSTRUCTORS)}"
+        msg = f"found the constructor {found}; expected one of {', '.join(CONSTRUCTORS)}"
         raise SchemaError(msg)
     if constructor == "stochastic":
         # written where one corner, then the default, was left out
@@ -151,8 +152,8 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         for operation in operations:
             ((name, given),) = operation.items()
             if name not in OPERATIONS:
-                known = ", ".join(OPERATIONS)
-                msg = f"found the operation {shown(name)}; expected one of {known}"
+                found = f"{shown(name)}{nearest(name, OPERATIONS)}"
+                msg = f"found the operation {found}; expected one of {', '.join(OPERATIONS)}"
                 raise SchemaError(msg)
             if "other" in given:
                 given = {**given, "other": from_dict(kind, given["other"])}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import wraps
 from typing import TYPE_CHECKING
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ArgumentError, ComponentError, shown
 from rockframe.motion import dataset, description
 from rockframe.motion.constructors import (
     analytic,
@@ -24,9 +24,11 @@ from rockframe.motion.operations import (
     writing,
 )
 from rockframe.motion.value import MotionValue
+from rockframe.proposals import proposing
 from rockframe.signals import Motion
 
 
+@proposing
 class GroundMotion(MotionValue):
     """Acceleration of the ground over time; immutable.
 
@@ -72,7 +74,7 @@ class GroundMotion(MotionValue):
             )
             if not given and "si" not in named:
                 msg = f"{cls.__name__}: it is not built by calling it; write {usage}"
-                raise TypeError(msg)
+                raise ArgumentError(msg)
             si = given[0] if given else named["si"]
             if not isinstance(si, Motion):
                 msg = f"{cls.__name__}: found {shown(si)}; write {usage}"

@@ -9,7 +9,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.arguments import hinted
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, RecordError, RecordWarning, shown
 from rockframe.motion.ground_motion import GroundMotion
@@ -19,6 +18,7 @@ from rockframe.motion.processing.samples import padded
 from rockframe.motion.processing.velocity_pulses import strongest
 from rockframe.motion.quantities import with_quantity
 from rockframe.motion.velocity_pulse import VelocityPulse
+from rockframe.proposals import Proposing, proposing
 from rockframe.records import Reading, RecordLike, read_components, read_source, same_start
 from rockframe.signals import Signal
 from rockframe.signals.integrals import arias_history
@@ -29,8 +29,9 @@ _TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole ones
 _EXAMPLE: Final = "HorizontalPair(north, east)"
 
 
+@proposing
 @dataclass(frozen=True)
-class HorizontalPair:
+class HorizontalPair(metaclass=Proposing):
     """Two horizontal components at a right angle, and perhaps the vertical one.
 
     Parameters
@@ -84,7 +85,6 @@ class HorizontalPair:
                 raise ComponentError(msg)
 
     @classmethod
-    @hinted()
     def read(cls, path: RecordLike, format: str | None = None) -> HorizontalPair:  # noqa: A002
         """Read both horizontal components of one file, and the vertical one if it is there.
 
@@ -149,7 +149,6 @@ class HorizontalPair:
         """Direction of the major principal axis, from the first component to the second [rad]."""
         return with_quantity(axis_and_intensities(self)[0], ANGLE)
 
-    @hinted()
     def rotated(
         self, angle: QuantityLike | None = None, *, azimuth: QuantityLike | None = None
     ) -> GroundMotion:
@@ -175,7 +174,6 @@ class HorizontalPair:
         turned = self.first.rotated(self.second, angle, azimuth=azimuth)
         return turned if self.vertical is None else turned.with_vertical(self.vertical)
 
-    @hinted()
     def velocity_pulse(
         self, *, shortest_period: QuantityLike = SHORTEST, longest_period: QuantityLike = LONGEST
     ) -> VelocityPulse[GroundMotion]:
@@ -207,7 +205,6 @@ class HorizontalPair:
         )
         return replace(pulse, angle=with_quantity(direction, ANGLE))
 
-    @hinted()
     def in_axes(self, angle: QuantityLike) -> HorizontalPair:
         """Give the components along axes that are turned.
 

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import text
+from rockframe.errors import AccessError, ComponentError, shown
 from rockframe.motion.quantities import with_quantity
+from rockframe.proposals import Proposing, proposing
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import knots_of
@@ -19,7 +21,8 @@ Made = TypeVar("Made", bound="MotionValue")
 """The class of a motion, kept by constructors and operations."""
 
 
-class MotionValue:
+@proposing
+class MotionValue(metaclass=Proposing):
     """A motion in SI units with a name, metadata and a history; immutable.
 
     Parameters
@@ -74,7 +77,7 @@ class MotionValue:
                 raise ComponentError(msg)
         values = {
             "si": si,
-            "name": _one_line(name) or UNNAMED,
+            "name": _one_line(text(name, owner=type(self).__name__, name="name")) or UNNAMED,
             "metadata": MappingProxyType(entries),
             "history": tuple(map(_Line, history)),
             "recipe": None if recipe is None else MappingProxyType(dict(recipe)),
@@ -153,11 +156,11 @@ class MotionValue:
 
     def __setattr__(self, name: str, value: object) -> None:
         msg = f"{type(self).__name__} is immutable; build a new one to change {name}"
-        raise AttributeError(msg)
+        raise AccessError(msg)
 
     def __delattr__(self, name: str) -> None:
         msg = f"{type(self).__name__} is immutable; {name} cannot be deleted"
-        raise AttributeError(msg)
+        raise AccessError(msg)
 
     def __reduce__(self) -> tuple[Any, ...]:
         recipe = None if self.recipe is None else dict(self.recipe)

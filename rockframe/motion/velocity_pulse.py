@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Generic
 
 from rockframe.motion.value import Made
+from rockframe.proposals import proposing
 from rockframe.units import VELOCITY
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ LEAST_PEAK_VELOCITY: Final = 0.3
 """Of a motion that is pulse-like [m s^-1] (Baker 2007)."""
 
 
+@proposing
 @dataclass(frozen=True)
 class VelocityPulse(Generic[Made]):
     """The strongest pulse in the velocity of a motion.

@@ -1,5 +1,7 @@
 """Figures of results and motions; matplotlib is imported when the first is drawn."""
 
+from typing import TYPE_CHECKING
+
 from rockframe.plot._animation import Animation, animation
 from rockframe.plot._clouds import annual_rate, cloud
 from rockframe.plot._diagrams import energies, moment_rotation, phase
@@ -20,6 +22,7 @@ from rockframe.plot._selection import selection
 from rockframe.plot._spectra import spectra, suite
 from rockframe.plot._studies import critical_scale, free_decay, sweep
 from rockframe.plot._tradeoff import tradeoff
+from rockframe.proposals import attributes_of
 
 __all__ = [
     "Animation",
@@ -53,6 +56,9 @@ __all__ = [
     "tradeoff",
     "velocity_pulse",
 ]
+
+if not TYPE_CHECKING:  # or no name would be unknown to type checkers
+    __getattr__ = attributes_of(__name__, __all__)
 
 
 def __dir__() -> list[str]:

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, FileError, shown
+from rockframe.errors import FileError
 from rockframe.plot._artists import CONTACT, SceneArtist
 from rockframe.plot._axes import BLUE, GREY, units_of
-from rockframe.plot._checks import check_run, draws
+from rockframe.plot._checks import above_zero, check_run, draws
 from rockframe.plot._panels import AxesLike, Figure, Panels, sheet
 from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
 from rockframe.plot._runs import Window, runs_of
 from rockframe.plot._scene import Moving, figure_size
+from rockframe.proposals import proposing
 from rockframe.units import LENGTH
 from rockframe.units.shown import UnitsLike
 from rockframe.version import __version__
@@ -38,6 +39,7 @@ _TRAILER: Final = b"\x3b"
 _PICTURES: Final = FileKind.marked("an animation", (".gif", ".mp4", *KIND.endings), _MARK)
 
 
+@proposing
 class Animation:
     """A run as an animation.
 
@@ -106,7 +108,7 @@ class Animation:
         ending = Path(str(path)).suffix.lower()
         if ending in KIND.endings:
             return self._player().save(path, overwrite=overwrite)
-        dots = _positive(dpi, "dpi")
+        dots = above_zero(dpi, "animation", "dpi")
         # before the frames are drawn, which takes a while
         checked_path(path, _PICTURES, overwrite=overwrite)
         if ending == ".mp4" and not FFMpegWriter.isAvailable():
@@ -225,10 +227,10 @@ def animation(
     """
     check_run(run, "animation")
     (drawn,) = runs_of(run, "animation", window)
-    rate = _positive(frames_per_second, "frames_per_second")
+    rate = above_zero(frames_per_second, "animation", "frames_per_second")
     length = float(drawn.time[-1] - drawn.time[0])
     fitting = max(1.0, length * rate / _USUAL_FRAMES)
-    faster = fitting if speed is None else _positive(speed, "speed")
+    faster = fitting if speed is None else above_zero(speed, "animation", "speed")
     count = max(2, 1 + round(length * rate / faster))
     times = np.linspace(drawn.time[0], drawn.time[-1], count)
     chosen = units_of(units, "animation")
@@ -277,11 +279,3 @@ def animation(
         player, run, window=window, magnify=magnify, rotation=rotation, units=units, title=title
     )  # fmt: skip
     return Animation(on.panels, draw, rate, drawn.time[shown_at], page)
-
-
-def _positive(given: object, name: str) -> float:
-    number = float(given) if isinstance(given, int | float) else -1.0
-    if not 0.0 < number < np.inf:
-        msg = f"rf.plot.animation: {name} must be a number above zero, got {shown(given)}"
-        raise ComponentError(msg)
-    return number

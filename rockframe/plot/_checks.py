@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 import xarray as xr
 
-from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RockframeWarning, SchemaError
+from rockframe.proposals import hinted
 from rockframe.shared_arguments import Argument, completed, with_raises
+from rockframe.units import POSITIVE, to_ratio
 from rockframe.units.shown import KINDS as SHOWN_KINDS
 from rockframe.units.shown import reader_units
 
@@ -118,13 +119,19 @@ _RUN: Final = DatasetKind(
         "uplift_angle",
     ),
 )
+_OF_RUNS: Final = (
+    "animation", "card", "energies", "moment_rotation", "phase", "player", "response", "state",
+)  # fmt: skip
+"""What is drawn from the result of one run; cards of notebooks are too."""
 _OTHERS: Final = {
     "scene": "a System",
     "motion": "a GroundMotion",
     "spectra": "a GroundMotion",
     "suite": "a set of GroundMotions",
+    "sweep": "the result of a sweep, as rf.sweep(system, motions, ...) gives it",
+    "velocity_pulse": "a VelocityPulse, as motion.velocity_pulse() gives it",
 }
-"""What is drawn that is no dataset."""
+"""What is drawn that is no dataset, or no certain one."""
 _DRAWN_BY: Final = (
     # (variables, what they are, what draws them), the first that fits
     *((one.known, one.what, f"rf.plot.{name} draws it") for name, one in KINDS.items()),
@@ -210,6 +217,13 @@ def drawn_by(given: xr.Dataset) -> str:
 def check_run(given: object, function: str) -> None:
     """Refuse what is not the result of one run with histories."""
     given = _checked(given, function, _RUN)
+    for name in (*_RUN.known, *_RUN.needed):
+        if given[name].dtype.kind not in "fiub":
+            msg = (
+                f"rf.plot.{function} needs {_needed(function)}, got one whose {name!r} holds no "
+                "numbers"
+            )
+            raise SchemaError(msg)
     more = [str(name) for name in given["relative_rotation"].dims if name != "time"]
     if more:
         msg = (
@@ -250,6 +264,11 @@ def check_motion(given: object, function: str) -> None:
 
     if not isinstance(given, GroundMotion):
         raise ComponentError(refuse(function, given))
+
+
+def above_zero(given: object, function: str, name: str) -> float:
+    """Read a number above zero."""
+    return to_ratio(given, owner=f"rf.plot.{function}", name=name, condition=POSITIVE, example="2")
 
 
 def require_system(given: object, function: str) -> None:
@@ -309,9 +328,11 @@ def _words(function: str, given: object) -> tuple[str, str]:
 
 
 def _needed(function: str) -> str:
-    """Say what a function draws; what is not listed draws runs."""
-    kind = KINDS.get(function, _RUN)
-    return _OTHERS.get(function) or f"{kind.what}, as {kind.call} gives it"
+    """Say what a function draws."""
+    if function in _OTHERS:
+        return _OTHERS[function]
+    kind = _RUN if function in _OF_RUNS else KINDS[function]
+    return f"{kind.what}, as {kind.call} gives it"
 
 
 def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:

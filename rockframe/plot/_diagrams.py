@@ -18,7 +18,7 @@ from rockframe.plot._axes import (
     units_of,
     zero_line,
 )
-from rockframe.plot._checks import draws, overturning_angles, refuse, system_of_run
+from rockframe.plot._checks import above_zero, draws, overturning_angles, refuse, system_of_run
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.plot._response import of_rotation, relative
 from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
@@ -263,6 +263,7 @@ def _rate(run: Run, unit: Shown | None) -> Any:
 
 def _held(system: System, largest: float) -> xr.Dataset:
     left, right = system.setting.overturning_angles
+    largest = above_zero(largest, "moment_rotation", "largest")
     angles = np.linspace(-largest * left, largest * right, _ANGLES)
     return system.moment_rotation((angles, str(ANGLE.unit)))
 

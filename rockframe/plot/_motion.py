@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion, VelocityPulse
 from rockframe.motion.description import shown_name
 from rockframe.plot._axes import (
@@ -25,7 +25,7 @@ from rockframe.plot._axes import (
     units_of,
     zero_line,
 )
-from rockframe.plot._checks import check_motion, draws
+from rockframe.plot._checks import check_motion, draws, refuse
 from rockframe.plot._panels import AxesLike, Panels, sheet
 from rockframe.plot._runs import Window, window_of
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
@@ -226,11 +226,7 @@ def velocity_pulse(
     from rockframe.motion import VelocityPulse
 
     if not isinstance(cast("object", pulse), VelocityPulse):
-        msg = (
-            "rf.plot.velocity_pulse needs a VelocityPulse, as motion.velocity_pulse() gives it, "
-            f"got {shown(pulse)}"
-        )
-        raise ComponentError(msg)
+        raise ComponentError(refuse("velocity_pulse", pulse))
     unit = units_of(units, "velocity_pulse").of(VELOCITY)
     on = sheet(
         ax, "velocity_pulse", ("the motion", "the residual motion"), (8.0, 4.6),

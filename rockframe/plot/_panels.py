@@ -11,6 +11,7 @@ import numpy as np
 from rockframe.arguments import text
 from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import key
+from rockframe.proposals import proposing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,6 +63,7 @@ def _lines(words: str, width: int) -> list[str]:
 _LETTERS_OF_HANDLE: Final = 7
 
 
+@proposing
 class Panels(tuple[Any, ...]):
     """The panels of one figure, in the order in which they were drawn.
 

@@ -12,12 +12,14 @@ from typing import Any, Final, NamedTuple, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import text
 from rockframe.plot._artists import CONTACT, SOIL, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_of
 from rockframe.plot._checks import check_run, draws
 from rockframe.plot._response import CONTACT_COLOURS, contact_names_of, of_rotation, strips_of
 from rockframe.plot._runs import Window, runs_of
 from rockframe.plot._scene import Moving
+from rockframe.proposals import proposing
 from rockframe.signals.arrays import Array
 from rockframe.units import ACCELERATION, ANGLE
 from rockframe.units.shown import UnitsLike
@@ -51,6 +53,7 @@ class _Layer(NamedTuple):
     points: Array  # at all instants, shape (instants, points, 2) [m]
 
 
+@proposing
 class Player:
     """A run as a page that plays it, a few tens of kilobytes in size.
 
@@ -167,7 +170,11 @@ def player(
         _trace(ground.of(drawn.dataset["ground_acceleration"]),
                _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip
-    sentence = str(run.attrs.get("verdict", "")) if title is None else title
+    sentence = (
+        str(run.attrs.get("verdict", ""))
+        if title is None
+        else text(title, owner="rf.plot.player", name="title")
+    )
     data = {
         "times": [round(float(one), 6) for one in drawn.time[shown_at]],
         "layers": layers,

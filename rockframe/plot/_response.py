@@ -3,7 +3,6 @@
 Events are marked on the rotation, and strips below it show the contact states.
 """
 
-from difflib import get_close_matches
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import truth
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, nearest, shown
 from rockframe.plot._axes import (
     BLUE,
     COLOURS,
@@ -301,11 +300,10 @@ def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
     if not chosen or unknown:
         known = ", ".join(repr(name) for name in _HEIGHTS)
         found = unknown[0] if unknown else panels
-        near = get_close_matches(str(found), [*_HEIGHTS, *histories], 1)
-        meant = f"; did you mean {near[0]!r}?" if near else "."
+        near = nearest(found, [*_HEIGHTS, *histories]) or "."
         msg = (
             f"rf.plot.response: panels are some of {known}, and histories of the run, got "
-            f"{shown(found)}{meant} The run holds {', '.join(map(repr, histories))}"
+            f"{shown(found)}{near} The run holds {', '.join(map(repr, histories))}"
         )
         raise ComponentError(msg)
     return tuple(map(str, chosen))

@@ -1,7 +1,7 @@
 """Scenes to scale: as they stand, and at an instant of a run."""
 
 from collections.abc import Mapping
-from typing import Final, cast
+from typing import Final
 
 import numpy as np
 import xarray as xr
@@ -10,7 +10,7 @@ from rockframe.arguments import truth
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
-from rockframe.plot._checks import check_run, draws, require_system, system_of_run
+from rockframe.plot._checks import above_zero, check_run, draws, require_system, system_of_run
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.signals.arrays import Array
@@ -170,10 +170,7 @@ class Moving:
     ) -> None:
         self.function = function
         self.angle = (units or units_of(None, function)).of(ANGLE, "deg")
-        number = float(cast("float", magnify)) if isinstance(magnify, int | float) else -1.0
-        if not 0.0 < number < np.inf:
-            msg = f"rf.plot.{function}: magnify must be a number above zero, got {shown(magnify)}"
-            raise ComponentError(msg)
+        number = above_zero(magnify, function, "magnify")
         self.system = system_of_run(run, function)
         self.drawer = Drawer(geometry_of(self.system.assembly), number)
         self.run = run

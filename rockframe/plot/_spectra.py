@@ -27,6 +27,7 @@ from rockframe.plot._motion import Drawn, MotionsLike, drawn_motions, motions_ti
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet, single
 from rockframe.plot._runs import Window, window_of
 from rockframe.suites import TargetSpectrum
+from rockframe.suites.target import check_target
 from rockframe.units import ACCELERATION, VELOCITY, QuantityLike, RatioLike
 from rockframe.units.shown import UnitsLike
 
@@ -219,6 +220,8 @@ def suite(
     from rockframe.measures import response_spectrum
 
     given = drawn_motions(motions, "suite")
+    if target is not None:
+        check_target(target, owner="rf.plot.suite")
     unit = units_of(units, "suite").of(ACCELERATION, "g", acceleration=acceleration)
     named = {one.label or motions_title(given): one.motion for one in given}
     found = response_spectrum(named, periods, damping_ratio, component=component)

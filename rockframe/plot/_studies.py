@@ -1,12 +1,11 @@
 """Results of studies along one axis or two: sweeps, critical scales, sequences, fitted tests."""
 
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.plot._axes import (
     BLUE,
     GREY,
@@ -21,7 +20,7 @@ from rockframe.plot._axes import (
     units_of,
     zero_line,
 )
-from rockframe.plot._checks import drawable, draws
+from rockframe.plot._checks import drawable, draws, refuse
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import Outcome
@@ -116,7 +115,9 @@ def sweep(
     SchemaError
         No dataset, no such variable, or more than two dimensions.
     """
-    given = _without_single_values(checked_dataset(runs, owner="rf.plot.sweep"), variable)
+    if not isinstance(cast("object", runs), xr.Dataset) or not runs.data_vars:
+        raise SchemaError(refuse("sweep", runs))
+    given = _without_single_values(runs, variable)
     given = reader_units(units, owner="rf.plot.sweep").of_all(given)
     values = _values(given, variable)
     fell = overturns(given) == 1 if "status" in given else None
@@ -225,7 +226,8 @@ def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
         known = ", ".join(
             repr(str(name)) for name, one in given.data_vars.items() if 0 < one.ndim < 3
         )
-        msg = f"rf.plot.sweep: the runs have no {shown(variable)}; they have {known}"
+        near = nearest(variable, map(str, given.data_vars))
+        msg = f"rf.plot.sweep: the runs have no {shown(variable)}{near}; they have {known}"
         raise SchemaError(msg)
     values = given[variable]
     if not 1 <= values.ndim <= _MOST_AXES:

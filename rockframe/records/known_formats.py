@@ -5,9 +5,9 @@ from __future__ import annotations
 import inspect
 import re
 from dataclasses import replace
-from typing import Final, cast
+from typing import Any, Final, cast
 
-from rockframe.errors import ComponentError, RecordError
+from rockframe.errors import ComponentError, RecordError, nearest, shown
 from rockframe.records.asdf import ASDF
 from rockframe.records.cosmos import COSMOS
 from rockframe.records.csmip import CSMIP
@@ -141,12 +141,13 @@ def unregister(name: str) -> None:
 
 def by_name(name: str) -> Format:
     """Find a format by its name, or say which there are."""
-    wanted = name.casefold().replace("_", "-")
+    wanted = name.casefold().replace("_", "-") if isinstance(cast("Any", name), str) else ""
     for entry in formats():
         if entry.name == wanted:
             return entry
-    known = ", ".join(repr(entry.name) for entry in formats())
-    msg = f"GroundMotion.read: format must be one of {known}, got {name!r}"
+    names = [entry.name for entry in formats()]
+    known, near = ", ".join(map(repr, names)), nearest(name, names)
+    msg = f"GroundMotion.read: format must be one of {known}, got {shown(name)}{near}"
     raise ComponentError(msg)
 
 

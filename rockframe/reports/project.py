@@ -4,12 +4,11 @@ import datetime
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any, Final, cast
 
 import xarray as xr
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, nearest, shown
 from rockframe.reports import page
 
 ATTRIBUTE: Final = "project_json"
@@ -63,9 +62,8 @@ def read_project(given: object, owner: str) -> Project:
     values = cast("Mapping[Any, Any]", given)
     for name in values:
         if name not in known:
-            near = get_close_matches(str(name), known, 1)
-            meant = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(known)}"
-            msg = f"{owner}: project has no entry {shown(name)}: {meant}"
+            called = f"{shown(name)}{nearest(name, known)}"
+            msg = f"{owner}: project has no entry {called}; known are {', '.join(known)}"
             raise ComponentError(msg)
     assumptions = values.get(ASSUMPTIONS, ())
     if not isinstance(assumptions, list | tuple):

@@ -5,13 +5,14 @@ from collections.abc import Mapping
 from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import Final
+from typing import Final, cast
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, hinted, text, truth
-from rockframe.errors import RecordWarning, SchemaError
+from rockframe.arguments import checked_dataset, text, truth
+from rockframe.errors import ComponentError, RecordWarning, SchemaError, shown
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.reports import page, sections, studies
 from rockframe.reports.certifying import certified
 from rockframe.reports.project import Project, project_of
@@ -99,6 +100,9 @@ def report(
     _check(dataset)
     truth(certify, owner=_OWNER, name="certify")
     given = "" if title is None else text(title, owner=_OWNER, name="title")
+    if motion is not None and not isinstance(cast("object", motion), GroundMotion):
+        msg = f"{_OWNER}: motion must be a GroundMotion, got {shown(motion)}"
+        raise ComponentError(msg)
     about = project_of(project, dataset, _OWNER)
     chosen = reader_units(units, owner=_OWNER)
     source = str(dataset.encoding.get("source", ""))

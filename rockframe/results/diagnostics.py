@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.errors import SchemaError
+from rockframe.proposals import proposing
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.variable import TIME, Variable
@@ -17,6 +18,7 @@ State = Mapping[str, Generic]
 """Arrays over instants, by their names in the schema, in SI units."""
 
 
+@proposing
 @dataclass(frozen=True)
 class Diagnostic:
     """A function of the state, to be had of any scene by its name among the outputs.

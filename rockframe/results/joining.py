@@ -6,8 +6,9 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, hinted
+from rockframe.arguments import checked_dataset, truth
 from rockframe.errors import SchemaError, shown
+from rockframe.proposals import hinted
 from rockframe.results.dataset import dated
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
@@ -109,6 +110,7 @@ def concat(
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)
     _check_dimension(given, dim)
+    truth(histories, owner=_OWNER, name="histories")
     parts = [
         _without(run, (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME))
         for run in given

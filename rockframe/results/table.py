@@ -7,8 +7,9 @@ from typing import Any, Final, cast
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, hinted, one_of_words
+from rockframe.arguments import checked_dataset, one_of_words
 from rockframe.errors import SchemaError
+from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH

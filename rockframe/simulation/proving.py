@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import Final
 
-from rockframe.arguments import hinted, whole_number
+from rockframe.arguments import whole_number
 from rockframe.components import InitialState
 from rockframe.dynamics.alone import Alone
 from rockframe.dynamics.body import LEADING_CORNER
@@ -14,6 +14,7 @@ from rockframe.dynamics.rigid_ground import BlockOnRigidGround
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
+from rockframe.proposals import hinted
 from rockframe.simulation.plan import Plan, plan_run, start_of
 from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly

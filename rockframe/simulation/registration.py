@@ -5,9 +5,10 @@ from typing import Any, Final, cast
 
 import pint
 
-from rockframe.arguments import hinted
+from rockframe.arguments import several
 from rockframe.components import Block, Component
 from rockframe.errors import ComponentError, shown
+from rockframe.proposals import hinted
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
@@ -56,6 +57,7 @@ def register(
     ComponentError
         What is not as it must be, every fault at once; nothing is registered then.
     """
+    columns = several(columns, owner=_OWNER, name="columns", of="Variables")
     if isinstance(kind, Diagnostic) or (callable(kind) and not isinstance(kind, type)):
         _register_diagnostic(kind, columns, name, unit, long_name)
         return
@@ -211,7 +213,7 @@ def _faults_in_diagnostic(given: Diagnostic) -> list[str]:
     faults = _faults_in_name(name, "a diagnostic")
     if not callable(given.function):
         faults.append(f"diagnostic {name!r} needs a function, got {shown(given.function)}")
-    if not given.long_name:
+    if not isinstance(cast("Any", given.long_name), str) or not given.long_name:
         faults.append(f"diagnostic {name!r} needs a long_name, or a docstring")
     if cast("Any", given.unit) is None:
         faults.append(f"diagnostic {name!r} needs a unit, such as 'm', or '1'")

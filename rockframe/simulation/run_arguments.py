@@ -9,6 +9,7 @@ import xarray as xr
 from rockframe.arguments import whole_number
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, shown
+from rockframe.proposals import proposing
 from rockframe.shared_arguments import Argument
 from rockframe.solve.accuracy import AccuracyLevel
 from rockframe.system.options import AccuracyLike, Overturning, OverturningLike, PointsLike
@@ -103,6 +104,7 @@ FEWEST_RUNS: Final = 60
 MOST_RUNS: Final = 100_000
 
 
+@proposing
 @dataclass(frozen=True, init=False)
 class Certification:
     """What a certificate tries.

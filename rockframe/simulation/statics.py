@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.dynamics.events import ContactState
-from rockframe.errors import AssemblyError
+from rockframe.errors import AssemblyError, ComponentError, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, slope_attributes
 from rockframe.results.schema import SCHEMA
@@ -39,6 +39,9 @@ def equilibrium(system: Assembly) -> xr.Dataset:
 def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
     """Give the quasi-static moments at given rotations."""
     held_at = to_si_values(angles, ANGLE, owner="moment_rotation", name="angles")
+    if not len(held_at):
+        msg = f"moment_rotation: angles must be one or more, got {shown(angles)}"
+        raise ComponentError(msg)
     states = system.setting.held_at(held_at)
     values: dict[str, Generic] = {
         "angle": np.array(held_at),

@@ -9,10 +9,11 @@ from typing import Any, Final, Literal, Self
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, hinted
+from rockframe.arguments import by_names, checked_dataset, truth
 from rockframe.components import InitialState, component_from_dict
-from rockframe.errors import ModelWarning, SchemaError, shown, warn
+from rockframe.errors import ModelWarning, SchemaError, nearest, shown, warn
 from rockframe.motion import GroundMotion
+from rockframe.proposals import Proposing, hinted, proposing
 from rockframe.simulation.provenance import motion_from_dataset
 from rockframe.simulation.run_arguments import Certification
 from rockframe.solve.accuracy import AccuracyLevel
@@ -41,7 +42,8 @@ _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
 """What is raised where a description is not what was written."""
 
 
-class System:
+@proposing
+class System(metaclass=Proposing):
     """An assembled scene: parts in any order, checked together, ready to simulate.
 
     Parameters
@@ -87,7 +89,6 @@ class System:
 
     __slots__ = ("_assembly",)
 
-    @hinted()
     def __init__(
         self,
         *parts: object,
@@ -303,7 +304,8 @@ class System:
             points=points,
             overturning=overturning,
         )
-        return run(self._assembly, plan, certification_of(certify), look_again=second_look)
+        again = truth(second_look, owner="simulate", name="second_look")
+        return run(self._assembly, plan, certification_of(certify), look_again=again)
 
     def to_opensees(self, motion: GroundMotion, path: str | Path, **options: Any) -> Path:
         """Write the system and a motion as a Python file that OpenSees runs.
@@ -356,7 +358,6 @@ class System:
 
         return frequencies(self._assembly)
 
-    @hinted()
     def moment_rotation(self, angles: object) -> xr.Dataset:
         """Give the moments that hold the body at given rotations, in vertical equilibrium.
 
@@ -433,7 +434,7 @@ class System:
             It does not describe a system.
         """
         try:
-            given = description.get("motion")
+            given = _described_by_names(description).get("motion")
             motion = None if given is None else GroundMotion.from_dict(given)
             return cls._described(description, motion)
         except _DAMAGED as problem:
@@ -474,11 +475,15 @@ class System:
 
     @classmethod
     def _described(cls, description: Mapping[str, Any], motion: GroundMotion | None) -> Self:
+        _described_by_names(description)
         if "parts" not in description:
             msg = "found no 'parts'; expected a list of them, as to_dict() gives it"
             raise SchemaError(msg)
         known = [name for name in signature(cls).parameters if name != "parts"]
-        strange = [shown(name) for name in description if name not in (*known, "parts", "motion")]
+        allowed = (*known, "parts", "motion")
+        strange = [
+            f"{shown(name)}{nearest(name, allowed)}" for name in description if name not in allowed
+        ]
         if strange:
             msg = f"found {', '.join(strange)}; expected parts, motion, {', '.join(known)}"
             raise SchemaError(msg)
@@ -489,3 +494,7 @@ class System:
             if name not in ("parts", "motion")
         }
         return cls(*parts, *([] if motion is None else [motion]), **options)
+
+
+def _described_by_names(given: object) -> Mapping[str, Any]:
+    return by_names(given, owner="System", name="description", example="that of to_dict()")

@@ -12,6 +12,7 @@ from typing import Any, Final, Literal
 from rockframe.dynamics.protocol import ContactModel
 from rockframe.errors import SolverError, nearest, shown
 from rockframe.many import ceil, hypot
+from rockframe.proposals import proposing
 
 FEWEST: Final = "fewest"
 """Stands for the least number of sub-steps that `steps_per_period` allows."""
@@ -25,6 +26,7 @@ class AccuracyLevel(StrEnum):
     REFERENCE = "reference"
 
 
+@proposing
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
     """Settings of the integration: by a tolerance, or with fixed sub-steps.

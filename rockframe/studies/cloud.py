@@ -8,9 +8,10 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted
+from rockframe.arguments import whole_number
 from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.variables.analyses import FragilityStatus
@@ -26,7 +27,7 @@ from rockframe.studies.intensities import (
     measure_words,
     told_period,
 )
-from rockframe.studies.limit_states import OVERTURNING, check_runs, scalar_of
+from rockframe.studies.limit_states import OVERTURNING, check_runs, listed_limits, scalar_of
 from rockframe.studies.logistic import Logistic, fit_logistic
 from rockframe.units import POSITIVE, Measure, RatioLike, Unit, to_ratio, to_si
 
@@ -236,6 +237,7 @@ def cloud_analysis(
     """
     runs = check_runs(runs, owner=_OWNER)
     level = read_level(confidence, owner=_OWNER)
+    seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label or "", owner=_OWNER)
     asked = _levels(limits, values)
@@ -303,8 +305,8 @@ def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> floa
 
 def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
     """Read levels of the response; overturning is the last, at infinity."""
-    several = [limits] if isinstance(limits, str | int | float) else limits
-    found = {_read_level(one, values, _OWNER, "limits") for one in several if one != OVERTURNING}
+    levels = listed_limits(limits, owner=_OWNER)
+    found = {_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING}
     return [*sorted(found), math.inf]
 
 

@@ -1,13 +1,14 @@
 """Statistics of ensembles: how a result is distributed over motions or cases."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, hinted
-from rockframe.errors import ComponentError, SchemaError, shown
+from rockframe.arguments import checked_dataset, several
+from rockframe.errors import ComponentError, SchemaError, nearest, shown
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
@@ -85,11 +86,11 @@ def ensemble_statistics(
     shares = np.array(
         [
             to_ratio(one, owner=_OWNER, name="quantiles", condition=_SHARE, example="0.5")
-            for one in quantiles
+            for one in several(quantiles, owner=_OWNER, name="quantiles", of="numbers")
         ]
     )
     values = _values(runs, name)
-    together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
+    together = several(pooled, owner=_OWNER, name="pooled", of="names")
     level = np.nan if _dependent(values, runs.attrs, together) else asked
     ordered = np.sort(values.to_numpy().ravel().astype(np.float64))
     ordered = ordered[~np.isnan(ordered)]
@@ -127,8 +128,10 @@ def _values(runs: Any, name: str) -> xr.DataArray:
     if isinstance(runs, xr.DataArray):
         return runs
     dataset = checked_dataset(runs, owner=_OWNER)
-    if name not in dataset:
-        msg = f"{_OWNER}: found no {shown(name)}; expected one of {', '.join(map(str, dataset))}"
+    if not isinstance(cast("Any", name), str) or name not in dataset:
+        known = [str(one) for one in dataset]
+        found = f"{shown(name)}{nearest(name, known)}"
+        msg = f"{_OWNER}: found no {found}; expected one of {', '.join(known)}"
         raise SchemaError(msg)
     return dataset[name]
 

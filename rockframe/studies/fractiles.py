@@ -7,10 +7,11 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted
+from rockframe.arguments import several
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import ArrayLike
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.variables.studies import MOTION
@@ -105,7 +106,7 @@ def fractile_curves(
     shares = np.array(
         [
             to_ratio(one, owner=_OWNER, name="fractiles", condition=_SHARE, example="0.5")
-            for one in fractiles
+            for one in several(fractiles, owner=_OWNER, name="fractiles", of="numbers")
         ]
     )
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
@@ -299,7 +300,8 @@ def _levels(given: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
         return np.linspace(*ends, _POINTS + 1)[1:]  # every motion has reached the least
     unit = str(values.attrs.get("units", "1"))
     if unit == Unit.ONE:
-        found = np.array([to_ratio(one, owner=_OWNER, name="levels") for one in given])
+        listed = several(given, owner=_OWNER, name="levels", of="numbers")
+        found = np.array([to_ratio(one, owner=_OWNER, name="levels") for one in listed])
     else:
         measure = Measure("a response", Unit(unit), f"1 {unit}")
         found = np.array(to_si_values(given, measure, owner=_OWNER, name="levels"))

@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
-from rockframe.arguments import checked_dataset, hinted
+from rockframe.arguments import checked_dataset, function_of
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
@@ -179,7 +180,8 @@ def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCu
             msg = f"{_OWNER}: between must be two intensities that rise, got {shown(between)}"
             raise ComponentError(msg)
         values = np.geomspace(float(ends[0]), float(ends[1]), _OF_FUNCTIONS)
-        rates = np.broadcast_to(np.asarray(given(values), dtype=np.float64), values.shape)
+        rate = function_of(given, "intensities", owner=_OWNER, name="hazard")
+        rates = np.broadcast_to(np.asarray(rate(values), dtype=np.float64), values.shape)
     elif isinstance(given, xr.DataArray) and given.ndim == 1:
         (dim,) = given.dims
         given_unit = str(given[dim].attrs.get("units", "1"))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import one_of_names, text
 from rockframe.errors import ComponentError, StudyError, nearest, shown
 from rockframe.measures import (
     average_spectral_acceleration,
@@ -20,9 +21,8 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
-from rockframe.studies.limit_states import check_names
 from rockframe.studies.sweeps.case import remembered, unscaled_motion
-from rockframe.studies.sweeps.motions import SPECTRAL, motion_of_case
+from rockframe.studies.sweeps.motions import SPECTRAL, motion_of_case, named_motions
 from rockframe.units import (
     ACCELERATION,
     PERIOD,
@@ -125,7 +125,7 @@ class Intensity:
     def read(cls, given: object, period: PeriodLike | None, *, owner: str) -> "Intensity":
         """Read the arguments ``intensity`` and ``period``."""
         given = spelled(given)
-        name = check_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
+        name = one_of_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
         if name not in _SPECTRAL:
             return cls(name, None)
         if name == AVERAGE:
@@ -179,6 +179,8 @@ def measure_in(
     A column is any coordinate or variable of the runs, along their dimensions, by its name.
     """
     dims = runs["status"].dims
+    if motions is not None:
+        named_motions(motions)  # also where they are not needed
     given = named_column(runs, given)
     named = str(spelled(given))
     known = isinstance(given, str) and named in runs.variables
@@ -314,7 +316,7 @@ class ScaledIntensity:
         owner: str,
     ) -> None:
         self._motion = motion
-        name = spelled(name)
+        name = spelled(text(name, owner=owner, name="intensity"))
         self._block = system.parts.block
         self._gravity = quantity(system.options.gravity, ACCELERATION)
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")

@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset
+from rockframe.arguments import checked_dataset, several
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
@@ -53,27 +53,44 @@ class LimitState:
 
 def limit_states(given: Iterable[object], *, owner: str) -> tuple[LimitState, ...]:
     """Read the argument ``limits``: rotations by size, other limit states, overturning."""
-    if isinstance(given, str | int | float):
-        given = [given]
     rotations, others = set[float](), dict[LimitState, None]()
-    for one in given:
+    for one in listed_limits(given, owner=owner):
         if isinstance(one, tuple):
             others[_of_variable(cast("tuple[Any, ...]", one), owner)] = None
-        elif one == UPLIFT:
-            rotations.add(0.0)
-        elif one != OVERTURNING:
-            rotations.add(
-                to_ratio(
-                    cast("Any", one), owner=owner, name="limits", condition=_SHARE, example="0.5"
-                )
-            )
+        elif isinstance(one, str) and one in (UPLIFT, OVERTURNING):
+            rotations |= {0.0} if one == UPLIFT else set()
+        else:
+            rotations.add(_share(one, owner))
     return (*map(LimitState, sorted(rotations)), *others, LimitState(1.0))
+
+
+def listed_limits(given: object, *, owner: str) -> list[Any]:
+    """Give the several limit states that were given, or the one."""
+    if isinstance(given, str | int | float):
+        return [given]
+    return several(given, owner=owner, name="limits", of="limit states")
+
+
+def _share(given: Any, owner: str) -> float:
+    """Read a rotation over the overturning angle."""
+    if isinstance(given, str) and not any(letter.isdigit() for letter in given):
+        words = (
+            f"{owner}: limits must be {UPLIFT!r}, {OVERTURNING!r}, a rotation over the overturning "
+            "angle such as 0.5, or a variable of runs and a value such as ('peak_slip', '5 cm')"
+        )
+        msg = f"{words}, got {shown(given)}{nearest(given, (UPLIFT, OVERTURNING))}"
+        raise ComponentError(msg)
+    return to_ratio(given, owner=owner, name="limits", condition=_SHARE, example="0.5")
 
 
 def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
     """Read a limit state on a scalar of runs: its name, from where on, and of which point."""
     name, value, label = (*given, None, None)[:3] if len(given) in (2, 3) else ("", None, None)
-    if not isinstance(name, str) or name not in SCHEMA:
+    if isinstance(name, str) and name and name not in SCHEMA:
+        example = nearest(name, SCHEMA) or "; give one such as in ('peak_slip', '5 cm')"
+        msg = f"{owner}: limits: runs have no variable {name!r}{example}"
+        raise ComponentError(msg)
+    if not isinstance(name, str) or not name:
         msg = (
             f"{owner}: a limit state on a variable of runs is its name, a value with a unit or "
             "None, and of several points, bodies or restrainers which one, for example "
@@ -151,12 +168,12 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr.DataArray:
     """Give a scalar of runs, of one of the points, bodies or restrainers that it is of."""
-    if name not in runs:
+    if not isinstance(cast("Any", name), str) or name not in runs:
         near = nearest(name, [str(one) for one in runs])
         numbers = [str(one) for one, values in runs.items() if values.dtype.kind in "fiu"]
         msg = (
-            f"{owner}: the runs have no {name}{near}; they have {', '.join(numbers)}; a sweep with "
-            "outputs=[...] or points={...} has more"
+            f"{owner}: the runs have no {shown(name)}{near}; they have {', '.join(numbers)}; a "
+            "sweep with outputs=[...] or points={...} has more"
         )
         raise SchemaError(msg)
     values = runs[name]
@@ -174,13 +191,3 @@ def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr
 def interrupted(runs: xr.Dataset) -> bool:
     """Tell whether some cases have not been run."""
     return bool(np.any(runs["status"].to_numpy() == RunStatus.NOT_RUN))
-
-
-def check_names(given: object, known: Iterable[str], *, owner: str, name: str) -> str:
-    """Read an argument that is one of some names."""
-    listed = list(known)
-    if isinstance(given, str) and given in listed:
-        return given
-    near = nearest(given, listed)
-    msg = f"{owner}: {name} must be one of {', '.join(listed)}, got {shown(given)}{near}"
-    raise ComponentError(msg)

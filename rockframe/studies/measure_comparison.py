@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import hinted
+from rockframe.arguments import several
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
@@ -113,7 +114,10 @@ def compare_intensities(
     values = scalar_of(runs, response, label or "", owner=_OWNER)
     floor = read_least(least, values, owner=_OWNER)
     named, clouds, kept = list[str](), list[Cloud](), list[Generic]()
-    for given in [measures] if isinstance(measures, str | xr.DataArray) else measures:
+    one_alone = isinstance(measures, str | xr.DataArray)
+    for given in (
+        [measures] if one_alone else several(measures, owner=_OWNER, name="measures", of="measures")
+    ):
         one, period = _with_period(given)
         measure = measure_in(runs, one, period, motions, owner=_OWNER)
         told = told_period(runs, [one], period, owner=_OWNER)
@@ -157,7 +161,7 @@ def _covariates(runs: xr.Dataset, given: Sequence[str] | Covariates) -> dict[str
         table = given
         return {str(name): _of_motions(runs, str(name), one) for name, one in table.items()}
     found: dict[str, xr.DataArray] = {}
-    for name in [given] if isinstance(given, str) else given:
+    for name in several(given, owner=_OWNER, name="against", of="names"):
         one = named_column(runs, name)
         if not isinstance(one, xr.DataArray) or not set(one.dims) <= set(runs["status"].dims):
             msg = f"{_OWNER}: against names {shown(name)}, which is no coordinate of the runs"
@@ -179,7 +183,7 @@ def _of_motions(runs: xr.Dataset, name: str, given: Any) -> xr.DataArray:
             raise ComponentError(msg)
         values = [table[str(one)] for one in labels.ravel()]
     else:
-        values = list(given)
+        values = several(given, owner=_OWNER, name=f"against[{name!r}]", of="numbers")
         if runs[MOTION].dims != (MOTION,) or len(values) != labels.size:
             msg = (
                 f"{_OWNER}: against has {len(values)} numbers of {name} for {labels.size} motions; "

@@ -7,7 +7,7 @@ from typing import Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import function_of, whole_number
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
@@ -178,6 +178,7 @@ def _made(pulse: object, frequency: float) -> GroundMotion:
             f"rf.GroundMotion.sine_pulse, got {shown(pulse)}"
         )
         raise ComponentError(msg)
+    pulse = function_of(pulse, "amplitude", "frequency", owner=_OWNER, name="pulse")
     made = pulse(quantity(1.0, ACCELERATION), quantity(frequency, FREQUENCY))
     if not isinstance(made, GroundMotion):
         msg = f"{_OWNER}: pulse must return a GroundMotion, got {shown(made)}"

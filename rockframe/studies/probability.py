@@ -91,7 +91,10 @@ def read_correlation(given: object, names: Sequence[str], *, owner: str) -> Arra
                 value, owner=owner, name="correlation", condition=_CORRELATED, example="0.5"
             )
     else:
-        matrix = np.asarray(given, dtype=np.float64)
+        try:
+            matrix = np.asarray(given, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):  # no matrix of numbers
+            matrix = np.empty(0)
     alike = matrix.shape == (size, size) and np.array_equal(matrix, matrix.T)
     if not alike or not np.allclose(np.diag(matrix), 1.0, rtol=0.0, atol=1e-12):
         msg = (

@@ -9,7 +9,7 @@ from typing import Any, Final, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import by_words
+from rockframe.arguments import by_words, several
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
@@ -121,13 +121,15 @@ def _sequences(given: object) -> dict[str, list[GroundMotion]]:
     if isinstance(given, Mapping):
         named = by_words(cast("Mapping[Any, Any]", given), owner=_OWNER)
     elif isinstance(given, Iterable) and not isinstance(given, str):
-        several = list(cast("Iterable[Any]", given))
-        named = {f"sequence {number}": each for number, each in enumerate(several, start=1)}
+        listed = list(cast("Iterable[Any]", given))
+        named = {f"sequence {number}": each for number, each in enumerate(listed, start=1)}
     else:
         named = {}
     found: dict[str, list[GroundMotion]] = {}
     for name, each in named.items():
-        motions = [each] if isinstance(each, GroundMotion) else list(each)
+        motions = [each] if isinstance(each, GroundMotion) else several(
+            each, owner=_OWNER, name=repr(name), of="GroundMotions"
+        )  # fmt: skip
         if not motions or not all(isinstance(one, GroundMotion) for one in motions):
             msg = f"{_OWNER}: {name!r} needs GroundMotions in their order, got {shown(each)}"
             raise ComponentError(msg)

@@ -3,18 +3,18 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import one_of_words, several
 from rockframe.errors import ComponentError, shown
 from rockframe.measures import rotated_spectrum
 from rockframe.measures.common import read_inputs
 from rockframe.measures.response import checked_periods, shortest_of, spectra_of
 from rockframe.motion.processing.samples import say_coarse
 from rockframe.signals.arrays import Array
-from rockframe.suites.target import TargetSpectrum
+from rockframe.suites.target import TargetSpectrum, check_target
 from rockframe.suites.value import LabelledMotions
 from rockframe.units import PERIOD, POSITIVE, to_ratio
 
@@ -81,12 +81,7 @@ def candidates_of(
     owner: str,
 ) -> Candidates:
     """Check the arguments of a selection, and compute the spectra that it needs."""
-    if not isinstance(target, TargetSpectrum):
-        msg = (
-            f"{owner}: target needs a TargetSpectrum, got {shown(target)}; write for example "
-            "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
-        )
-        raise ComponentError(msg)
+    target = check_target(target, owner=owner)
     kind = one_of_words(Combination, combination, owner=owner, name="combination")
     seconds = _usual(target) if periods is None else checked_periods(periods, owner=owner)
     fixed = seconds if conditioned_on is None else checked_periods(conditioned_on, owner=owner)
@@ -130,7 +125,7 @@ def _usual(target: TargetSpectrum) -> Array:
 def _bounds(given: "tuple[RatioLike, RatioLike] | None", owner: str) -> tuple[float, float]:
     if given is None:
         return 0.0, np.inf
-    values: tuple[Any, ...] = tuple(given)
+    values = several(given, owner=owner, name="bounds", of="factors")
     if len(values) == 2:
         low, high = (
             to_ratio(one, owner=owner, name="bounds", condition=POSITIVE, example="(0.25, 4)")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
+from rockframe.arguments import function_of
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import peak_words
@@ -102,7 +103,7 @@ def chosen(motions: Mapping[str, GroundMotion], criteria: Mapping[str, object]) 
 def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: str) -> None:
     """Refuse the name of a column that no motion knows."""
     known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         asked = f"{shown(name)}{nearest(name, known)}"
         msg = f"{owner}: there is no column {asked}; known are {', '.join(known)}"
         raise ComponentError(msg)
@@ -127,7 +128,7 @@ def _missing(value: Any) -> bool:
 
 def _test(name: str, given: Any) -> Test:
     if callable(given):
-        return cast("Test", given)
+        return function_of(given, "value", owner=_OWNER, name=name)
     if isinstance(given, tuple):
         bounds = cast("tuple[Any, ...]", given)
         if len(bounds) != 2:

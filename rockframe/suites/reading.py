@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from pathlib import PurePath
 from typing import Final
 
-from rockframe.arguments import hinted
 from rockframe.errors import PLEASE_REPORT, ComponentError, RecordError, RecordWarning, warn
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.records import (
     Known,
     Reading,

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion.quantities import ArrayLike
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA

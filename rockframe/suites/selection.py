@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted, whole_number
+from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.suites.candidates import Combination, candidates_of
 from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set

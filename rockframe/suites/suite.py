@@ -5,7 +5,7 @@ from typing import Any, Self
 
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, hinted
+from rockframe.arguments import checked_dataset
 from rockframe.measures import (
     average_spectral_acceleration,
     intensity_measures,
@@ -13,6 +13,7 @@ from rockframe.measures import (
     rotated_spectrum,
 )
 from rockframe.motion.quantities import ArrayLike
+from rockframe.proposals import proposing
 from rockframe.suites.matching import matched
 from rockframe.suites.scaling import scaled_motions, scaling_to
 from rockframe.suites.selection import selection_for
@@ -22,6 +23,7 @@ from rockframe.suites.value import LabelledMotions
 from rockframe.units import QuantityLike, RatioLike
 
 
+@proposing
 class MotionSuite(LabelledMotions):
     """Labelled ground motions in an order; immutable.
 
@@ -76,7 +78,6 @@ class MotionSuite(LabelledMotions):
         """
         return intensity_measures(self, **arguments)
 
-    @hinted()
     def response_spectrum(
         self,
         periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -100,7 +101,6 @@ class MotionSuite(LabelledMotions):
             self, periods, damping_ratios, component=component, interpolation=interpolation
         )
 
-    @hinted()
     def rotated_spectrum(
         self,
         periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -120,7 +120,6 @@ class MotionSuite(LabelledMotions):
         """
         return rotated_spectrum(self.pairs, periods, damping_ratios)
 
-    @hinted()
     def average_spectral_acceleration(
         self, periods: ArrayLike | Iterable[QuantityLike], damping_ratio: RatioLike = 0.05
     ) -> xr.Dataset:

@@ -3,19 +3,22 @@
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from numbers import Real
 from typing import Any, Final, Self
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, hinted
-from rockframe.errors import ComponentError, SchemaError
+from rockframe.arguments import checked_dataset, function_of, several, text
+from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.motion.quantities import ArrayLike
+from rockframe.proposals import Proposing, proposing
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import DAMPING_RATIO
 from rockframe.suites.codes import GroundType, Shape, asce_7, eurocode_8
 from rockframe.units import (
     ACCELERATION,
+    NOT_NEGATIVE,
     PERIOD,
     POSITIVE,
     Condition,
@@ -30,8 +33,9 @@ _USUAL: Final = 0.05
 _ROUNDING: Final = 1e-9
 
 
+@proposing
 @dataclass(frozen=True)
-class TargetSpectrum:
+class TargetSpectrum(metaclass=Proposing):
     """A pseudo-spectral acceleration that motions are to fit, perhaps with its spread.
 
     Made by :meth:`from_table`, :meth:`from_spectrum`, :meth:`eurocode_8` or :meth:`asce_7`.
@@ -56,8 +60,20 @@ class TargetSpectrum:
     damping_ratio: float = _USUAL
     limits: tuple[float, float] = (0.0, math.inf)
 
+    def __post_init__(self) -> None:
+        owner = type(self).__name__
+        text(self.name, owner=owner, name="name")
+        function_of(self.shape, "periods", owner=owner, name="shape")
+        if self.deviation is not None:
+            function_of(self.deviation, "periods", owner=owner, name="deviation")
+        to_ratio(self.damping_ratio, owner=owner, name="damping_ratio", condition=NOT_NEGATIVE)
+        limits = several(self.limits, owner=owner, name="limits", of="periods")
+        rising = len(limits) == 2 and all(isinstance(one, Real) for one in limits)
+        if not rising or not 0.0 <= limits[0] <= limits[1]:
+            msg = f"{owner}: limits must be two periods in seconds that rise, got {shown(limits)}"
+            raise ComponentError(msg)
+
     @classmethod
-    @hinted()
     def from_table(
         cls,
         periods: ArrayLike | Iterable[QuantityLike],
@@ -117,7 +133,9 @@ class TargetSpectrum:
             deviations = np.array(
                 [
                     to_ratio(one, owner=owner, name="standard_deviations", condition=_DEVIATION)
-                    for one in standard_deviations
+                    for one in several(
+                        standard_deviations, owner=owner, name="standard_deviations", of="numbers"
+                    )
                 ]
             )
             if deviations.shape != seconds.shape:
@@ -133,7 +151,6 @@ class TargetSpectrum:
         )
 
     @classmethod
-    @hinted()
     def from_spectrum(cls, dataset: xr.Dataset, *, name: str = "spectrum") -> Self:
         """Take a target from response spectra: of one motion, or the median of several.
 
@@ -175,7 +192,6 @@ class TargetSpectrum:
         )
 
     @classmethod
-    @hinted()
     def eurocode_8(
         cls,
         ground_acceleration: QuantityLike,
@@ -228,7 +244,6 @@ class TargetSpectrum:
         return cls(words, shape, None, damping)
 
     @classmethod
-    @hinted()
     def asce_7(
         cls,
         short_period_acceleration: QuantityLike,
@@ -272,7 +287,6 @@ class TargetSpectrum:
             )
         )  # fmt: skip
 
-    @hinted()
     def at(self, periods: ArrayLike | Iterable[QuantityLike]) -> Array:
         """Give the accelerations at periods.
 
@@ -319,6 +333,7 @@ class TargetSpectrum:
             Periods at which it is not known.
         """
         low, high = self.limits
+        _check_array(seconds, owner)
         if seconds.min() < low * (1.0 - _ROUNDING) or seconds.max() > high * (1.0 + _ROUNDING):
             msg = (
                 f"{owner}: periods from {seconds.min():.4g} s to {seconds.max():.4g} s, but the "
@@ -340,6 +355,7 @@ class TargetSpectrum:
         ndarray, shape (n,)
             Zero where none is told [1].
         """
+        _check_array(seconds, f"{type(self).__name__}.deviations_at")
         return np.zeros(seconds.size) if self.deviation is None else self.deviation(seconds)
 
     def scaled(self, factor: RatioLike) -> Self:
@@ -365,7 +381,6 @@ class TargetSpectrum:
             self, name=f"{self.name}, times {ratio:g}", shape=_Multiple(ratio, self.shape)
         )
 
-    @hinted()
     def with_deviation(self, standard_deviation: RatioLike) -> Self:
         """Give a set the same spread at all periods.
 
@@ -431,3 +446,20 @@ class _Constant:
 
 def _interpolated(seconds: Array, values: Array) -> _Interpolated:
     return _Interpolated(tuple(np.log(seconds).tolist()), tuple(values.tolist()))
+
+
+def _check_array(seconds: object, owner: str) -> None:
+    if not isinstance(seconds, np.ndarray) or seconds.size == 0 or seconds.dtype.kind not in "fiu":
+        msg = f"{owner}: seconds must be an array of periods, one or more, got {shown(seconds)}"
+        raise ComponentError(msg)
+
+
+def check_target(given: object, *, owner: str) -> TargetSpectrum:
+    """Refuse what is no target."""
+    if isinstance(given, TargetSpectrum):
+        return given
+    msg = (
+        f"{owner}: target needs a TargetSpectrum, got {shown(given)}; write for example "
+        "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
+    )
+    raise ComponentError(msg)

@@ -6,10 +6,11 @@ from typing import Any, Final, Self, cast
 
 import pandas as pd
 
-from rockframe.arguments import by_words, hinted
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.arguments import by_names, by_words, function_of, several, truth
+from rockframe.errors import ComponentError, LabelError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
+from rockframe.proposals import Proposing, proposing
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
 from rockframe.results.table import table as table_of
@@ -26,7 +27,8 @@ from rockframe.suites.records import pairs_of
 _EXAMPLE: Final = "rf.read_suite(path) reads files"
 
 
-class LabelledMotions(Mapping[str, GroundMotion]):
+@proposing
+class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
     """Labelled motions in an order; immutable. What a suite is, without what is done with it."""
 
     __slots__ = ("_motions", "_remarks", "_unread", "_verticals")
@@ -42,8 +44,10 @@ class LabelledMotions(Mapping[str, GroundMotion]):
         owner = type(self).__name__
         self._motions = _named(motions, owner)
         self._verticals = {} if verticals is None else _named(verticals, owner)
-        self._unread = dict(unread or {})
-        self._remarks = tuple(remarks)
+        files = {} if unread is None else unread
+        example = "{'a.AT2': 'an empty file'}"
+        self._unread = {**by_names(files, owner=owner, name="unread", example=example)}
+        self._remarks = tuple(several(remarks, owner=owner, name="remarks", of="texts"))
         if not self._motions:
             msg = f"{owner}: found no motions; expected one at least"
             raise ComponentError(msg)
@@ -59,7 +63,7 @@ class LabelledMotions(Mapping[str, GroundMotion]):
             return self._motions[label]
         except KeyError:  # as mappings have it
             msg = f"no motion of the suite is called {shown(label)}{nearest(label, self._motions)}"
-            raise KeyError(msg) from None
+            raise LabelError(msg) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._motions)
@@ -170,13 +174,15 @@ class LabelledMotions(Mapping[str, GroundMotion]):
         ComponentError
             None of them, or one that is not there.
         """
-        unknown = [label for label in labels if label not in self._motions]
+        owner = f"{type(self).__name__}.only"
+        asked = several(labels, owner=owner, name="labels", of="labels")
+        unknown = [one for one in asked if not isinstance(one, str) or one not in self._motions]
         if unknown:
-            msg = f"{type(self).__name__}.only: there is no motion {shown(unknown[0])}"
+            found = f"{shown(unknown[0])}{nearest(unknown[0], self._motions)}"
+            msg = f"{owner}: there is no motion {found}"
             raise ComponentError(msg)
-        return self._with({label: self._motions[label] for label in labels})
+        return self._with({label: self._motions[label] for label in asked})
 
-    @hinted()
     def sort(self, by: str, *, descending: bool = False) -> Self:
         """Order the motions by a column; those of which it is not known stand last.
 
@@ -196,6 +202,7 @@ class LabelledMotions(Mapping[str, GroundMotion]):
         ComponentError
             No such column.
         """
+        truth(descending, owner=f"{type(self).__name__}.sort", name="descending")
         check_column(self, by, owner=f"{type(self).__name__}.sort")
         return self.only(order(self, by, descending=descending))
 
@@ -218,6 +225,7 @@ class LabelledMotions(Mapping[str, GroundMotion]):
         ComponentError
             What it gives is no motion.
         """
+        step = function_of(step, "motion", owner=f"{type(self).__name__}.changed", name="step")
         motions = {label: step(motion) for label, motion in self._motions.items()}
         upwards = {label: step(motion) for label, motion in self._verticals.items()}
         return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)

@@ -372,7 +372,10 @@ def _joined(value: object) -> object:
     number, unit = pair if len(pair) == 2 else (None, None)
     if isinstance(number, bool) or not isinstance(number, Real) or not isinstance(unit, str):
         return pair
-    return f"{float(number)!r} {unit}"
+    try:
+        return f"{float(number)!r} {unit}"
+    except OverflowError:  # beyond what a float can be
+        return f"{math.inf} {unit}"
 
 
 def _check_kind(given: Quantity, value: object, measure: Measure, *, owner: str, name: str) -> None:

@@ -3,13 +3,12 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, nearest, shown
 from rockframe.units import kinds
 from rockframe.units.kinds import Measure
 from rockframe.units.reading import to_si
@@ -107,9 +106,9 @@ def reader_units(given: object, *, owner: str) -> ReaderUnits:
     chosen = dict[str, Shown]()
     for name, unit in cast("Mapping[Any, Any]", given).items():
         if name not in KINDS:
-            near = get_close_matches(str(name), KINDS, 1)
-            meant = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(KINDS)}"
-            msg = f"{owner}: units are of kinds, {example}; found {shown(name)}: {meant}"
+            found = f"found {shown(name)}{nearest(name, KINDS)}"
+            known = f"known are {', '.join(KINDS)}; times stay in s, and frequencies in Hz"
+            msg = f"{owner}: units are of kinds, {example}; {found}; {known}"
             raise ComponentError(msg)
         kind = KINDS[name]
         chosen[str(kind.unit)] = shown_unit(unit, kind, owner=owner, name=f"units[{name!r}]")

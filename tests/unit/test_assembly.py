@@ -221,9 +221,12 @@ def test_what_describes_no_system_is_refused(description):
         (lambda told: told.pop("parts"), "found no 'parts'; expected a list of them"),
         (
             lambda told: told.update(gravitiy="9 m/s^2"),
-            "found 'gravitiy'; expected parts, .*gravity",
+            "found 'gravitiy'; was 'gravity' meant.; expected parts, .*gravity",
         ),
-        (lambda told: told["parts"][0].update(hight="2 m"), "found 'hight' in Block; .*height"),
+        (
+            lambda told: told["parts"][0].update(hight="2 m"),
+            "found 'hight' in Block; was 'height' meant.; .*height",
+        ),
     ],
 )
 def test_what_is_wrong_in_a_description_is_named(change, words):

@@ -99,7 +99,7 @@ def test_faults_of_arguments():
         rf.codes.circolare_2019(LOW, spectrum(), limit_state="SLD")
     with pytest.raises(ComponentError, match="1 or more"):
         rf.codes.circolare_2019(LOW, spectrum(), confidence_factor=0.9)
-    with pytest.raises(ComponentError, match="no number is called 'T_SLD'"):
+    with pytest.raises(ComponentError, match="got 'T_SLD'; was 'T_SLV'"):
         rf.codes.circolare_2019(LOW, spectrum()).value("T_SLD")
 
 

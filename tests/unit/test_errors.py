@@ -91,6 +91,8 @@ class Console:
         return self
 
     def structured_traceback(self, kind, error, trace):
+        assert error.__cause__ is None  # it would be drawn too, with its lines
+        assert error.__context__ is None
         return [kind.__name__, *(name for _, _, name, _ in traceback.extract_tb(trace))]
 
 
@@ -101,8 +103,25 @@ class Console:
         lambda: rf.System(rf.RigidGround()),
         lambda: rf.plot.response(3),
         lambda: rf.GroundMotion.read("nowhere.AT2"),
+        lambda: rf.System.from_dict({"parts": [{"type": "Block", "widht": 3}]}),
+        lambda: rf.Block(widht="0.8 m"),
+        lambda: rf.sweep(),
+        lambda: rf.plot.respones,
+        lambda: rf.GroundMotion.sine_puls(),
+        lambda: rf.MotionSuite([rf.GroundMotion.sine_pulse()])["none"],
     ],
-    ids=["units", "assembly", "figure", "file"],
+    ids=[
+        "units",
+        "assembly",
+        "figure",
+        "file",
+        "cause",
+        "argument",
+        "call",
+        "module",
+        "class",
+        "label",
+    ],
 )
 def test_notebooks_show_the_line_that_was_wrong_and_no_other(misuse, monkeypatch):
     console = Console()

@@ -187,14 +187,14 @@ def test_a_report_says_whose_it_is_and_concludes(response, tmp_path):
         assert said in words, said
     assert path.read_text().count("<ol>") == 2  # what is assumed, and what is left out
     for wrong, message in (
-        ({"objekt": "x"}, "project has no entry 'objekt': did you mean 'object'"),
+        ({"objekt": "x"}, "project has no entry 'objekt'; was 'object' meant?"),
         ({"object": 3.5}, "object of the project must be text"),
         ({"assumptions": "one"}, "assumptions must be a list"),
         ("Tower", "project must be a mapping with any of object"),
     ):
         with pytest.raises(ComponentError, match=message):
             rf.report(response, tmp_path / "x.html", project=wrong)
-    with pytest.raises(ComponentError, match="did you mean 'force'"):
+    with pytest.raises(ComponentError, match="was 'force' meant"):
         rf.report(response, tmp_path / "x.html", units={"forces": "kN"})
 
 

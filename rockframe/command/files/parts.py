@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from inspect import getmembers, ismethod
 from typing import Any, Final
 
-from rockframe.arguments import hints_of
 from rockframe.command.files.tables import (
     Place,
     TomlFile,
@@ -17,6 +16,7 @@ from rockframe.command.files.tables import (
 from rockframe.components import Component, RockingFrame, Stack
 from rockframe.components.registry import kinds
 from rockframe.errors import nearest, shown
+from rockframe.proposals import hints_of
 from rockframe.system.parts import RESTRAINER, slot_of_kind, slots, usual_kind
 
 TYPE: Final = "type"

@@ -8,7 +8,6 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any, Final
 
-from rockframe.arguments import hints_of
 from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts, part_slots
 from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made
 from rockframe.components import Component, InitialState
@@ -16,6 +15,7 @@ from rockframe.components.registry import kinds
 from rockframe.errors import AssemblyError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
+from rockframe.proposals import hints_of
 from rockframe.reports.project import project_json
 from rockframe.simulation.plan import read_arguments
 from rockframe.simulation.run_arguments import Certification, certification_of

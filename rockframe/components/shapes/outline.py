@@ -8,7 +8,6 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from rockframe.arguments import hinted
 from rockframe.components.alternatives import OneOf
 from rockframe.components.shapes.reading import PlaneMass, Points, read_mass, read_points
 from rockframe.components.shapes.standing import (
@@ -20,6 +19,7 @@ from rockframe.components.shapes.standing import (
     shaped_body,
 )
 from rockframe.errors import ComponentError
+from rockframe.proposals import hinted
 from rockframe.signals.arrays import Array
 from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
 

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypedDict, cast
 
-from rockframe.arguments import hinted
 from rockframe.components.shapes.outline import outline_mass
 from rockframe.components.shapes.reading import (
     Place,
@@ -23,6 +22,7 @@ from rockframe.components.shapes.standing import (
     shaped_body,
 )
 from rockframe.errors import ComponentError, shown
+from rockframe.proposals import hinted
 from rockframe.units import (
     INERTIA,
     LENGTH,

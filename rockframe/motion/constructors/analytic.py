@@ -11,7 +11,7 @@ from functools import partial, wraps
 from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
-from rockframe.arguments import hinted, whole_number
+from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.pulses import (
     QUARTER_TURN,
@@ -23,6 +23,7 @@ from rockframe.motion.pulses import (
     type_c,
 )
 from rockframe.motion.value import Made
+from rockframe.proposals import hinted
 from rockframe.shared_arguments import with_raises
 from rockframe.units import (
     ACCELERATION,
@@ -80,10 +81,11 @@ def _pulse(
     def decorate(declared: Constructor) -> Constructor:
         own = signature(declared)
         PULSES.append(declared.__name__)
+        checked = hinted()(declared)
 
-        @wraps(declared)
+        @wraps(checked)
         def construct(kind: type[Any], *given: Any, **named: Any) -> Any:
-            declared(kind, *given, **named)  # says what is missing, or too much
+            checked(kind, *given, **named)  # says what is missing, or too much
             values = own.bind(kind, *given, **named)
             values.apply_defaults()
             reader = _Reader(f"{kind.__name__}.{declared.__name__}", cycles)
@@ -97,7 +99,7 @@ def _pulse(
             )
 
         construct.__doc__ = with_raises(declared.__doc__ or "", _RAISES)
-        return hinted()(cast("Constructor", construct))
+        return cast("Constructor", construct)
 
     return decorate
 

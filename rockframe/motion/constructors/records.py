@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import hinted, text
+from rockframe.arguments import text
 from rockframe.errors import ComponentError, RecordWarning, UnitsError, nearest, shown, warn
 from rockframe.motion.quantities import ArrayLike, accelerations_to_si, declared_times
 from rockframe.motion.value import UNNAMED, Made
+from rockframe.proposals import hinted
 from rockframe.records import PathLike, RecordLike, read_record, request_of
 from rockframe.signals import Motion
 from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
@@ -241,7 +242,7 @@ def example(
         raise ComponentError(msg)
     file = io.BytesIO((folder / record["file"]).read_bytes())
     file.name = record["file"]
-    motion = read(kind, file, component=component or record["component"])
+    motion = read(kind, file, component=record["component"] if component is None else component)
     metadata: dict[str, Any] = record["metadata"]
     return kind(
         motion.si,

@@ -6,10 +6,11 @@ import warnings
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from rockframe.arguments import hinted, one_of_words, whole_number
+from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.motion.stochastic import Corners, Site
 from rockframe.motion.value import Made
+from rockframe.proposals import hinted
 from rockframe.signals import Motion
 from rockframe.units import (
     DENSITY,

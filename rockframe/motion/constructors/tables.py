@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Hashable
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import hinted, one_of_words
-from rockframe.errors import ComponentError, RecordWarning, shown
+from rockframe.arguments import one_of_words
+from rockframe.errors import ComponentError, RecordWarning, nearest, shown
 from rockframe.motion.processing.samples import instants_of
 from rockframe.motion.quantities import (
     ArrayLike,
@@ -18,6 +19,7 @@ from rockframe.motion.quantities import (
     times_to_si,
 )
 from rockframe.motion.value import UNNAMED, Made
+from rockframe.proposals import hinted
 from rockframe.records import (
     DOWNWARDS,
     MAXIMUM_SAMPLES,
@@ -144,7 +146,9 @@ def from_times(
         f"built from {instants.size} samples {gaps.min():.6g} s to {gaps.max():.6g} s apart, "
         f"{_HOW[between]}, read off every {step!r} s"
     )
-    return kind(Motion.of_samples(step, *read), name=name or UNNAMED, history=(said,))
+    return kind(
+        Motion.of_samples(step, *read), name=UNNAMED if name is None else name, history=(said,)
+    )
 
 
 def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Array:
@@ -215,6 +219,10 @@ def from_frame(
         msg = f"{owner}: frame needs a pandas DataFrame, got {shown(frame)}"
         raise ComponentError(msg)
     record_unit = argument_unit(unit, owner=owner)
+    for what, label in (("component", component), ("vertical", vertical), ("time", time)):
+        if label is not None and not isinstance(cast("object", label), Hashable):
+            msg = f"{owner}: {what} must name a column, got {shown(label)}"
+            raise ComponentError(msg)
     labels = [label for label in frame.columns if label not in (time, vertical)]
     if component is None and len(labels) != 1:
         listed = ", ".join(repr(label) for label in labels[:10]) or "none"
@@ -238,13 +246,16 @@ def from_frame(
             upwards = -upwards
             history.append(f"component {vertical} turned over: positive upwards")
     si = Motion.of_samples(step, across, upwards)
-    return kind(si, name=name or str(chosen), metadata=metadata, history=tuple(history))
+    return kind(
+        si, name=str(chosen) if name is None else name, metadata=metadata, history=tuple(history)
+    )
 
 
 def _column(frame: Any, label: object, owner: str, argument: str) -> Array:
     if label not in frame.columns:
         listed = ", ".join(repr(one) for one in list(frame.columns)[:10])
-        msg = f"{owner}: {argument} {label!r} is none of the columns {listed}"
+        near = nearest(label, map(str, frame.columns))
+        msg = f"{owner}: {argument} {shown(label)} is none of the columns {listed}{near}"
         raise ComponentError(msg)
     values = np.asarray(frame[label])
     if values.ndim != 1 or values.dtype.kind not in "fiu" or not np.isfinite(values).all():
@@ -264,7 +275,8 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
         if getattr(axis.dtype, "kind", "") not in "mM":
             axis = np.asarray(axis, dtype=np.float64)
     else:
-        msg = f"{owner}: time {time!r} is none of the columns"
+        near = nearest(time, map(str, frame.columns))
+        msg = f"{owner}: time {shown(time)} is none of the columns{near}"
         raise ComponentError(msg)
     times = relative_seconds(axis, "s")
     if times is None:
@@ -348,7 +360,7 @@ def from_trace(
     codes = [reading.metadata.get(key, "") for key in ("network", "station", "component")]
     return kind(
         reading.si,
-        name=name or ".".join(map(str, codes)),
+        name=".".join(map(str, codes)) if name is None else name,
         metadata=reading.metadata,
         history=reading.history,
     )

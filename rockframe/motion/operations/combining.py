@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion.operations.following import following, other_motion
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.value import Made, MotionValue
+from rockframe.proposals import hinted
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal

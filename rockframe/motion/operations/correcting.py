@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Final, cast
 
-from rockframe.arguments import hinted, one_of_words, whole_number
+from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.operations.following import following, lost_pieces, with_samples
 from rockframe.motion.processing.samples import (
@@ -15,6 +15,7 @@ from rockframe.motion.processing.samples import (
     without_drift,
 )
 from rockframe.motion.value import Made
+from rockframe.proposals import hinted
 from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 import numpy as np
 
-from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.motion.matching.iteration import Goal, Matched, changes, match, unusual
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing.samples import finer, say_coarse
 from rockframe.motion.value import Made
+from rockframe.proposals import hinted
 from rockframe.signals.spectra import check_cost
 from rockframe.units import PERIOD, Condition, QuantityLike, RatioLike, to_ratio, to_si_values
 

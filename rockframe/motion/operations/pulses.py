@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.arguments import hinted
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.quantities import with_quantity
 from rockframe.motion.value import Made
 from rockframe.motion.velocity_pulse import VelocityPulse
+from rockframe.proposals import hinted
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import knots_of

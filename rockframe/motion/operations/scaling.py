@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.arguments import hinted
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following
 from rockframe.motion.processing.samples import say_coarse
 from rockframe.motion.value import Made
+from rockframe.proposals import hinted
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.signals.integrals import ground_path
 from rockframe.signals.polynomials import greatest

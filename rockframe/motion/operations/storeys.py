@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import hinted, one_of_words, whole_number
+from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing.floors import (
@@ -23,6 +23,7 @@ from rockframe.motion.processing.floors import (
 from rockframe.motion.processing.samples import divided_signal, padded
 from rockframe.motion.quantities import ArrayLike
 from rockframe.motion.value import Made
+from rockframe.proposals import hinted
 from rockframe.signals import Motion
 from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.signals.spectra import DAMPING_RATIO, MAXIMUM_PARTS

@@ -7,7 +7,7 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from rockframe.arguments import hinted, one_of_words
+from rockframe.arguments import one_of_words
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import (
     SAME_STEP,
@@ -17,6 +17,7 @@ from rockframe.motion.operations.following import (
 )
 from rockframe.motion.processing.samples import band_limited, coarsened, refined, tapered
 from rockframe.motion.value import Made
+from rockframe.proposals import hinted
 from rockframe.signals.signal import MAXIMUM_SAMPLES
 from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 

@@ -8,10 +8,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final
 
-from rockframe.arguments import hinted, one_of_words
+from rockframe.arguments import one_of_words
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
 from rockframe.motion.value import MotionValue
+from rockframe.proposals import hinted
 from rockframe.writing import FileKind, checked_path, write_file
 
 _TITLE: Final = "PEER FORMAT ACCELERATION FILE, WRITTEN BY ROCKFRAME"

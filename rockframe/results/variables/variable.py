@@ -6,6 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from rockframe.proposals import proposing
 from rockframe.units import Unit
 
 TIME: Final = ("time",)
@@ -23,6 +24,7 @@ TRUTH: Final = ("false", "true")
 """Meanings of 0 and 1, as which files hold truth values."""
 
 
+@proposing
 @dataclass(frozen=True)
 class Variable:
     """A row of the table.

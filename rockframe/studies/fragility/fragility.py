@@ -8,9 +8,10 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import hinted
+from rockframe.arguments import one_of_names, several
 from rockframe.errors import ComponentError, SchemaError, StudyError, UnitsError, shown
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import LIMIT_STATE
@@ -38,7 +39,6 @@ from rockframe.studies.intensities import (
 )
 from rockframe.studies.limit_states import (
     LimitState,
-    check_names,
     check_runs,
     exceeds,
     labels_of_states,
@@ -81,7 +81,7 @@ def structures_of(
     runs: xr.Dataset, pooled: Iterable[str], given: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
-    asked = (pooled,) if isinstance(pooled, str) else tuple(pooled)
+    asked = several(pooled, owner=owner, name="pooled", of="names")
     axes = {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
     own = [str(one.name) for one in given if isinstance(one, xr.DataArray)]
     changed = [name for name in axes if name not in own and axes[name] != Changes.MOTION]
@@ -310,7 +310,7 @@ def fragility(
     runs = check_runs(runs, owner=_OWNER)
     given = [named_column(runs, one) for one in _several(intensity)]
     structures = structures_of(runs, pooled, given, owner=_OWNER)
-    of_capacities = check_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
+    of_capacities = one_of_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
@@ -323,7 +323,7 @@ def fragility(
     repeated = not of_capacities and any(map(_repeated, structures.parts(verdicts[-1])))
     most = max(len(np.unique(motion_numbers(one))) for one in structures.parts(verdicts[-1]))
     of_runs = Bands.JACKKNIFE if most <= _MOST_LEFT_OUT else Bands.SANDWICH
-    common = check_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
+    common = one_of_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
     if common and (of_capacities or len(measures) > 1 or bands == "profile"):
         msg = (
             f"{_OWNER}: a common dispersion is fitted to runs, over one measure, with bands by "
@@ -498,9 +498,7 @@ def _bands(given: str | None, usual: Bands, measures: int) -> Bands:
     if given is None:
         return usual if measures == 1 or usual is not Bands.PROFILE else Bands.SANDWICH
     names = [one.name.lower() for one in Bands]
-    if given not in names:
-        msg = f"{_OWNER}: bands must be {', '.join(map(repr, names))}, got {shown(given)}"
-        raise ComponentError(msg)
+    one_of_names(given, names, owner=_OWNER, name="bands")
     if given == "profile" and measures > 1:
         msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"
         raise ComponentError(msg)

@@ -14,8 +14,9 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.components import InitialState
-from rockframe.errors import SchemaError, StudyError, shown
+from rockframe.errors import SchemaError, StudyError, nearest, shown
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted, proposing
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
@@ -40,6 +41,7 @@ _REMEMBERED: Final = 16
 _studies: Final[OrderedDict[str, Study]] = OrderedDict()
 
 
+@proposing
 @dataclass(frozen=True)
 class SweepCase:
     """A case: its system, its motion, and what its run was asked for.
@@ -74,6 +76,7 @@ class SweepCase:
         return self.system.simulate(self.motion, **{**self.options, **changes})
 
 
+@hinted()
 def case(
     runs: "xr.Dataset | str | PathLike[str]",
     *,
@@ -133,7 +136,9 @@ def case(
     known = remembered(attributes)
     place = _place(dataset, labels)
     values = _values(dataset, attributes, place)
-    made = _scene(scene, attributes, known)
+    if motions is not None:
+        named_motions(motions)  # also where they are not needed
+    made = _scene(None if scene is None else scene_of(scene), attributes, known)
     names: list[str] = json.loads(attributes["motion_names"])
     number = names.index(_value(dataset, MOTION, place))
     motion = unscaled_motion(motions, number, attributes, known, kept)
@@ -171,7 +176,10 @@ def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
     fixed = [str(name) for name in dataset.coords if not dataset[name].dims]
     unknown = [name for name in labels if name not in (*dims, *fixed)]
     lacking = [name for name in dims if name not in labels and dataset.sizes[name] > 1]
-    faults = [f"there is no axis {name!r}; there are {', '.join(dims)}" for name in unknown]
+    faults = [
+        f"there is no axis {name!r}{nearest(name, (*dims, *fixed))}; there are {', '.join(dims)}"
+        for name in unknown
+    ]
     faults += [f"give a value of {name!r}" for name in lacking]
     if faults:
         msg = f"{_OWNER}: {'; '.join(faults)}"
@@ -237,12 +245,14 @@ def _values(
     return found
 
 
-def _scene(given: object, attributes: Mapping[str, Any], known: Study | None) -> SweptScene:
+def _scene(
+    given: SweptScene | None, attributes: Mapping[str, Any], known: Study | None
+) -> SweptScene:
     if "system_json" in attributes:
         system = System.from_dict(json.loads(attributes["system_json"]))
         return SystemScene(system.assembly)
     if given is not None:
-        return scene_of(given)
+        return given
     if known is not None:
         return known.scene
     msg = f"{_OWNER}: the scene was the function {attributes['function']}; give it as scene="

@@ -207,7 +207,8 @@ def plan_study(
             "give an InitialState"
         )
         del asked["initial"]
-    screened = asked.get("accuracy") == SCREEN
+    level = asked.get("accuracy")
+    screened = isinstance(level, str) and level == SCREEN
     if screened:
         asked["accuracy"] = FIRST
     outputs = asked.setdefault("outputs", None)

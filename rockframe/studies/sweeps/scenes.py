@@ -136,7 +136,7 @@ class SystemScene:
                 if len(heads) > 1:
                     names = " and ".join(repr(given[name]) for name in ways)
                     found.append(f"axes {names} stand for one another; give one of them")
-            behind = part.left_behind(given)
+            behind = part.left_behind([*given])
             if behind:
                 found.append(_left_behind(part, behind, given))
         return found

@@ -7,10 +7,11 @@ from typing import Any
 
 import xarray as xr
 
-from rockframe.arguments import hinted, truth
+from rockframe.arguments import several, truth
 from rockframe.components import InitialState
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
+from rockframe.proposals import hinted
 from rockframe.shared_arguments import documented_by
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import AccuracyLevel
@@ -26,6 +27,7 @@ from rockframe.units import QuantityLike
 from rockframe.version import __version__
 
 
+@hinted()
 @documented_by(SweepArguments)
 def sweep(
     scene: System | Callable[..., System],
@@ -158,8 +160,10 @@ def sweep(
         kept=store is not None,
     )
     with bar_of(progress, owner=OWNER) as bar:
-        several = [known] if isinstance(known, str | PathLike) else known
-        return run_study(study, bar, store=store, executor=executor, chunk=chunk, known=several)
+        others = [known] if isinstance(known, PathLike) else several(
+            known, owner=OWNER, name="known", of="folders"
+        )  # fmt: skip
+        return run_study(study, bar, store=store, executor=executor, chunk=chunk, known=others)
 
 
 @hinted()

@@ -221,7 +221,7 @@ def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, fol
     (folder / "scene.toml").write_text(f"{scene}\n[project]\nobjekt = 'Tower'\n")
     code, _, err = typed("run", "scene.toml")
     assert code == 2
-    assert "project has no entry 'objekt': did you mean 'object'" in err
+    assert "project has no entry 'objekt'; was 'object' meant?" in err
 
 
 WRONG = {

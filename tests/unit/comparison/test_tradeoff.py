@@ -299,7 +299,7 @@ def test_a_wrong_verdict_is_no_rung():
         ({"tolerance": 0.0}, ComponentError, "tolerance must be greater than zero"),
         ({"tolerance": "1 m"}, UnitsError, "tolerance needs a pure ratio"),
         ({"error": "colour"}, SchemaError, "'peak_error' or 'history_error'"),
-        ({"error": "history_error"}, SchemaError, "expected a dataset of tradeoff"),
+        ({"error": "history_error"}, SchemaError, "expected one of tradeoff"),
     ],
 )
 def test_recommendations_that_are_refused(arguments, error, words):

@@ -121,7 +121,7 @@ def test_pages_are_small_whole_and_ask_for_nothing(tmp_path):
 
 def test_what_cannot_be_played_is_refused():
     run = run_of("rigid ground")
-    with pytest.raises(ComponentError, match=r"rf\.plot\.player: magnify must be a number above"):
+    with pytest.raises(ComponentError, match=r"rf\.plot\.player: magnify must be greater than"):
         rf.plot.player(run, magnify=0)
     with pytest.raises(SchemaError, match=r"player"):
         rf.plot.player(run_of("rigid ground", outputs=None))

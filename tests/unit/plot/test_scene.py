@@ -153,7 +153,7 @@ def test_displacements_are_magnified_about_the_place_at_rest():
     np.testing.assert_allclose(
         thrice.drawer.lay_out(thrice.at(place)).block - at_rest, 3.0 * moved, atol=1e-12
     )
-    with pytest.raises(ComponentError, match="magnify must be a number above zero, got 0"):
+    with pytest.raises(ComponentError, match="magnify must be greater than zero, got '0'"):
         rf.plot.state(run, magnify=0)
 
 

@@ -276,7 +276,7 @@ def test_a_fragility_of_an_analysis_is_that_of_its_runs_unless_asked_for_capacit
     xr.testing.assert_identical(rf.fragility(analysis).drop_attrs(), every.drop_attrs())
     with pytest.raises(SchemaError, match="incremental_dynamic_analysis"):
         rf.fragility(runs, trials="capacities")
-    with pytest.raises(ComponentError, match="trials must be one of runs, capacities"):
+    with pytest.raises(ComponentError, match="trials must be one of 'runs', 'capacities'"):
         rf.fragility(runs, trials="flips")
 
 

@@ -100,7 +100,7 @@ def test_a_dynamic_analysis_overturns_where_its_brackets_say():
     [
         ({"fractiles": [1.0]}, ComponentError, "above 0 and below 1"),
         ({"levels": [0.4, 0.2]}, ComponentError, "levels must be one or more, and increase"),
-        ({"response": "peak_slipp"}, SchemaError, "the runs have no peak_slipp"),
+        ({"response": "peak_slipp"}, SchemaError, "the runs have no 'peak_slipp'"),
         ({"intensity": "PGB"}, ComponentError, "intensity must be one of"),
     ],
 )
