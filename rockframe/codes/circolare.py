@@ -7,17 +7,11 @@ from typing import Final
 import numpy as np
 
 from rockframe.arguments import hinted
-from rockframe.codes.check import (
-    CheckedLine,
-    CheckedVerdict,
-    CodeCheck,
-    peaks_of,
-    read_motions,
-    rocking_block,
-)
+from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
 from rockframe.errors import ComponentError, shown
 from rockframe.measures import response_spectrum
 from rockframe.motion import GroundMotion
+from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
@@ -125,7 +119,7 @@ def circolare_2019(
         "an elastic branch before the wall lifts; the capacity curve is straight",
     )
     title = "A rigid block that overturns, by kinematics" + (" and by its motion" * bool(motions))
-    return CodeCheck(title, _CODE, lines, tuple(verdicts), notes)
+    return CodeCheck(title, _CODE, lines, tuple(verdicts), notes, scene_words(system))
 
 
 def _outwards(setting: RigidGroundSetting) -> tuple[float, float]:

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe.reports.figures import close
 from rockframe.version import __version__
-from rockframe.writing import generator
+from rockframe.writing import FileKind, generator
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"))
 LARGEST_DRAWING: Final = 1_500_000
 """Size of a drawing by lines beyond which it is drawn by dots [bytes]."""
 _POLICY: Final = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"

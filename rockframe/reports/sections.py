@@ -18,6 +18,7 @@ from rockframe.plot._response import histories_of
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
+from rockframe.reports.motions import Aim, record_rows, spectra_section
 from rockframe.reports.values import extremes_of, powers_in_html, table_of
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
@@ -110,9 +111,9 @@ def scene_section(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
 
 
 def motion_section(
-    dataset: xr.Dataset, found: GroundMotion | None, units: ReaderUnits
+    dataset: xr.Dataset, found: GroundMotion | None, units: ReaderUnits, aim: Aim | None = None
 ) -> Iterator[str]:
-    """Show the motion, its measures and its figure."""
+    """Show the motion, its measures and its figure; and a target beside its spectrum."""
     attributes = dict(dataset.attrs)
     if "motion" in attributes:
         attributes["motion"] = motion_words(attributes)
@@ -123,16 +124,20 @@ def motion_section(
         ("motion_time_step", "time step [s]"),
         ("motion_sha256", "digest (SHA-256)"),
     )
-    yield page.rows((words, str(attributes[name])) for name, words in known if name in attributes)
+    told = [(words, str(attributes[name])) for name, words in known if name in attributes]
+    yield page.rows([*told, *([] if found is None else record_rows(found, units))])
     if found is None:
         return
     yield page.subtitle("Measures")
     yield page.rows(table_of(intensity_measures(found), units=units))
     yield page.picture(
-        figure_of(plot.spectra(found)),
+        figure_of(plot.spectra(found, units=units.words)),
         "Ground acceleration along time, its response spectra at 5 % damping and its Fourier "
         "spectrum.",
     )
+    if aim is not None:
+        yield page.subtitle("Spectrum and target")
+        yield from spectra_section({found.name: found}, aim, units)
 
 
 def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
@@ -140,7 +145,9 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     if dataset.sizes.get("time", 0) > 1:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.picture(
-            figure_of(plot.response(dataset, rotation="deg" if angle else "relative")),
+            figure_of(
+                plot.response(dataset, rotation="deg" if angle else "relative", units=units.words)
+            ),
             "From the top: ground acceleration; rotation"
             f"{'' if angle else ' over the overturning angle'}; vertical displacement; and what "
             "bears.",

@@ -1,7 +1,7 @@
 """The sections of a report on many runs, or on what was read from them."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -14,7 +14,7 @@ from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.project import Project
-from rockframe.reports.values import powers_in_html, table_of, value_of
+from rockframe.reports.values import column_head, number_in, powers_in_html, table_of, value_of
 from rockframe.results.outcome import overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
@@ -40,13 +40,15 @@ _COLUMNS: Final = (
 """Variables of a sweep that its table shows where it holds them, in this order."""
 
 
-def verdict_sections(dataset: xr.Dataset, about: Project, units: ReaderUnits) -> Iterator[str]:
-    """Give what became of all cases, their figure and their numbers."""
+def verdict_sections(
+    dataset: xr.Dataset, about: Project, units: ReaderUnits, by_codes: Sequence[str] = ()
+) -> Iterator[str]:
+    """Give what became of all cases, what codes say, their figure and their numbers."""
     sentence = cases_verdict(dataset)
     verdict = [*about.conclusions()]
     if sentence:
         verdict.append(_banner(dataset, sentence))
-    yield page.section("Verdict", verdict)
+    yield page.section("Verdict", [*verdict, *by_codes])
     figure = _figure(dataset)
     if figure:
         yield page.section("Figure", [figure])
@@ -60,7 +62,9 @@ def verdict_sections(dataset: xr.Dataset, about: Project, units: ReaderUnits) ->
         yield page.section("Limit states", limits)
 
 
-def worst_case(dataset: xr.Dataset) -> tuple[str, xr.Dataset, System] | None:
+def worst_case(
+    dataset: xr.Dataset, motions: Mapping[str, GroundMotion]
+) -> tuple[str, xr.Dataset, System] | None:
     """Simulate the case of a sweep that comes nearest to overturning, or overturns first."""
     if not _is_sweep(dataset):
         return None
@@ -71,7 +75,7 @@ def worst_case(dataset: xr.Dataset) -> tuple[str, xr.Dataset, System] | None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
-            found = case(dataset, **labels)
+            found = case(dataset, motions=motions or None, **labels)
             run = found.simulate(outputs=())
     except RockframeError:  # such as of a function of another process, or without its motions
         return None
@@ -133,12 +137,15 @@ def _cases(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     if count > MOST_ROWS:
         order = _from_worst(dataset)[:MOST_ROWS]
         yield page.paragraph(f"The {order.size} worst of {count} cases.", kind="soft")
-    heads = [_head(dataset, name, units) for name in names]
+    heads = [column_head(name, _unit_of(dataset[name]), units) for name in names]
     rows = [_row(dataset, flat, int(place), names, units) for place in order]
-    for words, values in (("mean", np.nanmean), ("largest", np.nanmax)):
-        rows.append([f"{words} of {count}", *[""] * len(dims[1:]), "",
-                     *(_number(float(values(dataset[name].to_numpy())), name, dataset, units)
-                       for name in names)])  # fmt: skip
+    for words, over in (("mean", np.nanmean), ("largest", np.nanmax)):
+        values = (float(over(dataset[name].to_numpy())) for name in names)
+        numbers = (
+            number_in(value, _unit_of(dataset[name]), units)
+            for name, value in zip(names, values, strict=True)
+        )
+        rows.append([f"{words} of {count}", *[""] * len(dims[1:]), "", *numbers])
     yield page.columns(rows, [*(dim.replace("_", " ") for dim in dims), "verdict", *heads])
 
 
@@ -150,21 +157,14 @@ def _row(
     status.values = flat["status"].to_numpy()[place]
     values = (float(flat[name].to_numpy()[place]) for name in names)
     numbers = (
-        _number(value, name, dataset, units) for name, value in zip(names, values, strict=True)
+        number_in(value, _unit_of(dataset[name]), units)
+        for name, value in zip(names, values, strict=True)
     )
     return [*labels, value_of(status), *numbers]
 
 
-def _number(value: float, name: str, dataset: xr.Dataset, units: ReaderUnits) -> str:
-    if np.isnan(value):
-        return "-"
-    return f"{value / units.of(str(dataset[name].attrs.get('units', '1'))).size + 0.0:.4g}"
-
-
-def _head(dataset: xr.Dataset, name: str, units: ReaderUnits) -> str:
-    unit = units.of(str(dataset[name].attrs.get("units", "1"))).words
-    words = name.replace("_", " ")
-    return words if unit == "1" else f"{words} [{powers_in_html(unit)}]"
+def _unit_of(values: xr.DataArray) -> str:
+    return str(values.attrs.get("units", "1"))
 
 
 def _from_worst(dataset: xr.Dataset) -> np.ndarray:

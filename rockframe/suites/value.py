@@ -22,6 +22,7 @@ from rockframe.suites.columns import (
     suite_html,
 )
 from rockframe.suites.records import pairs_of
+from rockframe.suites.target import TargetSpectrum
 
 _EXAMPLE: Final = "rf.read_suite(path) reads files"
 
@@ -29,7 +30,7 @@ _EXAMPLE: Final = "rf.read_suite(path) reads files"
 class LabelledMotions(Mapping[str, GroundMotion]):
     """Labelled motions in an order; immutable. What a suite is, without what is done with it."""
 
-    __slots__ = ("_motions", "_remarks", "_unread", "_verticals")
+    __slots__ = ("_motions", "_remarks", "_target", "_unread", "_verticals")
 
     def __init__(
         self,
@@ -38,12 +39,14 @@ class LabelledMotions(Mapping[str, GroundMotion]):
         verticals: Mapping[str, GroundMotion] | None = None,
         unread: Mapping[str, str] | None = None,
         remarks: Iterable[str] = (),
+        target: TargetSpectrum | None = None,
     ) -> None:
         owner = type(self).__name__
         self._motions = _named(motions, owner)
         self._verticals = {} if verticals is None else _named(verticals, owner)
         self._unread = dict(unread or {})
         self._remarks = tuple(remarks)
+        self._target = target
         if not self._motions:
             msg = f"{owner}: found no motions; expected one at least"
             raise ComponentError(msg)
@@ -99,6 +102,11 @@ class LabelledMotions(Mapping[str, GroundMotion]):
     def remarks(self) -> tuple[str, ...]:
         """What is worth a look: of records that contradict themselves or do not make a pair."""
         return self._remarks
+
+    @property
+    def target(self) -> TargetSpectrum | None:
+        """The spectrum that the motions were scaled or matched to, where they were compared."""
+        return self._target
 
     @property
     def table(self) -> pd.DataFrame:
@@ -250,7 +258,10 @@ class LabelledMotions(Mapping[str, GroundMotion]):
             for label, one in self._verticals.items()
             if one.metadata.get("record") in kept
         }
-        return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
+        return type(self)(
+            motions, verticals=upwards, unread=self._unread, remarks=self._remarks,
+            target=self._target,
+        )  # fmt: skip
 
 
 def _named(given: object, owner: str) -> dict[str, GroundMotion]:
