@@ -2,9 +2,8 @@
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from rockframe import plot
@@ -12,32 +11,15 @@ from rockframe.errors import RockframeError, RockframeWarning, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
+from rockframe.reports.cases import case_tables, from_worst, labels_at, written
 from rockframe.reports.figures import figure_of
 from rockframe.reports.project import Project
-from rockframe.reports.values import column_head, number_in, powers_in_html, table_of, value_of
+from rockframe.reports.values import powers_in_html, table_of, value_of
 from rockframe.results.outcome import overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
 from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units.shown import ReaderUnits
-
-MOST_ROWS: Final = 300
-"""Of the table of cases; of more, those that are worst."""
-_COLUMNS: Final = (
-    "peak_rotation",
-    "peak_relative_rotation",
-    "impact_count",
-    "first_uplift_time",
-    "peak_friction_demand",
-    "peak_slip",
-    "residual_slip",
-    "peak_base_shear",
-    "peak_restrainer_force",
-    "broken_restrainer_count",
-    "peak_ground_acceleration",
-    "peak_ground_velocity",
-)
-"""Variables of a sweep that its table shows where it holds them, in this order."""
 
 
 def verdict_sections(
@@ -49,11 +31,11 @@ def verdict_sections(
     if sentence:
         verdict.append(_banner(dataset, sentence))
     yield page.section("Verdict", [*verdict, *by_codes])
-    figure = _figure(dataset)
+    figure = _figure(dataset, units)
     if figure:
         yield page.section("Figure", [figure])
     if _is_sweep(dataset):
-        yield page.section("Cases", _cases(dataset, units))
+        yield page.section("Cases", case_tables(dataset, units))
     scalars = table_of(dataset, units=units)
     if scalars:
         yield page.section("Numbers", [page.rows(scalars)])
@@ -68,10 +50,10 @@ def worst_case(
     """Simulate the case of a sweep that comes nearest to overturning, or overturns first."""
     if not _is_sweep(dataset):
         return None
-    order = _from_worst(dataset)
+    order = from_worst(dataset)
     if not order.size:
         return None
-    labels = _labels_at(dataset, int(order[0]))
+    labels = labels_at(dataset, int(order[0]))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
@@ -80,7 +62,7 @@ def worst_case(
     except RockframeError:  # such as of a function of another process, or without its motions
         return None
     named = ", ".join(
-        f"{name.replace('_', ' ')} {_written(value)}" for name, value in labels.items()
+        f"{name.replace('_', ' ')} {written(value)}" for name, value in labels.items()
     )
     system = found.system if found.motion is None else under(found.system, found.motion)
     return f"Simulated again: {named}." if named else "Simulated again.", run, system
@@ -116,76 +98,13 @@ def _banner(dataset: xr.Dataset, sentence: str) -> str:
     return page.banner("Not all cases have a result", sentence, "doubt")
 
 
-def _figure(dataset: xr.Dataset) -> str:
+def _figure(dataset: xr.Dataset, units: ReaderUnits) -> str:
     """Draw a dataset with the function that draws its kind, where there is one."""
     try:
-        drawn = getattr(plot, drawn_by(dataset))(dataset)
+        drawn = getattr(plot, drawn_by(dataset))(dataset, units=units.words)
     except RockframeError:
         return ""
     return page.picture(figure_of(drawn), str(dataset.attrs.get("title", "The study")) + ".")
-
-
-def _cases(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
-    """Give a row for each case, worst first where there are too many, and what all have."""
-    dims = [str(dim) for dim in dataset["status"].dims]
-    names = [name for name in _COLUMNS
-             if name in dataset and set(dataset[name].dims) <= set(dims)
-             and dataset[name].notnull().any()]  # fmt: skip
-    flat = dataset[[*names, "status"]].broadcast_like(dataset["status"]).stack(_row=dims)
-    count = flat.sizes["_row"]
-    order = np.arange(count)
-    if count > MOST_ROWS:
-        order = _from_worst(dataset)[:MOST_ROWS]
-        yield page.paragraph(f"The {order.size} worst of {count} cases.", kind="soft")
-    heads = [column_head(name, _unit_of(dataset[name]), units) for name in names]
-    rows = [_row(dataset, flat, int(place), names, units) for place in order]
-    for words, over in (("mean", np.nanmean), ("largest", np.nanmax)):
-        values = (float(over(dataset[name].to_numpy())) for name in names)
-        numbers = (
-            number_in(value, _unit_of(dataset[name]), units)
-            for name, value in zip(names, values, strict=True)
-        )
-        rows.append([f"{words} of {count}", *[""] * len(dims[1:]), "", *numbers])
-    yield page.columns(rows, [*(dim.replace("_", " ") for dim in dims), "verdict", *heads])
-
-
-def _row(
-    dataset: xr.Dataset, flat: xr.Dataset, place: int, names: list[str], units: ReaderUnits
-) -> list[str]:
-    labels = [_written(value) for value in _labels_at(dataset, place).values()]
-    status = dataset["status"].isel(dict.fromkeys(dataset["status"].dims, 0)).copy()
-    status.values = flat["status"].to_numpy()[place]
-    values = (float(flat[name].to_numpy()[place]) for name in names)
-    numbers = (
-        number_in(value, _unit_of(dataset[name]), units)
-        for name, value in zip(names, values, strict=True)
-    )
-    return [*labels, value_of(status), *numbers]
-
-
-def _unit_of(values: xr.DataArray) -> str:
-    return str(values.attrs.get("units", "1"))
-
-
-def _from_worst(dataset: xr.Dataset) -> np.ndarray:
-    """Order cases with a result: those that overturn, the first before the later ones; the rest."""
-    share = dataset["peak_relative_rotation"].to_numpy().ravel()
-    when = np.nan_to_num(dataset["overturning_time"].to_numpy().ravel(), nan=np.inf)
-    fallen = overturned_by(dataset["status"].to_numpy().ravel()) == 1.0
-    order = np.lexsort((-np.nan_to_num(share, nan=-1.0), when, ~fallen))
-    return order[np.isfinite(share[order])]
-
-
-def _labels_at(dataset: xr.Dataset, place: int) -> dict[str, Any]:
-    """Give the labels of a case by its place."""
-    status = dataset["status"]
-    places = np.unravel_index(place, status.shape)
-    return {str(dim): status[dim].to_numpy()[k].item() if dim in status.coords else int(k)
-            for dim, k in zip(status.dims, places, strict=True)}  # fmt: skip
-
-
-def _written(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _of_limit_states(dataset: xr.Dataset, units: ReaderUnits) -> list[str]:

@@ -13,7 +13,7 @@ from pages import read
 
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, SchemaError
-from rockframe.reports import sections, studies
+from rockframe.reports import cases, sections
 from rockframe.reports.limits import LIMITS
 from rockframe.results.schema import SCHEMA
 
@@ -211,11 +211,17 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
             fate = "overturned" if bool(one.overturned) else "completed"
             peak = np.degrees(float(one.peak_rotation))
             assert f"{scale:g} {motion} {fate} {peak:.4g}" in words
+    standing = runs.sel(scale=0.5)
+    shown = [np.degrees(standing.peak_rotation), standing.peak_relative_rotation,
+             standing.impact_count, standing.first_uplift_time]  # fmt: skip
+    peaks = {name: " ".join(f"{float(one.sel(motion=name)):.4g}" for one in shown).replace(
+        "nan", "-") for name in SUITE}  # fmt: skip
     friction = float(runs.peak_friction_demand.sel(motion="short", scale=0.5))
     shear = float(runs.peak_base_shear.sel(motion="short", scale=0.5)) / 1e3
     assert "peak friction demand" in words
     assert "peak base shear [kN]" in words
-    assert f"{friction:.4g} {shear:.4g}" in words
+    assert f"0.5 short completed {peaks['short']} {friction:.4g}" in words
+    assert f"0.5 short {shear:.4g} " in words
     mean = np.degrees(float(runs.peak_rotation.mean()))
     assert f"mean of 4 {mean:.4g}" in words
     # the worst falls first: its verdict is that of the run alone
@@ -226,12 +232,47 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
     assert "2 sine pulse" not in words
 
 
+def test_a_sweep_shows_forces_and_slips_of_each_case_in_the_units_of_the_reader(tmp_path):
+    rough = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.25)
+    tie = {"on": ("-0.3 m", "2 m"), "to": ("-1.3 m", "2 m"), "slack": "5 mm"}
+    ties = [rf.Restrainer(**tie, stiffness=k, name=name)
+            for name, k in (("soft", "50 kN/m"), ("hard", "200 kN/m"))]  # fmt: skip
+    runs = rf.sweep(
+        rf.System(BLOCK, rough, *ties), motions=SUITE, scale=[0.5, 1.0], output_step="5 ms",
+        outputs=("left_reaction", "vertical_reaction"), points={"top": ("0 m", "2.4 m")},
+    )  # fmt: skip
+    words = words_of(rf.report(runs, tmp_path / "r.html", units={**UNITS, "force": "kN"}))
+    for head in (
+        "peak slip [mm]", "residual slip [mm]", "peak base shear [kN]",
+        "peak restrainer force (soft) [kN]", "peak restrainer force (hard) [kN]",
+        "broken restrainer count", "largest left reaction [kN]", "largest vertical reaction [kN]",
+        "peak point horizontal displacement (top) [mm]",
+        "peak point horizontal acceleration (top) [g]",
+    ):  # fmt: skip
+        assert head in words, head
+    assert "right reaction" not in words.split("The worst case in full")[0]  # not asked for
+    for motion in SUITE:
+        one = runs.sel(motion=motion, scale=1.0)
+        numbers = [
+            float(one.peak_base_shear) / 1e3,
+            *(one.peak_restrainer_force.sel(restrainer=["soft", "hard"]).to_numpy() / 1e3),
+            float(one.broken_restrainer_count),
+            float(abs(one.left_reaction).max()) / 1e3,
+            float(abs(one.vertical_reaction).max()) / 1e3,
+            float(one.peak_point_horizontal_displacement.squeeze()) * 1e3,
+        ]
+        assert f"1 {motion} " + " ".join(f"{number:.4g}" for number in numbers) in words
+    largest = float(runs.peak_slip.max()) * 1e3
+    assert f"{largest:.4g}" in words
+    assert "slid, by" in words
+
+
 def test_what_tables_and_figures_choose_by_name_exists():
-    assert {*studies._COLUMNS, *sections._DRAWN} <= set(SCHEMA)
+    assert {*cases.COLUMNS, *sections._DRAWN} <= set(SCHEMA)
 
 
 def test_of_many_cases_the_worst_are_listed(tmp_path, monkeypatch):
-    monkeypatch.setattr(studies, "MOST_ROWS", 3)
+    monkeypatch.setattr(cases, "MOST_ROWS", 3)
     runs = rf.sweep(rf.System(BLOCK), SUITE["long"], scale=[0.4, 0.7, 2.0, 3.0, 4.0])
     words = words_of(rf.report(runs, tmp_path / "r.html"))
     assert "The 3 worst of 5 cases." in words
