@@ -22,6 +22,7 @@ from rockframe.reports.motions import Aim, record_rows, spectra_section
 from rockframe.reports.values import extremes_of, powers_in_html, table_of
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
+from rockframe.simulation.certify.certificate import NEAR_WORDS
 from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
@@ -82,8 +83,10 @@ def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:
     if "certificate" in dataset.attrs:
         sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
         words = str(dataset.attrs["certificate"])
-        title = f"Certificate: the verdict {'holds' if sure else 'is in doubt'}"
-        yield page.banner(title, words, "good" if sure else "doubt")
+        near = words.startswith(NEAR_WORDS)
+        said = f"holds{', but near a boundary' * near}" if sure else "is in doubt"
+        title = f"Certificate: the verdict {said}"
+        yield page.banner(title, words, "good" if sure and not near else "doubt")
     elif "proof" not in dataset.attrs:
         yield page.banner("No certificate", reason or "none was asked for.", "doubt")
     cautions = str(dataset.attrs.get("cautions", NONE))

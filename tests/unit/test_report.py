@@ -16,6 +16,7 @@ from rockframe.errors import ComponentError, RecordWarning, SchemaError
 from rockframe.reports import cases, sections
 from rockframe.reports.limits import LIMITS
 from rockframe.results.schema import SCHEMA
+from rockframe.simulation.certify import certificate
 
 pytestmark = pytest.mark.unit
 
@@ -115,6 +116,37 @@ def test_a_run_by_a_record_has_its_certificate_though_it_overturned(tmp_path):
     changed = run.assign(ground_acceleration_after_end=0.0 * run.ground_acceleration_after_end)
     with pytest.warns(RecordWarning, match="not what the run had"):
         assert rf.System.from_dataset(changed).motion is None
+
+
+@pytest.mark.parametrize("given", [{"overturning": "continue"}, {"free_vibration": "9 s"}])
+@pytest.mark.parametrize("parts", ["rigid", "sliding", "pads", "stack"])
+def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_path):
+    scenes = {
+        "rigid": (BLOCK,), "sliding": (BLOCK, rf.RigidGround(friction=0.5)), "pads": (BLOCK, PADS),
+        "stack": (rf.Stack(BLOCK, rf.Block(width="1.2 m", height="1.2 m", mass="1 t"),
+                           interfaces=[rf.RigidGround()]), PADS),
+    }  # fmt: skip
+    shaking = 9.0 * np.sin(np.linspace(0.0, 30.0, 400)) * np.linspace(0.2, 1.0, 400)
+    record = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
+    run = rf.System(*scenes[parts]).simulate(record, **given)
+    assert bool(run.overturned)
+    run.to_netcdf(tmp_path / "out.nc")
+    with xr.open_dataset(tmp_path / "out.nc") as kept:
+        words = words_of(rf.report(kept, tmp_path / "out.html"))
+    assert "Overturned" in words
+    assert "Certificate: the verdict" in words
+    assert "No certificate" not in words
+    coarse = rf.System(*scenes[parts]).simulate(record, **given, output_step="0.1 s")
+    said = words_of(rf.report(coarse, tmp_path / "out.html"))
+    assert "does not hold its motion, sample by sample; hand it in, with motion=" in said
+
+
+def test_a_certificate_near_a_boundary_is_shown_as_such(response):
+    told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
+    told.attrs["certificate"] = certificate.NEAR_WORDS + ": the body stands, but ..."
+    (shown,) = [one for one in sections.verdict_section(told, "") if "Certificate" in one]
+    assert "the verdict holds, but near a boundary" in shown
+    assert 'class="verdict doubt"' in shown
 
 
 @pytest.mark.parametrize("doubted", ["verdict_converged", "verdict_robust"])
