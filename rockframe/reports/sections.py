@@ -1,6 +1,7 @@
 """The sections of a report on a run."""
 
 import json
+import re
 from collections.abc import Iterator, Sequence
 from importlib.metadata import version
 from platform import python_version
@@ -20,12 +21,13 @@ from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
 from rockframe.reports.motions import Aim, record_rows, spectra_section
 from rockframe.reports.values import extremes_of, powers_in_html, table_of
-from rockframe.results.outcome import verdict_of
+from rockframe.results.outcome import LEAST_SLIP, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.certify.certificate import NEAR_WORDS
 from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
+from rockframe.studies.sweeps.words import slips_of_cases
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits
 from rockframe.version import __version__
@@ -38,6 +40,8 @@ _BANNERS: Final = {
 }
 """Title and kind of what became of the body, by the verdict."""
 _CERTIFICATE: Final = [row.name for row in (*CERTIFICATE, *PROOF)]
+_NUMBERS: Final = re.compile(r": |, after ")
+"""Where a verdict goes on from what became of the body to its numbers."""
 _PANELS: Final = 4
 """Histories in one figure, which so fits on a page."""
 _DRAWN: Final = frozenset({
@@ -68,9 +72,15 @@ _PROVENANCE: Final = (
 
 
 def outcome_of(dataset: xr.Dataset) -> str:
-    """Say what became of the body."""
+    """Say what became of the body, on top whether it slid."""
     title, kind = _BANNERS[verdict_of(dataset)]
-    return page.banner(title, str(dataset.attrs.get("verdict", "")), kind)
+    words = str(dataset.attrs.get("verdict", ""))
+    slid = float(slips_of_cases(dataset)) >= LEAST_SLIP
+    if "peak_slip" in dataset and words:
+        title = _NUMBERS.split(words)[0]
+    elif bool(dataset.get("would_slide", False)):
+        slid, title = True, f"{title}, but would slide"
+    return page.banner(title, words, "doubt" if slid and kind == "good" else kind)
 
 
 def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:

@@ -15,10 +15,10 @@ from rockframe.reports.cases import case_tables, from_worst, labels_at, written
 from rockframe.reports.figures import figure_of
 from rockframe.reports.project import Project
 from rockframe.reports.values import powers_in_html, table_of, value_of
-from rockframe.results.outcome import overturned_by
+from rockframe.results.outcome import LEAST_SLIP, overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
-from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.units.shown import ReaderUnits
 
 
@@ -91,11 +91,20 @@ def _banner(dataset: xr.Dataset, sentence: str) -> str:
     if "status" not in dataset:
         return page.banner("Result", powers_in_html(sentence), "")
     fallen = overturned_by(dataset["status"].to_numpy())
+    slid = _slid(dataset)
     if (fallen == 1.0).any():
-        return page.banner("Some cases overturned", sentence, "bad")
+        return page.banner(f"Some cases overturned{slid}", sentence, "bad")
     if (fallen == 0.0).all():
-        return page.banner("No case overturned", sentence, "good")
+        return page.banner(f"No case overturned{slid}", sentence, "doubt" if slid else "good")
     return page.banner("Not all cases have a result", sentence, "doubt")
+
+
+def _slid(dataset: xr.Dataset) -> str:
+    """Say whether cases slid, or would slide; nothing where none did."""
+    if (slips_of_cases(dataset) >= LEAST_SLIP).any():
+        return ", some slid"
+    would = dataset.get("would_slide")
+    return ", some would slide" if would is not None and bool((would == 1.0).any()) else ""
 
 
 def _figure(dataset: xr.Dataset, units: ReaderUnits) -> str:

@@ -133,12 +133,70 @@ def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_pat
     run.to_netcdf(tmp_path / "out.nc")
     with xr.open_dataset(tmp_path / "out.nc") as kept:
         words = words_of(rf.report(kept, tmp_path / "out.html"))
-    assert "Overturned" in words
+    assert "verturned" in words  # of a block that may slide: did not slide, overturned
     assert "Certificate: the verdict" in words
     assert "No certificate" not in words
     coarse = rf.System(*scenes[parts]).simulate(record, **given, output_step="0.1 s")
     said = words_of(rf.report(coarse, tmp_path / "out.html"))
     assert "does not hold its motion, sample by sample; hand it in, with motion=" in said
+
+
+ROUGH = {"frequency_ratio": 20, "damping_ratio": 0.1, "friction": 0.2}
+SQUAT = rf.Block(width="0.8 m", height="1.6 m", mass="1 t")
+PLINTH = rf.Block(width="1.2 m", height="1 m", mass="1 t")
+TIE = rf.Restrainer(on=("-0.4 m", "1 m"), to=("-1.4 m", "1 m"), stiffness="20 kN/m", slack="5 mm")
+SLIDING = {
+    "rigid ground": (SQUAT, rf.RigidGround(friction=0.2)),
+    "rigid ground, tied": (SQUAT, rf.RigidGround(friction=0.2), TIE),
+    "pads": (SQUAT, rf.TwoSpringSupport(**ROUGH)),
+    "pads, tied": (SQUAT, rf.TwoSpringSupport(**ROUGH), TIE),
+    "soil": (SQUAT, rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2, friction=0.2)),
+    "soil, tied": (SQUAT, rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2, friction=0.2), TIE),
+    "stack": (rf.Stack(SQUAT, PLINTH, interfaces=[rf.TwoSpringSupport(**ROUGH)]),
+              rf.TwoSpringSupport(**ROUGH)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SLIDING)
+def test_what_slid_is_said_first_of_runs_and_sweeps(name, tmp_path):
+    system = rf.System(*SLIDING[name])
+    pulse = rf.GroundMotion.sine_pulse("6 m/s^2", "1 Hz")
+    run = system.simulate(pulse, free_vibration="3 s", output_step="0.02 s")
+    text = rf.report(run, tmp_path / "r.html", certify=False).read_text()
+    (banner,) = re.findall(
+        r'<div class="verdict (\w+)"><strong>([^<]*did not [^<]*)</strong>', text
+    )
+    slid = r"[Ss]lid [\d.]+ m to the (left|right)( \([\d.]+ m( to the (left|right))? at most\))?"
+    of_each = rf"Body 1 {slid}, body 2 {slid}" if name == "stack" else slid
+    assert banner[0] == "doubt"
+    assert re.fullmatch(rf"{of_each}, did not overturn", banner[1])
+    assert run.attrs["verdict"].startswith(f"{banner[1]}: peak rotation ")
+    assert "at the end" not in banner[1]
+    residual = float(run.residual_slip)
+    side = "right" if residual > 0.0 else "left"
+    assert f"lid {abs(residual):.3g} m to the {side}" in banner[1]
+    figure = np.atleast_1d(rf.plot.response(run))[0].figure
+    title = figure.get_suptitle() or next(one.get_title() for one in figure.axes)
+    assert title.replace("\n", " ").startswith(banner[1].split(" (")[0])
+    runs = rf.sweep(system, pulse, scale=[0.05, 1.0], free_vibration="3 s", progress=False)
+    farthest = float(run.get("peak_body_slip", run.peak_slip).max())
+    assert runs.attrs["verdict"].endswith(f"; 1 slid, by {farthest:.3g} m at most.")
+    text = rf.report(runs, tmp_path / "r.html").read_text()
+    assert '<div class="verdict doubt"><strong>No case overturned, some slid</strong>' in text
+
+
+def test_what_overturned_after_it_slid_and_what_would_slide(tmp_path):
+    slim = rf.Block(width="0.5 m", height="2 m", mass="1 t")
+    pulse = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
+    run = rf.System(slim, rf.RigidGround(friction=0.3)).simulate(pulse)
+    text = rf.report(run, tmp_path / "r.html", certify=False).read_text()
+    pattern = r'<div class="verdict bad"><strong>Slid [^<]*, overturned to the \w+ at [\d.]+ s<'
+    assert re.search(pattern, text)
+    held = rf.System(SQUAT, rf.RigidGround(friction=0.2), sliding="checked")
+    with pytest.warns(rf.errors.ModelWarning, match="would slide"):
+        run = held.simulate(pulse.scaled(0.5))
+    text = rf.report(run, tmp_path / "r.html", certify=False).read_text()
+    assert '<div class="verdict doubt"><strong>Did not overturn, but would slide<' in text
 
 
 def test_a_certificate_near_a_boundary_is_shown_as_such(response):
