@@ -1,6 +1,6 @@
 """The cases of a study in tables: what became of each, and the largest forces on it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -51,6 +51,8 @@ COLUMNS: Final = (*_MOTION, *_FORCES)
 
 Of histories, such as reactions, the largest absolute value at the times that were kept.
 """
+_MOST_COLUMNS: Final = 8
+"""Beside the labels of a case, of a table on a sheet of A4."""
 _OVER_CASES: Final = (("mean", np.nanmean), ("largest", np.nanmax))
 
 
@@ -70,23 +72,33 @@ def case_tables(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     if count > MOST_ROWS:
         order = from_worst(dataset)[:MOST_ROWS]
         yield page.paragraph(f"The {order.size} worst of {count} cases.", kind="soft")
-    yield _table(dataset, order, _MOTION, units, with_verdict=True)
-    if any(True for _ in _columns(dataset, _FORCES, units)):
+    for columns in _sheets(_columns(dataset, _MOTION, units)):
+        yield _table(dataset, order, columns, units, with_verdict=True)
+    forces = _sheets(_columns(dataset, _FORCES, units))
+    if forces:
         yield page.subtitle("Forces, and what was asked for at points")
-        yield _table(dataset, order, _FORCES, units, with_verdict=False)
+    for columns in forces:
+        yield _table(dataset, order, columns, units, with_verdict=False)
+
+
+def _sheets(columns: Iterable[_Column]) -> list[list[_Column]]:
+    """Divide columns among tables that fit on a sheet, evenly."""
+    several = list(columns)
+    tables = -(-len(several) // _MOST_COLUMNS)
+    size = -(-len(several) // max(1, tables))
+    return [several[k : k + size] for k in range(0, len(several), max(1, size))]
 
 
 def _table(
     dataset: xr.Dataset,
     order: NDArray[np.intp],
-    names: Sequence[str],
+    columns: Sequence[_Column],
     units: ReaderUnits,
     *,
     with_verdict: bool,
 ) -> str:
     """Give a table with some columns, and rows with their mean and largest values below."""
     status = dataset["status"]
-    columns = list(_columns(dataset, names, units))
     rows = list[list[str]]()
     for place in order.tolist():
         labels = [written(value) for value in labels_at(dataset, place).values()]

@@ -11,6 +11,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.notebook import card, number_with_unit
 from rockframe.reports import page
 from rockframe.reports.page import KIND
+from rockframe.reports.values import powers_in_html
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits
 from rockframe.writing import write_file
@@ -184,7 +185,10 @@ class CodeCheck:
         """
         head = ("", "value", "", "source")
         for title, several in self.lines.items():
-            cells = [(one.symbol, one.written(units), one.words, one.source) for one in several]
+            cells = [
+                (one.symbol, powers_in_html(one.written(units)), one.words, one.source)
+                for one in several
+            ]
             yield title, [page.rows(cells, head=head)]
         if self.notes:
             yield "Left out", [page.items(self.notes)]

@@ -23,7 +23,7 @@ from rockframe.suites.candidates import usual_periods
 from rockframe.suites.columns import column
 from rockframe.suites.scaling import compared_target
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, reader_units
 
 OF_RECORDS: Final = (
     "event",
@@ -36,6 +36,7 @@ OF_RECORDS: Final = (
 )
 """Columns of a suite that the table of records shows where they are known, in this order."""
 Numbers: TypeAlias = NDArray[np.float64]
+_DISTANCES: Final = reader_units({"length": "km"}, owner="report")
 _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), str(Unit.SECOND))
 
 
@@ -115,8 +116,9 @@ def spectra_section(
         average="mean", named=False, units=units.words, title=" ",
     )  # fmt: skip
     behind = "" if aim is None else ", and the target; the band is where they are compared"
-    of_all = "their mean" if len(motions) > 1 else "no other"
-    words = f"Response spectra of the motions at {100.0 * damping:g} % damping, {of_all}{behind}."
+    several = len(motions) > 1
+    words = f"Response spectr{'a of the motions' if several else 'um of the motion'}"
+    words += f" at {100.0 * damping:g} % damping{', their mean' * several}{behind}."
     yield page.picture(figure_of(drawn), words)
     misfits: Numbers | None = None
     if aim is not None:
@@ -169,14 +171,19 @@ def record_rows(motion: GroundMotion, units: ReaderUnits) -> list[tuple[str, str
 
 
 def _head(name: str, units: ReaderUnits) -> str:
-    return column_head(name, str(SCHEMA[name].unit or Unit.ONE), units)
+    return column_head(name, str(SCHEMA[name].unit or Unit.ONE), _of(name, units))
+
+
+def _of(name: str, units: ReaderUnits) -> ReaderUnits:
+    """Give the units of a column: distances are in km, whatever the lengths of the body are in."""
+    return _DISTANCES if SCHEMA[name].unit is Unit.METRE else units
 
 
 def _cell(name: str, value: Any, units: ReaderUnits) -> str:
     if _missing(value):
         return "-"
     unit = SCHEMA[name].unit
-    return str(value) if unit is None else number_in(float(value), str(unit), units)
+    return str(value) if unit is None else number_in(float(value), str(unit), _of(name, units))
 
 
 def _missing(value: Any) -> bool:
