@@ -11,7 +11,7 @@ from rockframe.codes import asce_7_22, circolare_2019
 from rockframe.command.answer import Answer
 from rockframe.command.shared import Outputs, read_result
 from rockframe.command.streams import INPUT, STREAM
-from rockframe.command.typed_calls import called, pairs_of, target_from
+from rockframe.command.typed_calls import called, target_from, values_by_name
 from rockframe.errors import ComponentError, FileError, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.reports import report
@@ -58,7 +58,7 @@ def _write(
         dataset,
         place,
         title=arguments.title,
-        units=pairs_of(arguments.units or (), "--units", "force=kN") or None,
+        units=values_by_name(arguments.units or (), "--units", "force=kN") or None,
         motion=motion,
         motions=motions if "motions_json" in dataset.attrs else None,
         target=target,

@@ -20,7 +20,7 @@ _HEAD: Final = re.compile(r"\s*(period|acceleration)\s*\[(.+)\]\s*")
 _TABLE: Final = "columns 'period [s]' and 'acceleration [g_0]', with units in their heads"
 
 
-def pairs_of(words: Iterable[str], option: str, example: str) -> dict[str, str]:
+def values_by_name(words: Iterable[str], option: str, example: str) -> dict[str, str]:
     """Read NAME=VALUE."""
     found = [word.partition("=") for word in words]
     for name, _, value in found:
@@ -42,7 +42,7 @@ def called(
     function = functions[name]
     first = tuple(arguments_of(function))[: len(before)]
     known = arguments_of(function, without=first)
-    given = pairs_of(typed, option, f"{next(iter(known))}=...")
+    given = values_by_name(typed, option, f"{next(iter(known))}=...")
     unknown = [one for one in given if one not in known]
     lacking = [one for one, needed in known.items() if needed and one not in given]
     if unknown or lacking:
