@@ -1,27 +1,27 @@
 """``rockframe report``: a page on a run or a study."""
 
 import argparse
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 import xarray as xr
 
-from rockframe.codes import asce_7_22, circolare_2019
 from rockframe.command.answer import Answer
 from rockframe.command.shared import Outputs, read_result
 from rockframe.command.streams import INPUT, STREAM
-from rockframe.command.typed_calls import called, target_from, values_by_name
+from rockframe.command.typed_calls import CODES, called, check_of, target_from, values_by_name
 from rockframe.errors import ComponentError, FileError, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.reports import report
 from rockframe.reports.checks import CodeCheck
 from rockframe.reports.motions import motions_of
+from rockframe.reports.project import ATTRIBUTE, CHECKS
 from rockframe.simulation.system import System
 from rockframe.studies import case, open_study
 from rockframe.suites import TargetSpectrum, read_suite
 
-_CODES: Final = {"circolare_2019": circolare_2019, "asce_7_22": asce_7_22}
 _CHECK: Final = "--check"
 
 
@@ -71,12 +71,21 @@ def _write(
 def _checks(
     dataset: xr.Dataset, typed: Any, motions: object, target: TargetSpectrum | None
 ) -> list[CodeCheck]:
-    """Check the scene of a result under its motions, or by a spectrum, as it was typed."""
+    """Check the scene of a result under its motions, or by a spectrum, as it was typed.
+
+    What the file of the scene asks for is done where nothing was typed, and left where the motions
+    are not at hand, of which the report tells.
+    """
+    asked = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}"))).get(CHECKS, ())
+    required = bool(typed)
+    typed = typed or [check_of(one, CHECKS) for one in asked]
     if not typed:
         return []
     try:
         system = System.from_dataset(dataset)
     except SchemaError as problem:
+        if not required:
+            return []
         msg = f"{_CHECK}: the result does not hold the scene that is to be checked ({problem})"
         raise ComponentError(msg) from problem
     held = motions_of(dataset, motions, _CHECK)
@@ -86,12 +95,14 @@ def _checks(
     for words in typed:
         demand = held or (target if words[0] == "circolare_2019" else None)
         if demand is None and words[0] == "circolare_2019":
+            if not required:
+                continue
             msg = (
                 f"{_CHECK}: circolare_2019 needs the motions of the result, by --motions or "
                 "--motion, or a spectrum, by --target"
             )
             raise ComponentError(msg)
-        found.append(called(_CODES, words, _CHECK, system, demand))
+        found.append(called(CODES, words, _CHECK, system, demand))
     return found
 
 

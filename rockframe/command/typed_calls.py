@@ -3,15 +3,21 @@
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from shlex import split
 from typing import Any, Final, TypeVar
 
 import pandas as pd
 
+from rockframe.codes import CodeCheck, asce_7_22, circolare_2019
 from rockframe.command.files.tables import arguments_of
 from rockframe.errors import ComponentError, FileError, nearest
 from rockframe.suites import TargetSpectrum
 
 Made = TypeVar("Made")
+CODES: Final[Mapping[str, Callable[..., CodeCheck]]] = {
+    "circolare_2019": circolare_2019,
+    "asce_7_22": asce_7_22,
+}
 _SPECTRA: Final = {
     "eurocode_8": TargetSpectrum.eurocode_8,
     "asce_7": TargetSpectrum.asce_7,
@@ -34,13 +40,21 @@ def called(
     functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, *before: object
 ) -> Made:
     """Call a function by its name with arguments that were typed, behind those known before."""
+    function, given = call_of(functions, words, option, len(before))
+    return function(*before, **given)
+
+
+def call_of(
+    functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, before: int
+) -> tuple[Callable[..., Made], dict[str, Any]]:
+    """Read a function and its arguments, behind so many that are known before."""
     name, *typed = words
     if name not in functions:
         known = ", ".join(functions)
         msg = f"{option}: there is no {name!r}{nearest(name, functions)}; known are {known}"
         raise ComponentError(msg)
     function = functions[name]
-    first = tuple(arguments_of(function))[: len(before)]
+    first = tuple(arguments_of(function))[:before]
     known = arguments_of(function, without=first)
     given = values_by_name(typed, option, f"{next(iter(known))}=...")
     unknown = [one for one in given if one not in known]
@@ -50,7 +64,17 @@ def called(
         said = said or f"needs {lacking[0]}=..."
         msg = f"{option}: {name} {said}; it takes {', '.join(known)}"
         raise ComponentError(msg)
-    return function(*before, **{one: _value(text) for one, text in given.items()})
+    return function, {one: _value(text) for one, text in given.items()}
+
+
+def check_of(text: str, option: str) -> list[str]:
+    """Read a check that a file asks for, in words as they are typed; refuse what is none."""
+    words = split(text)
+    if not words:
+        msg = f"{option}: found an empty check; expected such as 'circolare_2019'"
+        raise ComponentError(msg)
+    call_of(CODES, words, option, 2)  # the scene and its motions
+    return words
 
 
 def target_from(words: Sequence[str], option: str) -> TargetSpectrum:

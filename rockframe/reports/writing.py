@@ -54,8 +54,9 @@ def report(
         Of the page; the model unless given.
     project : mapping of str to str, optional
         What the report is about: ``object``, ``place``, ``number``, ``date``, ``author``,
-        ``checked_by``; ``conclusion``, a sentence that stands first; and ``assumptions``, a list
-        of texts. What the file of the scene says in its table ``[project]`` unless given.
+        ``checked_by``; ``conclusion``, a sentence that stands first; ``assumptions``, a list of
+        texts; and ``checks``, those that the command line is to make. What the file of the scene
+        says in its table ``[project]`` unless given.
     units : mapping of str to str, optional
         Units of all numbers by what they are of, such as ``{"force": "kN", "angle": "deg"}``:
         length, mass, angle, angular_velocity, velocity, acceleration, force, moment, energy,
@@ -122,6 +123,7 @@ def report(
     aim = aim_of(target, motions, _OWNER)
     checked = checks_of(checks, _OWNER)
     by_codes = [banner for one in checked for banner in one.banners()]
+    by_codes = by_codes or [*about.unchecked()]
     source = str(dataset.encoding.get("source", ""))
     read = [source] if source else []
     # before the certificate, which takes a while

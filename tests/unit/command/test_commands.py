@@ -261,6 +261,26 @@ def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, fol
     assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
     assert typed("report", "runs.nc")[0] == 0
     assert "Tower" in (folder / "runs.html").read_text()
+    asked = 'checks = ["circolare_2019 confidence_factor=1.2", "asce_7_22 spectral_acceleration=1"]'
+    (folder / "scene.toml").write_text(f"{scene}\n{project}{asked}\n")
+    assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
+    assert typed("report", "out.nc", "--no-certificate")[0] == 0
+    text = (folder / "out.html").read_text()
+    assert '<td>FC</td><td class="value">1.2</td>' in text
+    assert "tipping: " in text
+    with xr.open_dataset("out.nc") as kept:
+        rf.report(kept, "python.html", certify=False)
+    text = (folder / "python.html").read_text()
+    assert "Not checked</strong>Asked for: circolare_2019 confidence_factor=1.2; asce_7_22" in text
+    for wrong, said in (
+        ("circolare", "there is no 'circolare'"),
+        ("circolare_2019 factor=1", "circolare_2019 has no 'factor'"),
+        ("asce_7_22", "asce_7_22 needs spectral_acceleration=..."),
+        ("", "found an empty check"),
+    ):
+        (folder / "scene.toml").write_text(f'{scene}\n[project]\nchecks = ["{wrong}"]\n')
+        code, _, err = typed("run", "scene.toml")
+        assert (code, said in err) == (2, True), err
     (folder / "scene.toml").write_text(f"{scene}\n[project]\nobjekt = 'Tower'\n")
     code, _, err = typed("run", "scene.toml")
     assert code == 2
