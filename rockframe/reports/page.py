@@ -68,7 +68,7 @@ td.value { white-space: normal; } }
 td.value { white-space: normal; min-width: 5.5rem; }
   .many { font-size: 8pt; } .many td.value { min-width: 0; }
   h2, h3, dt { break-after: avoid; }
-  figure img { width: auto; max-width: 100%; max-height: 9cm; }
+  figure img { width: auto; max-width: 100%; max-height: 8cm; }
   pre { white-space: pre-wrap; } details > summary { display: none; } }
 """
 
