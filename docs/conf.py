@@ -31,6 +31,7 @@ html_theme = "furo"
 html_title = f"rockframe {release}"
 html_static_path = ["_static"]
 html_css_files = ["manual.css"]
+html_js_files = ["equations.js"]
 
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3

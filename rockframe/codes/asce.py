@@ -3,17 +3,11 @@
 from collections.abc import Mapping
 from typing import Final
 
-from rockframe.codes.check import (
-    CheckedLine,
-    CheckedVerdict,
-    CodeCheck,
-    peaks_of,
-    read_motions,
-    rocking_block,
-)
+from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
 from rockframe.components import Block
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
+from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
 from rockframe.units import POSITIVE, QuantityLike, RatioLike, Unit, to_ratio
 
@@ -157,4 +151,6 @@ def asce_7_22(
         "H_f, R_mu, C_AR and R_po are taken as they are given",
         "strength of anchors; loads other than earthquake and weight",
     )
-    return CodeCheck("A component on its floor", _CODE, lines, tuple(verdicts), notes)
+    return CodeCheck(
+        "A component on its floor", _CODE, lines, tuple(verdicts), notes, scene_words(system)
+    )

@@ -7,18 +7,12 @@ from typing import Final
 import numpy as np
 
 from rockframe.arguments import one_of_names
-from rockframe.codes.check import (
-    CheckedLine,
-    CheckedVerdict,
-    CodeCheck,
-    peaks_of,
-    read_motions,
-    rocking_block,
-)
+from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
 from rockframe.errors import ComponentError
 from rockframe.measures import response_spectrum
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
+from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
@@ -134,7 +128,7 @@ def circolare_2019(
         "an elastic branch before the wall lifts; the capacity curve is straight",
     )
     title = "A rigid block that overturns, by kinematics" + (" and by its motion" * bool(motions))
-    return CodeCheck(title, _CODE, lines, tuple(verdicts), notes)
+    return CodeCheck(title, _CODE, lines, tuple(verdicts), notes, scene_words(system))
 
 
 def _outwards(setting: RigidGroundSetting) -> tuple[float, float]:

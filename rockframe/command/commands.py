@@ -330,12 +330,15 @@ COMMANDS: Final = (
         "Write one HTML file that needs no other: the scene, the motion and its measures, the "
         "verdict and its certificate, figures, limits of validity, and where it all comes from. "
         "A run without certificate is certified first, where the file holds its motion. Of a study "
-        "it has all cases in a table and the worst one in full, or the one that --case names.",
+        "it has all cases in a table and the worst one in full, or the one that --case names, and "
+        "the spectra of its records beside a target. Checks by codes stand beside the verdict.",
         """\
   rockframe report out.nc
   rockframe report out.nc -o tower.html --title 'Clock tower, record 12'
   rockframe report runs.nc --units force=kN angle=deg
-  rockframe report runs.nc --case scale=2 'width=0.7 m' -o case.html""",
+  rockframe report runs.nc --case scale=2 'width=0.7 m' -o case.html
+  rockframe report runs.nc --motions records --target eurocode_8 'ground_acceleration=0.2 g_0'
+  rockframe report out.nc --check circolare_2019 confidence_factor=1.35""",
         (
             DATASET,
             path("-o", "--output", metavar="x.html", help="the file (default: beside the result)"),
@@ -357,6 +360,29 @@ COMMANDS: Final = (
                 "--motion",
                 metavar="RECORD",
                 help="the record of the run, for its certificate where the result does not hold it",
+            ),
+            path(
+                "--motions",
+                nargs="+",
+                metavar="FILE",
+                help="the records of a study, for their spectra and for its worst case, where a "
+                "file does not hold them; archives and folders too",
+            ),
+            word(
+                "--target",
+                nargs="+",
+                metavar=("SPECTRUM", "NAME=VALUE"),
+                help="spectrum beside those of the motions: eurocode_8 'ground_acceleration=0.2 "
+                "g_0' ground_type=B; asce_7 with its arguments; or a table x.csv, with the "
+                "columns period [s], acceleration [g_0], and damping_ratio=0.08",
+            ),
+            word(
+                "--check",
+                nargs="+",
+                action="append",
+                metavar=("CODE", "NAME=VALUE"),
+                help="check by a code beside it, under the motions of the result: circolare_2019 "
+                "confidence_factor=1.35, or asce_7_22 spectral_acceleration=1.2",
             ),
             word(
                 "--no-certificate",

@@ -1,18 +1,28 @@
 """``rockframe report``: a page on a run or a study."""
 
 import argparse
-from collections.abc import Iterable
+import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any, Final
 
 import xarray as xr
 
 from rockframe.command.answer import Answer
 from rockframe.command.shared import Outputs, read_result
 from rockframe.command.streams import INPUT, STREAM
-from rockframe.errors import ComponentError, FileError
+from rockframe.command.typed_calls import CODES, called, check_of, target_from, values_by_name
+from rockframe.errors import ComponentError, FileError, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.reports import report
+from rockframe.reports.checks import CodeCheck
+from rockframe.reports.motions import motions_of
+from rockframe.reports.project import ATTRIBUTE, CHECKS
+from rockframe.simulation.system import System
 from rockframe.studies import case, open_study
+from rockframe.suites import TargetSpectrum, read_suite
+
+_CHECK: Final = "--check"
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
@@ -25,43 +35,84 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     dataset = open_study(arguments.dataset) if folder else read_result(arguments.dataset)
     if path is None:
         path = str(Path(arguments.dataset).with_suffix(".html"))
+    records = arguments.motions
+    motions = None if records is None else read_suite(records[0] if len(records) == 1 else records)
     if arguments.case is not None:
-        dataset = _case_of(dataset, arguments)
+        dataset = _case_of(dataset, arguments, motions)
     outputs = Outputs(arguments, [arguments.dataset], answer)
-    outputs.written_by(path, ".html", "Report", lambda place: _write(dataset, place, arguments))
+    outputs.written_by(
+        path, ".html", "Report", lambda place: _write(dataset, place, arguments, motions)
+    )
     return 0
 
 
-def _write(dataset: xr.Dataset, place: Path, arguments: argparse.Namespace) -> None:
+def _write(
+    dataset: xr.Dataset,
+    place: Path,
+    arguments: argparse.Namespace,
+    motions: Mapping[str, GroundMotion] | None,
+) -> None:
     motion = None if arguments.motion is None else GroundMotion.read(arguments.motion)
+    target = None if arguments.target is None else target_from(arguments.target, "--target")
     report(
         dataset,
         place,
         title=arguments.title,
-        units=_pairs(arguments.units or (), "--units", "force=kN"),
+        units=values_by_name(arguments.units or (), "--units", "force=kN") or None,
         motion=motion,
+        motions=motions if "motions_json" in dataset.attrs else None,
+        target=target,
+        checks=_checks(dataset, arguments.check or (), motion or motions, target),
         certify=not arguments.no_certificate,
         overwrite=arguments.overwrite,
     )
 
 
-def _pairs(words: Iterable[str], option: str, example: str) -> dict[str, str] | None:
-    """Read NAME=VALUE; None where there is none."""
-    found = [word.partition("=") for word in words]
-    for name, _, value in found:
-        if not (name and value):
-            msg = f"{option}: expected NAME=VALUE, such as {example}, got {name!r}"
+def _checks(
+    dataset: xr.Dataset, typed: Any, motions: object, target: TargetSpectrum | None
+) -> list[CodeCheck]:
+    """Check the scene of a result under its motions, or by a spectrum, as it was typed.
+
+    What the file of the scene asks for is done where nothing was typed, and left where the motions
+    are not at hand, of which the report tells.
+    """
+    asked = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}"))).get(CHECKS, ())
+    required = bool(typed)
+    typed = typed or [check_of(one, CHECKS) for one in asked]
+    if not typed:
+        return []
+    try:
+        system = System.from_dataset(dataset)
+    except SchemaError as problem:
+        if not required:
+            return []
+        msg = f"{_CHECK}: the result does not hold the scene that is to be checked ({problem})"
+        raise ComponentError(msg) from problem
+    held = motions_of(dataset, motions, _CHECK)
+    if not held and system.motion is not None:
+        held = {system.motion.name: system.motion}
+    found: list[CodeCheck] = []
+    for words in typed:
+        demand = held or (target if words[0] == "circolare_2019" else None)
+        if demand is None and words[0] == "circolare_2019":
+            if not required:
+                continue
+            msg = (
+                f"{_CHECK}: circolare_2019 needs the motions of the result, by --motions or "
+                "--motion, or a spectrum, by --target"
+            )
             raise ComponentError(msg)
-    return {name: value for name, _, value in found} or None
+        found.append(called(CODES, words, _CHECK, system, demand))
+    return found
 
 
-def _case_of(dataset: xr.Dataset, arguments: argparse.Namespace) -> xr.Dataset:
+def _case_of(dataset: xr.Dataset, arguments: argparse.Namespace, motions: object) -> xr.Dataset:
     """Simulate the case of a study that is asked for."""
     pairs = [word.partition("=") for word in arguments.case or ()]
     if "axes_json" not in dataset.attrs or not all(name and value for name, _, value in pairs):
         words = f"found --case {' '.join(arguments.case)}; expected NAME=VALUE, of a study's axes"
         raise FileError(arguments.dataset, [(None, words)])
-    found = case(dataset, **{name: value for name, _, value in pairs})
+    found = case(dataset, motions=motions, **{name: value for name, _, value in pairs})
     again = found.simulate()
     again.encoding["source"] = str(Path(arguments.dataset).expanduser())
     return again

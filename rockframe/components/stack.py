@@ -154,28 +154,6 @@ class Stack(Component):
             for name in part.parameters()
         )
 
-    def replace(self, **changes: Any) -> Self:
-        """Build a stack of which bodies, interfaces or offsets are others.
-
-        Parameters
-        ----------
-        **changes
-            `bodies`, `interfaces` and `offsets`, each whole; None for `offsets` is as if they were
-            not given.
-
-        Returns
-        -------
-        Stack
-
-        Raises
-        ------
-        TypeError, UnitsError, ComponentError
-            As the constructor.
-        """
-        offsets = self._arguments()["offsets"]
-        given: dict[str, Any] = {"interfaces": self.interfaces, "offsets": offsets, **changes}
-        return type(self)(*given.pop("bodies", self.bodies), **given)
-
     def with_scaled(self, name: str, factor: float) -> Self:
         """Build a stack of which one number of a body or an interface is larger or smaller.
 

@@ -52,24 +52,23 @@ def runs_of(given: object, function: str, window: Window) -> list[Run]:
     ]
 
 
-def window_of(window: object, function: str) -> tuple[float, float]:
-    """Read the part of the time that is drawn; infinite where an end is not given [s]."""
+def window_of(window: object, function: str, name: str = "window") -> tuple[float, float]:
+    """Read a part of the time, or of periods; infinite where an end is not given [s]."""
     if window is None:
         return -np.inf, np.inf
     owner = f"rf.plot.{function}"
     ends = list(cast("Any", window)) if isinstance(window, tuple | list) else []
     if len(ends) != 2:
         msg = (
-            f"{owner}: window must be a pair of times, of which None is the run's own, such as "
+            f"{owner}: {name} must be a pair of times, of which None leaves an end open, such as "
             f"('2 s', '8 s'), got {shown(window)}"
         )
         raise ComponentError(msg)
     start, end = (
-        float("nan") if one is None else to_si(one, TIME, owner=owner, name="window")
-        for one in ends
+        float("nan") if one is None else to_si(one, TIME, owner=owner, name=name) for one in ends
     )
     if start >= end:
-        msg = f"{owner}: window must end after it starts, got {shown(window)}"
+        msg = f"{owner}: {name} must end after it starts, got {shown(window)}"
         raise ComponentError(msg)
     return (-np.inf if np.isnan(start) else start), (np.inf if np.isnan(end) else end)
 

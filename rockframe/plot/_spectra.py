@@ -1,15 +1,18 @@
 """Spectra of motions, laid out as in Fig. 21 of the paper, and of sets of motions."""
 
 from collections.abc import Iterable
+from enum import StrEnum
 from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import one_of_words, truth
 from rockframe.motion.quantities import ArrayLike
 from rockframe.plot._axes import (
     BLUE,
     GREY,
+    STANDS,
     VERMILLION,
     Shown,
     axis_label,
@@ -171,6 +174,14 @@ def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> N
     grid(fourier)
 
 
+class Average(StrEnum):
+    """What stands for a set."""
+
+    MEDIAN = "median"
+    MEAN = "mean"
+
+
+_SUITE: Final = "rf.plot.suite"
 _MOST_NAMED: Final = 6
 _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), "s")
 
@@ -183,12 +194,15 @@ def suite(
     *,
     component: str = "horizontal",
     target: TargetSpectrum | None = None,
+    compared: Window = None,
+    average: str = Average.MEDIAN,
+    named: bool | None = None,
     acceleration: str | None = None,
     units: UnitsLike = None,
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw the response spectra of a set of motions, with their median and spread.
+    """Draw the response spectra of a set of motions, with their median and spread, or their mean.
 
     Parameters
     ----------
@@ -201,7 +215,13 @@ def suite(
     component : {"horizontal", "vertical"}, optional
         Which acceleration.
     target : TargetSpectrum, optional
-        Drawn beside them.
+        Drawn beside them, where it is known.
+    compared : (str or Quantity or None, str or Quantity or None), optional
+        Shortest and longest period at which spectra and target are compared, set off [s].
+    average : {"median", "mean"}, optional
+        Of the set: the median with its spread, or the mean, of which codes speak.
+    named : bool, optional
+        Whether motions are told apart, by colours and in the legend; up to six unless given.
     acceleration : str, optional
         Unit; g unless given.
 
@@ -209,8 +229,7 @@ def suite(
     -------
     matplotlib.axes.Axes
         Pseudo-spectral accelerations on logarithmic axes. Median and spread are those of the
-        logarithms; the band reaches one standard deviation to both sides. Up to six motions have a
-        line in the legend.
+        logarithms; the band reaches one standard deviation to both sides.
 
     Raises
     ------
@@ -222,25 +241,29 @@ def suite(
     given = drawn_motions(motions, "suite")
     if target is not None:
         check_target(target, owner="rf.plot.suite")
+    middle = one_of_words(Average, average, owner=_SUITE, name="average")
+    cut = window_of(compared, "suite", "compared")
     unit = units_of(units, "suite").of(ACCELERATION, "g", acceleration=acceleration)
-    named = {one.label or motions_title(given): one.motion for one in given}
-    found = response_spectrum(named, periods, damping_ratio, component=component)
+    labelled = {one.label or motions_title(given): one.motion for one in given}
+    found = response_spectrum(labelled, periods, damping_ratio, component=component)
     found = found.isel(period=np.flatnonzero(found["period"].to_numpy() > 0.0))
     values = unit.of(
         found["pseudo_spectral_acceleration"].squeeze("damping_ratio").transpose("motion", ...)
     )
     period = found["period"].to_numpy()
     on = single(ax, "suite", (6.0, 4.3))
-    few = len(given) <= _MOST_NAMED
-    for place, (label, one) in enumerate(zip(named, given, strict=True)):
+    few = len(given) <= _MOST_NAMED if named is None else truth(named, owner=_SUITE, name="named")
+    for place, (label, one) in enumerate(zip(labelled, given, strict=True)):
         words: Any = label if few else ("motions" if place == 0 else None)
         on.axes.plot(
             period, values[place], label=words, linewidth=0.9 if few else 0.6,
             color=one.colour if few else GREY, linestyle=one.style if few else "-",
             alpha=0.8 if few else 0.5,
         )  # fmt: skip
-    if len(given) > 1:
+    if len(given) > 1 and middle is Average.MEDIAN:
         _draw_spread(on.axes, period, values)
+    elif len(given) > 1:
+        on.axes.plot(period, values.mean(axis=0), color=BLUE, linewidth=1.8, label="mean")
     if target is not None:
         low, high = target.limits
         known = period[(period >= low) & (period <= high)]
@@ -251,6 +274,9 @@ def suite(
         ylabel=axis_label("pseudo-spectral acceleration", unit.words),
     )  # fmt: skip
     on.axes.set_xlim(period[0], period[-1])
+    if np.isfinite(cut).any():
+        low, high = np.clip(cut, period[0], period[-1])
+        on.axes.axvspan(low, high, color=STANDS, zorder=-1)
     plain_ticks(on.axes)
     grid(on.axes)
     key(on.axes)

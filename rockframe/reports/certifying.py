@@ -19,8 +19,8 @@ def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, s
         return dataset, "the dataset does not describe its system."
     if system.motion is None and dataset.attrs.get("motion") != "none":
         return dataset, (
-            "the dataset does not hold its motion, sample by sample; "
-            "simulate with certify=True, or with 'rockframe certify'."
+            "the dataset does not hold its motion, sample by sample; hand it in, with motion= or "
+            "--motion, or simulate with certify=True, or with 'rockframe certify'."
         )
     try:
         with warnings.catch_warnings():

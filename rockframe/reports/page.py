@@ -8,13 +8,16 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe.reports.figures import close
 from rockframe.version import __version__
-from rockframe.writing import generator
+from rockframe.writing import FileKind, generator
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"))
 LARGEST_DRAWING: Final = 1_500_000
 """Size of a drawing by lines beyond which it is drawn by dots [bytes]."""
+_LONGEST_VALUE: Final = 14
+"""Letters of a cell beyond which it is words, and may go on in a second line."""
 _POLICY: Final = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 STYLE: Final = """\
 :root { color-scheme: light dark; --ink: #1c2430; --soft: #5a6675; --paper: #ffffff;
@@ -37,10 +40,11 @@ p { margin: .5rem 0; }
 .good { border-color: var(--good); } .good strong { color: var(--good); }
 .bad { border-color: var(--bad); } .bad strong { color: var(--bad); }
 .doubt { border-color: var(--doubt); } .doubt strong { color: var(--doubt); }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto; } .scroll + .scroll { margin-top: 1.4rem; }
 table { border-collapse: collapse; width: 100%; font-size: .92rem; }
 th, td { text-align: left; vertical-align: top; padding: .28rem .6rem .28rem 0;
   border-bottom: 1px solid var(--line); }
+.many { font-size: .84rem; }
 td.value { white-space: nowrap; font-variant-numeric: tabular-nums; }
 figure { margin: 1rem 0; }
 figure img { width: 100%; height: auto; background: #ffffff; border: 1px solid var(--line);
@@ -50,7 +54,8 @@ pre { overflow-x: auto; background: var(--band); padding: .7rem .9rem; font-size
 li { margin: .25rem 0; }
 .sheet { margin: 1rem 0; }
 code { overflow-wrap: anywhere; }
-@media (max-width: 30rem) { td.value { white-space: normal; } }
+@media (max-width: 30rem) { .many { font-size: .84rem; }
+td.value { white-space: normal; } }
 @page { size: A4; margin: 18mm 16mm; }
 @media print {
   :root { --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --band: #f4f4f4;
@@ -58,9 +63,12 @@ code { overflow-wrap: anywhere; }
   body { max-width: none; padding: 0; font-size: 10pt; }
   figure, tr, .verdict, .sheet { break-inside: avoid; }
   thead { display: table-header-group; }
-  .scroll { overflow: visible; } td.value { white-space: normal; }
+  .scroll { overflow: visible; } table { font-size: 9pt; }
+  .many { font-size: .84rem; }
+td.value { white-space: normal; min-width: 5.5rem; }
+  .many { font-size: 8pt; } .many td.value { min-width: 0; }
   h2, h3, dt { break-after: avoid; }
-  figure img { width: auto; max-width: 100%; max-height: 10.5cm; }
+  figure img { width: auto; max-width: 100%; max-height: 8cm; }
   pre { white-space: pre-wrap; } details > summary { display: none; } }
 """
 
@@ -118,9 +126,12 @@ def rows(given: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
 def columns(given: Iterable[Sequence[str]], head: Sequence[str]) -> str:
     """Give a table of which all columns but the first hold values."""
     names = "".join(f"<th>{escape(name)}</th>" for name in head)
-    lines = [f'<div class="scroll"><table><thead><tr>{names}</tr></thead><tbody>']
+    lines = [f'<div class="scroll"><table class="many"><thead><tr>{names}</tr></thead><tbody>']
     for first, *others in given:
-        cells = "".join(f'<td class="value">{escape(cell)}</td>' for cell in others)
+        cells = "".join(
+            f"<td{_class('value' if len(cell) <= _LONGEST_VALUE else '')}>{escape(cell)}</td>"
+            for cell in others
+        )
         lines.append(f"<tr><td>{escape(first)}</td>{cells}</tr>")
     lines.append("</tbody></table></div>")
     return "\n".join(lines)

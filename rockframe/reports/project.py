@@ -23,6 +23,8 @@ LINES: Final = {
 }
 CONCLUSION: Final = "conclusion"
 ASSUMPTIONS: Final = "assumptions"
+CHECKS: Final = "checks"
+"""Checks by codes that the command line is asked for, as it takes them with ``--check``."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,7 @@ class Project:
     lines: tuple[tuple[str, str], ...] = ()
     conclusion: str = ""
     assumptions: tuple[str, ...] = ()
+    checks: tuple[str, ...] = ()
 
     def block(self) -> Iterator[str]:
         """Give the lines at the head of a report."""
@@ -43,6 +46,12 @@ class Project:
         if self.conclusion:
             yield page.banner("Conclusion", self.conclusion, "")
 
+    def unchecked(self) -> Iterator[str]:
+        """Say that checks were asked for, of a report that has none."""
+        if self.checks:
+            words = "; hand it in as checks=, or the motions to 'rockframe report'."
+            yield page.banner("Not checked", f"Asked for: {'; '.join(self.checks)}{words}", "doubt")
+
 
 def project_of(given: object, dataset: xr.Dataset, owner: str) -> Project:
     """Read a project, or what the result says of it where none is given."""
@@ -53,7 +62,7 @@ def project_of(given: object, dataset: xr.Dataset, owner: str) -> Project:
 
 def read_project(given: object, owner: str) -> Project:
     """Read a project from a mapping."""
-    known = (*LINES, CONCLUSION, ASSUMPTIONS)
+    known = (*LINES, CONCLUSION, ASSUMPTIONS, CHECKS)
     if not isinstance(given, Mapping):
         msg = (
             f"{owner}: project must be a mapping with any of {', '.join(known)}, got {shown(given)}"
@@ -65,15 +74,13 @@ def read_project(given: object, owner: str) -> Project:
             called = f"{shown(name)}{nearest(name, known)}"
             msg = f"{owner}: project has no entry {called}; known are {', '.join(known)}"
             raise ComponentError(msg)
-    assumptions = values.get(ASSUMPTIONS, ())
-    if not isinstance(assumptions, list | tuple):
-        msg = f"{owner}: assumptions must be a list of texts, got {shown(assumptions)}"
-        raise ComponentError(msg)
+    assumptions, checks = (_texts(values.get(one, ()), one, owner) for one in (ASSUMPTIONS, CHECKS))
     return Project(
         tuple((title, _text(values[name], name, owner)) for name, title in LINES.items()
               if name in values),
         _text(values.get(CONCLUSION, ""), CONCLUSION, owner),
-        tuple(_text(one, ASSUMPTIONS, owner) for one in cast("list[object]", assumptions)),
+        assumptions,
+        checks,
     )  # fmt: skip
 
 
@@ -81,6 +88,13 @@ def project_json(given: Mapping[str, object], owner: str) -> str:
     """Write a project, as results keep it."""
     read_project(given, owner)
     return json.dumps(given, default=str)
+
+
+def _texts(given: object, name: str, owner: str) -> tuple[str, ...]:
+    if not isinstance(given, list | tuple):
+        msg = f"{owner}: {name} must be a list of texts, got {shown(given)}"
+        raise ComponentError(msg)
+    return tuple(_text(one, name, owner) for one in cast("list[object]", given))
 
 
 def _text(given: object, name: str, owner: str) -> str:

@@ -1,6 +1,7 @@
 """The sections of a report on a run."""
 
 import json
+import re
 from collections.abc import Iterator, Sequence
 from importlib.metadata import version
 from platform import python_version
@@ -18,12 +19,15 @@ from rockframe.plot._response import histories_of
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
+from rockframe.reports.motions import Aim, record_rows, spectra_section
 from rockframe.reports.values import extremes_of, powers_in_html, table_of
-from rockframe.results.outcome import verdict_of
+from rockframe.results.outcome import LEAST_SLIP, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
+from rockframe.simulation.certify.certificate import NEAR_WORDS
 from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
+from rockframe.studies.sweeps.words import slips_of_cases
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits
 from rockframe.version import __version__
@@ -36,6 +40,8 @@ _BANNERS: Final = {
 }
 """Title and kind of what became of the body, by the verdict."""
 _CERTIFICATE: Final = [row.name for row in (*CERTIFICATE, *PROOF)]
+_NUMBERS: Final = re.compile(r": |, after ")
+"""Where a verdict goes on from what became of the body to its numbers."""
 _PANELS: Final = 4
 """Histories in one figure, which so fits on a page."""
 _DRAWN: Final = frozenset({
@@ -66,9 +72,15 @@ _PROVENANCE: Final = (
 
 
 def outcome_of(dataset: xr.Dataset) -> str:
-    """Say what became of the body."""
+    """Say what became of the body, on top whether it slid."""
     title, kind = _BANNERS[verdict_of(dataset)]
-    return page.banner(title, str(dataset.attrs.get("verdict", "")), kind)
+    words = str(dataset.attrs.get("verdict", ""))
+    slid = float(slips_of_cases(dataset)) >= LEAST_SLIP
+    if "peak_slip" in dataset and words:
+        title = _NUMBERS.split(words)[0]
+    elif bool(dataset.get("would_slide", False)):
+        slid, title = True, f"{title}, but would slide"
+    return page.banner(title, words, "doubt" if slid and kind == "good" else kind)
 
 
 def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:
@@ -81,8 +93,10 @@ def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:
     if "certificate" in dataset.attrs:
         sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
         words = str(dataset.attrs["certificate"])
-        title = f"Certificate: the verdict {'holds' if sure else 'is in doubt'}"
-        yield page.banner(title, words, "good" if sure else "doubt")
+        near = words.startswith(NEAR_WORDS)
+        said = f"holds{', but near a boundary' * near}" if sure else "is in doubt"
+        title = f"Certificate: the verdict {said}"
+        yield page.banner(title, words, "good" if sure and not near else "doubt")
     elif "proof" not in dataset.attrs:
         yield page.banner("No certificate", reason or "none was asked for.", "doubt")
     cautions = str(dataset.attrs.get("cautions", NONE))
@@ -110,9 +124,9 @@ def scene_section(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
 
 
 def motion_section(
-    dataset: xr.Dataset, found: GroundMotion | None, units: ReaderUnits
+    dataset: xr.Dataset, found: GroundMotion | None, units: ReaderUnits, aim: Aim | None = None
 ) -> Iterator[str]:
-    """Show the motion, its measures and its figure."""
+    """Show the motion, its measures and its figure; and a target beside its spectrum."""
     attributes = dict(dataset.attrs)
     if "motion" in attributes:
         attributes["motion"] = motion_words(attributes)
@@ -123,16 +137,20 @@ def motion_section(
         ("motion_time_step", "time step [s]"),
         ("motion_sha256", "digest (SHA-256)"),
     )
-    yield page.rows((words, str(attributes[name])) for name, words in known if name in attributes)
+    told = [(words, str(attributes[name])) for name, words in known if name in attributes]
+    yield page.rows([*told, *([] if found is None else record_rows(found, units))])
     if found is None:
         return
     yield page.subtitle("Measures")
     yield page.rows(table_of(intensity_measures(found), units=units))
     yield page.picture(
-        figure_of(plot.spectra(found)),
+        figure_of(plot.spectra(found, units=units.words)),
         "Ground acceleration along time, its response spectra at 5 % damping and its Fourier "
         "spectrum.",
     )
+    if aim is not None:
+        yield page.subtitle("Spectrum and target")
+        yield from spectra_section({found.name: found}, aim, units)
 
 
 def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
@@ -140,7 +158,9 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     if dataset.sizes.get("time", 0) > 1:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.picture(
-            figure_of(plot.response(dataset, rotation="deg" if angle else "relative")),
+            figure_of(
+                plot.response(dataset, rotation="deg" if angle else "relative", units=units.words)
+            ),
             "From the top: ground acceleration; rotation"
             f"{'' if angle else ' over the overturning angle'}; vertical displacement; and what "
             "bears.",

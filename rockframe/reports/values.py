@@ -39,6 +39,17 @@ def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
     return number if unit.words == Unit.ONE else f"{number} {powers_in_html(unit.words)}"
 
 
+def number_in(value: float, unit: str, units: ReaderUnits) -> str:
+    """Write a number, given in an SI unit, in the reader's unit, without it."""
+    return "-" if math.isnan(value) else f"{value / units.of(unit).size + 0.0:.4g}"
+
+
+def column_head(name: str, unit: str, units: ReaderUnits) -> str:
+    """Write the name of a variable with the reader's unit, above a column."""
+    words, shown_in = name.replace("_", " "), units.of(unit).words
+    return words if shown_in == Unit.ONE else f"{words} [{powers_in_html(shown_in)}]"
+
+
 def powers_in_html(unit: str) -> str:
     """Write the powers of a unit above the line."""
     return _POWER.sub(lambda power: power[1].translate(_ABOVE), unit)

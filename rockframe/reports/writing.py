@@ -1,7 +1,7 @@
 """``report``: a page on a run or a study, to file or to print."""
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 from os import PathLike
 from pathlib import Path
@@ -15,13 +15,15 @@ from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.reports import page, sections, studies
 from rockframe.reports.certifying import certified
+from rockframe.reports.checks import CodeCheck, checks_of
+from rockframe.reports.motions import Aim, aim_of, motions_of, spectra_section
 from rockframe.reports.project import Project, project_of
 from rockframe.simulation.system import System
+from rockframe.suites import TargetSpectrum
 from rockframe.units.shown import ReaderUnits, reader_units
-from rockframe.writing import FileKind, checked_path, generator, write_file
+from rockframe.writing import checked_path, write_file
 
 _OWNER: Final = "report"
-_KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"))
 
 
 @hinted()
@@ -33,6 +35,9 @@ def report(
     project: Mapping[str, object] | None = None,
     units: Mapping[str, str] | None = None,
     motion: GroundMotion | None = None,
+    motions: GroundMotion | Iterable[GroundMotion] | Mapping[str, GroundMotion] | None = None,
+    target: TargetSpectrum | xr.Dataset | None = None,
+    checks: CodeCheck | Iterable[CodeCheck] = (),
     certify: bool = True,
     overwrite: bool = False,
 ) -> Path:
@@ -50,8 +55,9 @@ def report(
         Of the page; the model unless given.
     project : mapping of str to str, optional
         What the report is about: ``object``, ``place``, ``number``, ``date``, ``author``,
-        ``checked_by``; ``conclusion``, a sentence that stands first; and ``assumptions``, a list
-        of texts. What the file of the scene says in its table ``[project]`` unless given.
+        ``checked_by``; ``conclusion``, a sentence that stands first; ``assumptions``, a list of
+        texts; and ``checks``, those that the command line is to make. What the file of the scene
+        says in its table ``[project]`` unless given.
     units : mapping of str to str, optional
         Units of all numbers by what they are of, such as ``{"force": "kN", "angle": "deg"}``:
         length, mass, angle, angular_velocity, velocity, acceleration, force, moment, energy,
@@ -59,6 +65,17 @@ def report(
     motion : GroundMotion, optional
         That the run was made with, where the dataset does not hold it sample by sample: for its
         certificate, its measures and its figure.
+    motions : GroundMotion, or iterable or mapping of them, optional
+        Those of a study, such as a suite, where neither the dataset nor this process has them: for
+        their spectra, and for the worst case.
+    target : TargetSpectrum or xarray.Dataset, optional
+        What the spectra of the motions are shown beside; or what
+        :meth:`rockframe.MotionSuite.scaling_to` or :meth:`rockframe.MotionSuite.selection_for`
+        found for it, whose periods they are compared at. The target that `motions` were scaled to
+        unless given.
+    checks : CodeCheck, or iterable of them, optional
+        Checks by codes (:mod:`rockframe.codes`): their verdicts stand beside that of the motion,
+        their numbers with the clauses in a section each.
     certify : bool, optional
         Whether a run without a certificate is certified first, where the dataset holds its
         motion; that takes some hundred runs.
@@ -71,15 +88,17 @@ def report(
         The file. Of a run it shows the verdict with its certificate, the scene, the motion and its
         measures, all scalars, all histories, limits of validity, and where the numbers come from;
         of a sweep, all cases in a table with mean and largest values, a figure, and the worst case
-        as a run; of other analyses, their figure and numbers.
+        as a run; of other analyses, their figure and numbers. Of a study also the records that
+        can be had, with their spectra beside the target.
 
     Raises
     ------
     SchemaError
         No dataset, or none of rockframe.
     ComponentError
-        A title that is no text, an unknown entry of the project, units that are none, or `certify`
-        or `overwrite` neither True nor False.
+        A title that is no text, an unknown entry of the project, units that are none, motions that
+        are none or not those of the study, a target or checks that are none, or `certify` or
+        `overwrite` neither True nor False.
     UnitsError
         A unit of another kind.
     FileError
@@ -105,22 +124,30 @@ def report(
         raise ComponentError(msg)
     about = project_of(project, dataset, _OWNER)
     chosen = reader_units(units, owner=_OWNER)
+    aim = aim_of(target, motions, _OWNER)
+    checked = checks_of(checks, _OWNER)
+    by_codes = [banner for one in checked for banner in one.banners()]
+    by_codes = by_codes or [*about.unchecked()]
     source = str(dataset.encoding.get("source", ""))
     read = [source] if source else []
     # before the certificate, which takes a while
-    checked_path(path, _KIND, overwrite=overwrite, read=read)
+    checked_path(path, page.KIND, overwrite=overwrite, read=read)
     if _is_run(dataset):
         model = str(dataset.attrs["model"])
         heading = given or f"Rocking response, {model} model"
         system = _system_of(dataset, motion)
         dataset, reason = certified(dataset, system) if certify else (dataset, "")
         verdict = sections.verdict_section(dataset, reason)
-        body = [page.section("Verdict", [*about.conclusions(), *verdict])]
-        body += _of_run(dataset, system, about, chosen)
+        body = [page.section("Verdict", [*about.conclusions(), *verdict, *by_codes])]
+        body += _of_run(dataset, system, about, chosen, aim)
     else:
         heading = given or str(dataset.attrs.get("title", "Study"))
-        body = [*studies.verdict_sections(dataset, about, chosen)]
-        worst = studies.worst_case(dataset)
+        body = [*studies.verdict_sections(dataset, about, chosen, by_codes)]
+        found = motions_of(dataset, motions, _OWNER)
+        if found:
+            spectra = spectra_section(found, aim, chosen)
+            body.append(page.section("Ground motions", spectra))
+        worst = studies.worst_case(dataset, found)
         if worst is not None:
             words, run, system = worst
             verdict = sections.outcome_of(worst[1])
@@ -132,6 +159,7 @@ def report(
                 body.append(page.section("Scene", sections.scene_section(dataset, system)))
             limits = sections.limits_section(system, about.assumptions)
             body.append(page.section("Limits of validity", limits))
+    body += [one.section(chosen) for one in checked]
     made = str(dataset.attrs.get("history", "")).splitlines()
     file = Path(source).name
     content = [
@@ -141,18 +169,22 @@ def report(
         page.section("Provenance", sections.provenance_section(dataset, file)),
     ]
     written = page.page(heading, content).encode()
-    return write_file(path, _KIND, written, overwrite=overwrite, read=read)
+    return write_file(path, page.KIND, written, overwrite=overwrite, read=read)
 
 
 def _of_run(
-    dataset: xr.Dataset, system: System | None, about: Project, units: ReaderUnits
+    dataset: xr.Dataset,
+    system: System | None,
+    about: Project,
+    units: ReaderUnits,
+    aim: Aim | None = None,
 ) -> list[str]:
     """Give the sections on a run behind its verdict."""
     motion = None if system is None else system.motion
     return [
         page.section("Response", sections.response_section(dataset, units)),
         page.section("Scene", sections.scene_section(dataset, system)),
-        page.section("Ground motion", sections.motion_section(dataset, motion, units)),
+        page.section("Ground motion", sections.motion_section(dataset, motion, units, aim)),
         page.section("Limits of validity", sections.limits_section(system, about.assumptions)),
     ]
 

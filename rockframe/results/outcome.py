@@ -199,10 +199,10 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
 
 def scalars(
     run: Summary, setting: Setting, *, uplift_angle: float
-) -> dict[str, float | int | bool]:
+) -> dict[str, Generic | float | int | bool]:
     """Give the scalars of a run by their names in the schema."""
     angles = setting.overturning_angles
-    sides: dict[str, float] = {}
+    sides: dict[str, Generic | float] = {}
     if setting.leans:
         sides = {
             "left_overturning_angle": angles.left,
@@ -211,8 +211,11 @@ def scalars(
             "right_peak_rotation": _unsigned(run.peak_right),
             "rest_rotation": setting.rest_rotation,
         }
-    for slips in setting.slips_of(run.ending)[:1]:
-        sides |= {"peak_slip": slips.peak + 0.0, "residual_slip": slips.residual}
+    slips = setting.slips_of(run.ending)
+    if slips:
+        sides |= {"peak_slip": slips[0].peak + 0.0, "residual_slip": slips[0].residual}
+    if len(slips) > 1:
+        sides["peak_body_slip"] = np.array([one.peak for one in slips])
     return sides | {
         "overturned": run.passed,
         "overturning_time": run.overturning_time,
@@ -271,7 +274,7 @@ def verdict(run: Summary, setting: Setting, *, end: float) -> str:
         f"peak rotation {nearest.rotation:.4g} rad, "
         f"{100.0 * nearest.share:.3g} % of the overturning angle"
     )
-    if setting.leans:
+    if setting.leans and nearest.rotation > 0.0:
         peak += f" to the {nearest.side.name.lower()}"
     if run.passed:
         text = f"{_overturned(run, setting, end)}, after {impacts}"
@@ -304,7 +307,8 @@ def _slid(slips: SlipRange) -> str:
         return f"Slid {slips.peak:.3g} m to the {most.name.lower()} and back"
     text = f"Slid {abs(slips.residual):.3g} m to the {side.name.lower()}"
     if abs(slips.residual) < MOST_OF_IT * slips.peak:
-        text += f" ({slips.peak:.3g} m to the {most.name.lower()} at most)"
+        other = "" if most is side else f"to the {most.name.lower()} "
+        text += f" ({slips.peak:.3g} m {other}at most)"
     return text
 
 

@@ -102,8 +102,6 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         scalars["residual_displacement"] = float(values["horizontal_displacement"][-1])
     if system.model.shows_bodies:
         scalars["peak_body_rotation"] = _peak_rotations(system, along)
-        if slips := setting.slips_of(run.ending):
-            scalars["peak_body_slip"] = np.array([one.peak for one in slips])
     places: dict[str, Generic] = {}
     if system.model.links:
         scalars |= _of_links(system, run, along)

@@ -36,14 +36,19 @@ class SlidingCheck:
     @property
     def words(self) -> str:
         """Say it, without the body."""
-        needed = "more than any floor has"
         digits = DIGITS
+        needed = ""
         if math.isfinite(self.needed):
             while f"{self.needed:.{digits}g}" == f"{self.friction:.{digits}g}":
                 digits += 1
                 if digits > MOST_DIGITS:
                     break
             needed = f"{self.needed:.{digits}g}"
+        if not needed:
+            return (
+                f"would slide from {self.first:.4g} s on: needs more than any floor has, and more "
+                f"than {self.friction:.{digits}g} for {self.lasted:.3g} s in all"
+            )
         if not self.slides:
             return f"would not slide: needs {needed} of {self.friction:.{digits}g}"
         return (

@@ -164,7 +164,7 @@ def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
 
 def scalars_of(
     system: Assembly, summary: Summary, missing: list[str]
-) -> dict[str, float | int | bool]:
+) -> dict[str, Generic | float | int | bool]:
     """Give the scalars of a run by their names in the schema, without those of its samples."""
     setting = system.setting
     uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)

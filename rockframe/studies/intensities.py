@@ -21,7 +21,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
-from rockframe.studies.sweeps.case import remembered, unscaled_motion
+from rockframe.studies.sweeps.case import remembered, store_of, unscaled_motion
 from rockframe.studies.sweeps.motions import SPECTRAL, motion_of_case, named_motions
 from rockframe.units import (
     ACCELERATION,
@@ -244,7 +244,7 @@ def intensity_in(
 def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
     """Give the motions of a sweep by their names, as they were before they were scaled."""
     attributes: Mapping[str, Any] = runs.attrs
-    known = remembered(attributes)
+    known, kept = remembered(attributes), store_of(runs)
     found: dict[str, GroundMotion] = {}
     used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist())
     names: list[str] = json.loads(attributes["motion_names"])
@@ -259,7 +259,7 @@ def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str
     for number, name in enumerate(names):
         if name not in used:
             continue
-        motion = unscaled_motion(given, number, attributes, known)
+        motion = unscaled_motion(given, number, attributes, known, kept)
         if motion is None:
             msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
             raise StudyError(msg)

@@ -83,7 +83,7 @@ def candidates_of(
     """Check the arguments of a selection, and compute the spectra that it needs."""
     target = check_target(target, owner=owner)
     kind = one_of_words(Combination, combination, owner=owner, name="combination")
-    seconds = _usual(target) if periods is None else checked_periods(periods, owner=owner)
+    seconds = usual_periods(target) if periods is None else checked_periods(periods, owner=owner)
     fixed = seconds if conditioned_on is None else checked_periods(conditioned_on, owner=owner)
     every = np.unique(np.concatenate([seconds, fixed]))
     if periods is not None or conditioned_on is not None:
@@ -117,7 +117,8 @@ def candidates_of(
     )
 
 
-def _usual(target: TargetSpectrum) -> Array:
+def usual_periods(target: TargetSpectrum) -> Array:
+    """Give the periods at which spectra are compared with a target unless told otherwise [s]."""
     low, high = (float(np.clip(one, *target.limits)) for one in _USUAL_BAND)
     return np.geomspace(low, high, _USUAL_COUNT) if high > low else np.array([low])
 

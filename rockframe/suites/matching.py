@@ -1,11 +1,14 @@
 """Matching all motions of a suite to a target spectrum."""
 
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from rockframe.errors import RecordWarning, collected_warnings, warn
 from rockframe.motion import GroundMotion
-from rockframe.motion.operations.matching import Target
+from rockframe.motion.operations.matching import USUAL_PERIODS, Target
+from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
+from rockframe.units import PERIOD, to_si_values
 
 Suite = TypeVar("Suite", bound=LabelledMotions)
 
@@ -45,7 +48,12 @@ def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
         with collected_warnings() as texts:
             motions[label] = motion.matched(target, **arguments)
         said += [f"{label!r}: {text}" for text in texts]
+    owner = f"{type(suite).__name__}.matched"
     if said:
-        msg = f"{type(suite).__name__}.matched: of {len(motions)} motions\n" + "\n".join(said)
+        msg = f"{owner}: of {len(motions)} motions\n" + "\n".join(said)
         warn(msg, RecordWarning)
-    return type(suite)(motions, unread=suite.unread, remarks=suite.remarks)
+    compared = None
+    if isinstance(target, TargetSpectrum):
+        ends = to_si_values(arguments.get("periods", USUAL_PERIODS), PERIOD, owner=owner, name="")
+        compared = replace(target, limits=(ends[0], ends[1]))
+    return type(suite)(motions, unread=suite.unread, remarks=suite.remarks, target=compared)

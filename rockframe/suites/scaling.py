@@ -16,7 +16,7 @@ from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.columns import column
 from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
-from rockframe.units import QuantityLike, RatioLike
+from rockframe.units import QuantityLike, RatioLike, Unit
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -157,6 +157,21 @@ def scaled_set(
         # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
         dataset[name].encoding["_FillValue"] = None
     return dataset
+
+
+def compared_target(found: xr.Dataset) -> TargetSpectrum | None:
+    """Give the target of scaled motions, known at the periods that were compared."""
+    periods = found["period"].to_numpy()
+    if periods.size < 2:
+        return None
+    spread = found["target_standard_deviation"].to_numpy()
+    return TargetSpectrum.from_table(
+        (periods, str(Unit.SECOND)),
+        (found["target_spectral_acceleration"].to_numpy(), str(Unit.METRE_PER_SECOND_SQUARED)),
+        standard_deviations=spread.tolist() if spread.any() else None,
+        damping_ratio=float(found.attrs["damping_ratio"]),
+        name=str(found.attrs["target"]),
+    )
 
 
 def spread_of(logarithms: "Array") -> "Array":

@@ -15,7 +15,7 @@ from rockframe.measures import (
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import proposing
 from rockframe.suites.matching import matched
-from rockframe.suites.scaling import scaled_motions, scaling_to
+from rockframe.suites.scaling import compared_target, scaled_motions, scaling_to
 from rockframe.suites.selection import selection_for
 from rockframe.suites.stored import stored_motions, suite_dataset
 from rockframe.suites.target import TargetSpectrum
@@ -43,6 +43,8 @@ class MotionSuite(LabelledMotions):
         Files that were not read, and why.
     remarks : iterable of str, optional
         What is worth a look.
+    target : TargetSpectrum, optional
+        The spectrum that they were scaled to, known where they were compared with it.
 
     Raises
     ------
@@ -152,7 +154,7 @@ class MotionSuite(LabelledMotions):
         -------
         MotionSuite
             Of the motions that were looked at, or chosen; their metadata tell ``scale_factor``
-            and ``spectral_misfit``.
+            and ``spectral_misfit``, and its `target` what they were compared with.
 
         Raises
         ------
@@ -163,7 +165,10 @@ class MotionSuite(LabelledMotions):
         if not isinstance(found, xr.Dataset):
             found = self.scaling_to(found, **arguments)
         motions, upwards = scaled_motions(self, found)
-        return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
+        return type(self)(
+            motions, verticals=upwards, unread=self._unread, remarks=self._remarks,
+            target=compared_target(found),
+        )  # fmt: skip
 
     def chosen_for(self, target: TargetSpectrum, count: int, **arguments: Any) -> Self:
         """Choose and scale the set of motions that fits a target best.

@@ -23,6 +23,7 @@ from rockframe.suites.columns import (
     suite_html,
 )
 from rockframe.suites.records import pairs_of
+from rockframe.suites.target import TargetSpectrum
 
 _EXAMPLE: Final = "rf.read_suite(path) reads files"
 
@@ -31,7 +32,7 @@ _EXAMPLE: Final = "rf.read_suite(path) reads files"
 class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
     """Labelled motions in an order; immutable. What a suite is, without what is done with it."""
 
-    __slots__ = ("_motions", "_remarks", "_unread", "_verticals")
+    __slots__ = ("_motions", "_remarks", "_target", "_unread", "_verticals")
 
     def __init__(
         self,
@@ -40,6 +41,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         verticals: Mapping[str, GroundMotion] | None = None,
         unread: Mapping[str, str] | None = None,
         remarks: Iterable[str] = (),
+        target: TargetSpectrum | None = None,
     ) -> None:
         owner = type(self).__name__
         self._motions = _named(motions, owner)
@@ -48,6 +50,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         example = "{'a.AT2': 'an empty file'}"
         self._unread = {**by_names(files, owner=owner, name="unread", example=example)}
         self._remarks = tuple(several(remarks, owner=owner, name="remarks", of="texts"))
+        self._target = target
         if not self._motions:
             msg = f"{owner}: found no motions; expected one at least"
             raise ComponentError(msg)
@@ -103,6 +106,11 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
     def remarks(self) -> tuple[str, ...]:
         """What is worth a look: of records that contradict themselves or do not make a pair."""
         return self._remarks
+
+    @property
+    def target(self) -> TargetSpectrum | None:
+        """The spectrum that the motions were scaled or matched to, where they were compared."""
+        return self._target
 
     @property
     def table(self) -> pd.DataFrame:
@@ -258,7 +266,10 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
             for label, one in self._verticals.items()
             if one.metadata.get("record") in kept
         }
-        return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
+        return type(self)(
+            motions, verticals=upwards, unread=self._unread, remarks=self._remarks,
+            target=self._target,
+        )  # fmt: skip
 
 
 def _named(given: object, owner: str) -> dict[str, GroundMotion]:

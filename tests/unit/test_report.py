@@ -13,9 +13,10 @@ from pages import read
 
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, SchemaError
-from rockframe.reports import sections, studies
+from rockframe.reports import cases, sections
 from rockframe.reports.limits import LIMITS
 from rockframe.results.schema import SCHEMA
+from rockframe.simulation.certify import certificate
 
 pytestmark = pytest.mark.unit
 
@@ -117,6 +118,95 @@ def test_a_run_by_a_record_has_its_certificate_though_it_overturned(tmp_path):
         assert rf.System.from_dataset(changed).motion is None
 
 
+@pytest.mark.parametrize("given", [{"overturning": "continue"}, {"free_vibration": "9 s"}])
+@pytest.mark.parametrize("parts", ["rigid", "sliding", "pads", "stack"])
+def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_path):
+    scenes = {
+        "rigid": (BLOCK,), "sliding": (BLOCK, rf.RigidGround(friction=0.5)), "pads": (BLOCK, PADS),
+        "stack": (rf.Stack(BLOCK, rf.Block(width="1.2 m", height="1.2 m", mass="1 t"),
+                           interfaces=[rf.RigidGround()]), PADS),
+    }  # fmt: skip
+    shaking = 9.0 * np.sin(np.linspace(0.0, 30.0, 400)) * np.linspace(0.2, 1.0, 400)
+    record = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
+    run = rf.System(*scenes[parts]).simulate(record, **given)
+    assert bool(run.overturned)
+    run.to_netcdf(tmp_path / "out.nc")
+    with xr.open_dataset(tmp_path / "out.nc") as kept:
+        words = words_of(rf.report(kept, tmp_path / "out.html"))
+    assert "verturned" in words  # of a block that may slide: did not slide, overturned
+    assert "Certificate: the verdict" in words
+    assert "No certificate" not in words
+    coarse = rf.System(*scenes[parts]).simulate(record, **given, output_step="0.1 s")
+    said = words_of(rf.report(coarse, tmp_path / "out.html"))
+    assert "does not hold its motion, sample by sample; hand it in, with motion=" in said
+
+
+ROUGH = {"frequency_ratio": 20, "damping_ratio": 0.1, "friction": 0.2}
+SQUAT = rf.Block(width="0.8 m", height="1.6 m", mass="1 t")
+PLINTH = rf.Block(width="1.2 m", height="1 m", mass="1 t")
+TIE = rf.Restrainer(on=("-0.4 m", "1 m"), to=("-1.4 m", "1 m"), stiffness="20 kN/m", slack="5 mm")
+SLIDING = {
+    "rigid ground": (SQUAT, rf.RigidGround(friction=0.2)),
+    "rigid ground, tied": (SQUAT, rf.RigidGround(friction=0.2), TIE),
+    "pads": (SQUAT, rf.TwoSpringSupport(**ROUGH)),
+    "pads, tied": (SQUAT, rf.TwoSpringSupport(**ROUGH), TIE),
+    "soil": (SQUAT, rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2, friction=0.2)),
+    "soil, tied": (SQUAT, rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2, friction=0.2), TIE),
+    "stack": (rf.Stack(SQUAT, PLINTH, interfaces=[rf.TwoSpringSupport(**ROUGH)]),
+              rf.TwoSpringSupport(**ROUGH)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SLIDING)
+def test_what_slid_is_said_first_of_runs_and_sweeps(name, tmp_path):
+    system = rf.System(*SLIDING[name])
+    pulse = rf.GroundMotion.sine_pulse("6 m/s^2", "1 Hz")
+    run = system.simulate(pulse, free_vibration="3 s", output_step="0.02 s")
+    text = rf.report(run, tmp_path / "r.html", certify=False).read_text()
+    (banner,) = re.findall(
+        r'<div class="verdict (\w+)"><strong>([^<]*did not [^<]*)</strong>', text
+    )
+    slid = r"[Ss]lid [\d.]+ m to the (left|right)( \([\d.]+ m( to the (left|right))? at most\))?"
+    of_each = rf"Body 1 {slid}, body 2 {slid}" if name == "stack" else slid
+    assert banner[0] == "doubt"
+    assert re.fullmatch(rf"{of_each}, did not overturn", banner[1])
+    assert run.attrs["verdict"].startswith(f"{banner[1]}: peak rotation ")
+    assert "at the end" not in banner[1]
+    residual = float(run.residual_slip)
+    side = "right" if residual > 0.0 else "left"
+    assert f"lid {abs(residual):.3g} m to the {side}" in banner[1]
+    figure = np.atleast_1d(rf.plot.response(run))[0].figure
+    title = figure.get_suptitle() or next(one.get_title() for one in figure.axes)
+    assert title.replace("\n", " ").startswith(banner[1].split(" (")[0])
+    runs = rf.sweep(system, pulse, scale=[0.05, 1.0], free_vibration="3 s", progress=False)
+    farthest = float(run.get("peak_body_slip", run.peak_slip).max())
+    assert runs.attrs["verdict"].endswith(f"; 1 slid, by {farthest:.3g} m at most.")
+    text = rf.report(runs, tmp_path / "r.html").read_text()
+    assert '<div class="verdict doubt"><strong>No case overturned, some slid</strong>' in text
+
+
+def test_what_overturned_after_it_slid_and_what_would_slide(tmp_path):
+    slim = rf.Block(width="0.5 m", height="2 m", mass="1 t")
+    pulse = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
+    run = rf.System(slim, rf.RigidGround(friction=0.3)).simulate(pulse)
+    text = rf.report(run, tmp_path / "r.html", certify=False).read_text()
+    pattern = r'<div class="verdict bad"><strong>Slid [^<]*, overturned to the \w+ at [\d.]+ s<'
+    assert re.search(pattern, text)
+    held = rf.System(SQUAT, rf.RigidGround(friction=0.2), sliding="checked")
+    with pytest.warns(rf.errors.ModelWarning, match="would slide"):
+        run = held.simulate(pulse.scaled(0.5))
+    text = rf.report(run, tmp_path / "r.html", certify=False).read_text()
+    assert '<div class="verdict doubt"><strong>Did not overturn, but would slide<' in text
+
+
+def test_a_certificate_near_a_boundary_is_shown_as_such(response):
+    told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
+    told.attrs["certificate"] = certificate.NEAR_WORDS + ": the body stands, but ..."
+    (shown,) = [one for one in sections.verdict_section(told, "") if "Certificate" in one]
+    assert "the verdict holds, but near a boundary" in shown
+    assert 'class="verdict doubt"' in shown
+
+
 @pytest.mark.parametrize("doubted", ["verdict_converged", "verdict_robust"])
 def test_a_certificate_holds_only_where_it_is_sure_in_every_way(response, doubted):
     told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
@@ -211,11 +301,17 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
             fate = "overturned" if bool(one.overturned) else "completed"
             peak = np.degrees(float(one.peak_rotation))
             assert f"{scale:g} {motion} {fate} {peak:.4g}" in words
+    standing = runs.sel(scale=0.5)
+    shown = [np.degrees(standing.peak_rotation), standing.peak_relative_rotation,
+             standing.impact_count, standing.first_uplift_time]  # fmt: skip
+    peaks = {name: " ".join(f"{float(one.sel(motion=name)):.4g}" for one in shown).replace(
+        "nan", "-") for name in SUITE}  # fmt: skip
     friction = float(runs.peak_friction_demand.sel(motion="short", scale=0.5))
     shear = float(runs.peak_base_shear.sel(motion="short", scale=0.5)) / 1e3
     assert "peak friction demand" in words
     assert "peak base shear [kN]" in words
-    assert f"{friction:.4g} {shear:.4g}" in words
+    assert f"0.5 short completed {peaks['short']} {friction:.4g}" in words
+    assert f"0.5 short {shear:.4g} " in words
     mean = np.degrees(float(runs.peak_rotation.mean()))
     assert f"mean of 4 {mean:.4g}" in words
     # the worst falls first: its verdict is that of the run alone
@@ -226,12 +322,49 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
     assert "2 sine pulse" not in words
 
 
+def test_a_sweep_shows_forces_and_slips_of_each_case_in_the_units_of_the_reader(tmp_path):
+    rough = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.25)
+    tie = {"on": ("-0.3 m", "2 m"), "to": ("-1.3 m", "2 m"), "slack": "5 mm"}
+    ties = [rf.Restrainer(**tie, stiffness=k, name=name)
+            for name, k in (("soft", "50 kN/m"), ("hard", "200 kN/m"))]  # fmt: skip
+    runs = rf.sweep(
+        rf.System(BLOCK, rough, *ties), motions=SUITE, scale=[0.5, 1.0], output_step="5 ms",
+        outputs=("left_reaction", "vertical_reaction"), points={"top": ("0 m", "2.4 m")},
+    )  # fmt: skip
+    words = words_of(rf.report(runs, tmp_path / "r.html", units={**UNITS, "force": "kN"}))
+    for head in (
+        "peak slip [mm]", "residual slip [mm]", "peak base shear [kN]",
+        "peak restrainer force (soft) [kN]", "peak restrainer force (hard) [kN]",
+        "broken restrainer count", "largest left reaction [kN]", "largest vertical reaction [kN]",
+        "peak point horizontal displacement (top) [mm]",
+        "peak point horizontal acceleration (top) [g]",
+    ):  # fmt: skip
+        assert head in words, head
+    assert "right reaction" not in words.split("The worst case in full")[0]  # not asked for
+    for motion in SUITE:
+        one = runs.sel(motion=motion, scale=1.0)
+        numbers = [
+            float(one.peak_base_shear) / 1e3,
+            *(one.peak_restrainer_force.sel(restrainer=["soft", "hard"]).to_numpy() / 1e3),
+            float(one.broken_restrainer_count),
+            float(abs(one.left_reaction).max()) / 1e3,
+            float(abs(one.vertical_reaction).max()) / 1e3,
+            float(one.peak_point_horizontal_displacement.squeeze()) * 1e3,
+        ]
+        # two tables, which fit on a sheet
+        for table in (numbers[:5], numbers[5:]):
+            assert f"1 {motion} " + " ".join(f"{number:.4g}" for number in table) in words
+    largest = float(runs.peak_slip.max()) * 1e3
+    assert f"{largest:.4g}" in words
+    assert "slid, by" in words
+
+
 def test_what_tables_and_figures_choose_by_name_exists():
-    assert {*studies._COLUMNS, *sections._DRAWN} <= set(SCHEMA)
+    assert {*cases.COLUMNS, *sections._DRAWN} <= set(SCHEMA)
 
 
 def test_of_many_cases_the_worst_are_listed(tmp_path, monkeypatch):
-    monkeypatch.setattr(studies, "MOST_ROWS", 3)
+    monkeypatch.setattr(cases, "MOST_ROWS", 3)
     runs = rf.sweep(rf.System(BLOCK), SUITE["long"], scale=[0.4, 0.7, 2.0, 3.0, 4.0])
     words = words_of(rf.report(runs, tmp_path / "r.html"))
     assert "The 3 worst of 5 cases." in words

@@ -10,13 +10,14 @@ from typing import Any, Final
 
 from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts, part_slots
 from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made
+from rockframe.command.typed_calls import check_of
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
 from rockframe.errors import AssemblyError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
 from rockframe.proposals import hints_of
-from rockframe.reports.project import project_json
+from rockframe.reports.project import CHECKS, project_json
 from rockframe.simulation.plan import read_arguments
 from rockframe.simulation.run_arguments import Certification, certification_of
 from rockframe.simulation.system import System
@@ -223,7 +224,15 @@ def _project_of(file: TomlFile, given: object) -> str:
     table = file.table((PROJECT,), given)
     if table is None:
         return ""
-    return made(file, (PROJECT,), lambda **rest: project_json(rest, PROJECT), table) or ""
+    return made(file, (PROJECT,), _read_project, table) or ""
+
+
+def _read_project(**given: Any) -> str:
+    """Read a project, and the checks that it asks for, before there is a result."""
+    text = project_json(given, PROJECT)
+    for one in given.get(CHECKS, ()):
+        check_of(str(one), CHECKS)
+    return text
 
 
 def _read_arguments(**given: Any) -> None:

@@ -20,7 +20,7 @@ from rockframe.components import Component, InitialState
 from rockframe.components.parameters import REQUIRED, Choice, Declared
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import OPERATIONS
-from rockframe.reports.project import ASSUMPTIONS, CONCLUSION, LINES
+from rockframe.reports.project import ASSUMPTIONS, CHECKS, CONCLUSION, LINES
 from rockframe.simulation.system import System
 from rockframe.studies import sweep
 
@@ -190,6 +190,7 @@ def _lines() -> Iterator[str]:
     yield from (f'{name} = ""' for name in LINES)
     yield f'{CONCLUSION} = ""'.ljust(18) + "# a sentence"
     yield f"{ASSUMPTIONS} = []".ljust(18) + "# a list of texts"
+    yield f"{CHECKS} = []".ljust(18) + '# such as "circolare_2019 confidence_factor=1.35"'
     yield from _of_study()
 
 

@@ -207,6 +207,8 @@ def _number_of_runs(nudged: Sequence[tuple[str, Scan]]) -> int:
 
 NEAR: Final = 0.01
 """A margin up to which a verdict is called near the boundary [1]."""
+NEAR_WORDS: Final = "Near the boundary"
+"""How the sentence of such a verdict begins."""
 
 
 def certificate_sentence(found: "Certificate", values: Mapping[str, float | bool]) -> str:
@@ -217,7 +219,7 @@ def certificate_sentence(found: "Certificate", values: Mapping[str, float | bool
     near, flip = _near(found, values, ends), _nearest(found, values)
     doubts = [*_unsettled(found, values, ends), *_fragile(found, ends), *near]
     if doubts:
-        text = f"Near the boundary: the body {ends.verdict}, but {'; '.join(doubts)}."
+        text = f"{NEAR_WORDS}: the body {ends.verdict}, but {'; '.join(doubts)}."
         said = near and _scaled_a_little(found, values)
         return text if said or not flip else f"{text} {flip.capitalize()}."
     means = [tolerance_words(found.plan.accuracy), f"steps {SHORTER:g} times shorter"]

@@ -124,7 +124,8 @@ def case(
     True
     """
     if isinstance(runs, xr.Dataset):
-        dataset, kept = checked_dataset(runs, owner=_OWNER), None
+        dataset = checked_dataset(runs, owner=_OWNER)
+        kept = store_of(dataset)
     else:
         from rockframe.studies.sweeps.sweep import open_study
 
@@ -294,6 +295,35 @@ def unscaled_motion(
     has = "is not among those given" if given is not None else "must be given, as motions="
     msg = f"{_OWNER}: the record {described['name']!r} (sha256 {described['sha256'][:12]}...) {has}"
     raise StudyError(msg)
+
+
+def store_of(runs: xr.Dataset) -> Store | None:
+    """Give the folder that a dataset was opened from, if it was and holds its study."""
+    folder = Path(str(runs.encoding.get("source", "")))
+    try:
+        found = Store.at(folder) if folder.is_dir() else None
+    except StudyError:
+        return None
+    same = found is not None and found.digest == runs.attrs.get("study_sha256")
+    return found if same else None
+
+
+def known_motions(runs: xr.Dataset, given: object = None) -> dict[str, GroundMotion]:
+    """Give those motions of a sweep that can be had, by their names, before they were scaled."""
+    attributes: Mapping[str, Any] = runs.attrs
+    known, kept = remembered(attributes), store_of(runs)
+    used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist()) if MOTION in runs else None
+    found: dict[str, GroundMotion] = {}
+    for number, name in enumerate(json.loads(attributes["motion_names"])):
+        if used is not None and name not in used:
+            continue
+        try:
+            motion = unscaled_motion(given, number, attributes, known, kept)
+        except StudyError:  # a record that is not at hand
+            continue
+        if motion is not None:
+            found[name] = motion
+    return found
 
 
 def _options(described: dict[str, Any]) -> dict[str, Any]:

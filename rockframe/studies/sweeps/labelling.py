@@ -13,6 +13,7 @@ from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint, point_labels
 from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.bodies import RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
@@ -36,6 +37,8 @@ SIDE_BY_SIDE: Final = (
     "or ground need a closer look"
 )
 """How cases were run."""
+_LINK_NAMES: Final = "restrainer_names"
+"""Attribute with the names of restrainers, as those of a run's coordinate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +71,8 @@ def sweep_labels(study: Study) -> Labels:
     if isinstance(scene, SystemScene):
         attributes["model"] = scene.assembly.setting.model
         attributes["system_json"] = scene.assembly.json
+        if names := scene.assembly.setting.link_names:
+            attributes[_LINK_NAMES] = json.dumps(list(names))
     elif isinstance(scene, FunctionScene):
         attributes["function"] = scene.name
     return Labels(study.grid, tuple(study.motions), study.histories, arguments.points, attributes)
@@ -139,6 +144,10 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
 def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
     """Add the axes, and what is said of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
+    links = json.loads(str(labels.attributes.get(_LINK_NAMES, "[]")))
+    if dataset.sizes.get(RESTRAINER[0]) == len(links):
+        named = (RESTRAINER, np.array(links, dtype=object), SCHEMA[RESTRAINER[0]].attributes())
+        dataset = dataset.assign_coords({RESTRAINER[0]: named})
     for name in dataset.coords:
         # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
         dataset[name].encoding["_FillValue"] = None

@@ -202,4 +202,6 @@ def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
             ModelWarning,
         )
     later = truth(lazy, owner="open_study", name="lazy")
-    return lazy_dataset(kept) if later else stored_dataset(kept)
+    found = lazy_dataset(kept) if later else stored_dataset(kept)
+    found.encoding["source"] = str(kept.folder)  # as of a dataset that was read from a file
+    return found

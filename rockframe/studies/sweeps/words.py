@@ -51,7 +51,7 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
     text = f"{these} {falls} overturned and {stands} did not"
     if "would_slide" in runs and (sliding := count_words(runs["would_slide"].to_numpy())):
         text += f"; {sliding}"
-    if "peak_slip" in runs and (slid := slid_words(runs["peak_slip"].to_numpy())):
+    if slid := slid_words(slips_of_cases(runs)):
         text += f"; {slid}"
     lacking = status.size - not_run - falls - stands
     if lacking:
@@ -62,6 +62,15 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
         again, changed = (int((runs[name] == 1.0).sum()) for name in SCREENED)
         text += f"; {again} near a flip were run again by tolerance, which changed {changed}"
     return f"{text}."
+
+
+def slips_of_cases(runs: xr.Dataset) -> Generic:
+    """Give the largest slip of each case, of several bodies of that which slipped farthest [m]."""
+    found = runs.get("peak_body_slip", runs.get("peak_slip"))
+    if found is None:
+        return np.full(runs["status"].shape, np.nan)
+    others = [dim for dim in found.dims if dim not in runs["status"].dims]
+    return found.max(others).to_numpy()
 
 
 def say_what_is_missing(dataset: xr.Dataset) -> None:

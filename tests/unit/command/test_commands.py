@@ -205,6 +205,49 @@ def test_the_report_of_a_study_is_that_of_all_or_of_a_case(typed, folder):
     assert "The worst case in full" in (folder / "runs.html").read_text()
 
 
+def test_the_report_of_a_study_takes_its_records_a_target_and_checks(typed, folder, monkeypatch):
+    (folder / "records").mkdir()
+    for seed in (1, 2):
+        motion = rf.GroundMotion.stochastic(6.5, "20 km", seed=seed).window("2 s", "20 s")
+        motion.to_at2(folder / "records" / f"{seed}.AT2")
+    (folder / "study.toml").write_text(
+        'scene = "scene.toml"\nmotions = ["records/*.AT2"]\n'
+        '[axes]\nscale = [1.0, 2.0]\n[sweep]\naccuracy = "fast"\n'
+    )
+    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    monkeypatch.setattr("rockframe.studies.sweeps.case._studies", {})  # as of another process
+    spectrum = ["--target", "eurocode_8", "ground_acceleration=0.2 g_0", "ground_type=B"]
+    check = ["--check", "circolare_2019", "confidence_factor=1.2"]
+    component = ["--check", "asce_7_22", "spectral_acceleration=1"]
+    given = ["--motions", "records", *spectrum, *check, *component]
+    assert typed("report", "runs.nc", *given)[0] == 0
+    text = (folder / "runs.html").read_text()
+    for said in ("Target: Eurocode 8, type 1, ground B", "spectral misfit", "FC</td>",
+                 '<td class="value">1.2</td>', "C8.7.1.2.1.9", "tipping: "):  # fmt: skip
+        assert said in text, said
+    (folder / "ntc.csv").write_text("period [s],acceleration [g_0]\n0.1,0.5\n1,0.3\n4,0.05\n")
+    table = ["--target", "ntc.csv", "damping_ratio=0.08"]
+    assert typed("report", "runs.nc", "--motions", "records", *table)[0] == 0
+    assert "Target: ntc. Compared at 40 periods from 0.1 s" in (folder / "runs.html").read_text()
+    assert "8 % damping" in (folder / "runs.html").read_text()
+    assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
+    assert typed("report", "out.nc", "--no-certificate", *check)[0] == 0
+    assert "dynamic, SLV: " in (folder / "out.html").read_text()
+    (folder / "bad.csv").write_text("T [s],Sa [g]\n0.1,0.5\n")
+    for words, said in (
+        (["--target", "eurocode8"], "there is no 'eurocode8'; was 'eurocode_8' meant?"),
+        (["--target", "asce_7", "one=2 g_0"], "has no 'one'"),
+        (["--target", "asce_7"], "needs short_period_acceleration=..."),
+        (["--target", "bad.csv"], "found the columns T [s], Sa [g]; expected columns 'period [s]'"),
+        (["--target", "none.csv"], "the table cannot be read"),
+        (["--check", "circolare_2019"], "needs the motions of the result"),
+        (["--check", "circolare_2019", "limit_state=SLX", "--motions", "records"], "'SLV', 'SLC'"),
+        (["--check", "asce"], "known are circolare_2019, asce_7_22"),
+    ):
+        code, _, err = typed("report", "runs.nc", *words)
+        assert (code, said in err) == (2, True), err
+
+
 def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, folder):
     scene = (folder / "scene.toml").read_text()
     project = '[project]\nobject = "Tower"\ndate = 2026-11-24\n'
@@ -218,6 +261,26 @@ def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, fol
     assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
     assert typed("report", "runs.nc")[0] == 0
     assert "Tower" in (folder / "runs.html").read_text()
+    asked = 'checks = ["circolare_2019 confidence_factor=1.2", "asce_7_22 spectral_acceleration=1"]'
+    (folder / "scene.toml").write_text(f"{scene}\n{project}{asked}\n")
+    assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
+    assert typed("report", "out.nc", "--no-certificate")[0] == 0
+    text = (folder / "out.html").read_text()
+    assert '<td>FC</td><td class="value">1.2</td>' in text
+    assert "tipping: " in text
+    with xr.open_dataset("out.nc") as kept:
+        rf.report(kept, "python.html", certify=False)
+    text = (folder / "python.html").read_text()
+    assert "Not checked</strong>Asked for: circolare_2019 confidence_factor=1.2; asce_7_22" in text
+    for wrong, said in (
+        ("circolare", "there is no 'circolare'"),
+        ("circolare_2019 factor=1", "circolare_2019 has no 'factor'"),
+        ("asce_7_22", "asce_7_22 needs spectral_acceleration=..."),
+        ("", "found an empty check"),
+    ):
+        (folder / "scene.toml").write_text(f'{scene}\n[project]\nchecks = ["{wrong}"]\n')
+        code, _, err = typed("run", "scene.toml")
+        assert (code, said in err) == (2, True), err
     (folder / "scene.toml").write_text(f"{scene}\n[project]\nobjekt = 'Tower'\n")
     code, _, err = typed("run", "scene.toml")
     assert code == 2

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import SchemaError
+from rockframe.errors import ComponentError, SchemaError
 from rockframe.notebook import arguments_in_words, curve, number_with_unit
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.1 m"))
@@ -165,6 +165,17 @@ def test_a_suite_is_drawn_with_its_median_and_target():
     np.testing.assert_allclose(lines["one"], single)
     np.testing.assert_allclose(lines["median"], 2.0 * single)  # geometric mean of 1 and 4
     np.testing.assert_allclose(lines["target"], target.at(periods))
+    axes = rf.plot.suite(suite, periods, average="mean", named=False, compared=("0.2 s", "0.5 s"),
+                         acceleration="m/s^2")  # fmt: skip
+    lines = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
+    assert not {"one", "two", "median"} & set(lines)
+    np.testing.assert_allclose(lines["mean"], 2.5 * single)
+    (band,) = axes.patches
+    assert (band.get_x(), band.get_x() + band.get_width()) == (0.2, 0.5)
+    with pytest.raises(ComponentError, match="compared must be a pair of times"):
+        rf.plot.suite(suite, periods, compared="0.2 s")
+    with pytest.raises(ComponentError, match="average must be 'median' or 'mean'"):
+        rf.plot.suite(suite, periods, average="middle")
 
 
 def test_a_fitted_test_is_drawn_beside_its_measurement():

@@ -1,0 +1,112 @@
+"""Functions that are called with what was typed: a name, and arguments as NAME=VALUE."""
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from shlex import split
+from typing import Any, Final, TypeVar
+
+import pandas as pd
+
+from rockframe.codes import CodeCheck, asce_7_22, circolare_2019
+from rockframe.command.files.tables import arguments_of
+from rockframe.errors import ComponentError, FileError, nearest
+from rockframe.suites import TargetSpectrum
+
+Made = TypeVar("Made")
+CODES: Final[Mapping[str, Callable[..., CodeCheck]]] = {
+    "circolare_2019": circolare_2019,
+    "asce_7_22": asce_7_22,
+}
+_SPECTRA: Final = {
+    "eurocode_8": TargetSpectrum.eurocode_8,
+    "asce_7": TargetSpectrum.asce_7,
+}
+_HEAD: Final = re.compile(r"\s*(period|acceleration)\s*\[(.+)\]\s*")
+_TABLE: Final = "columns 'period [s]' and 'acceleration [g_0]', with units in their heads"
+
+
+def values_by_name(words: Iterable[str], option: str, example: str) -> dict[str, str]:
+    """Read NAME=VALUE."""
+    found = [word.partition("=") for word in words]
+    for name, _, value in found:
+        if not (name and value):
+            msg = f"{option}: expected NAME=VALUE, such as {example}, got {name!r}"
+            raise ComponentError(msg)
+    return {name: value for name, _, value in found}
+
+
+def called(
+    functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, *before: object
+) -> Made:
+    """Call a function by its name with arguments that were typed, behind those known before."""
+    function, given = call_of(functions, words, option, len(before))
+    return function(*before, **given)
+
+
+def call_of(
+    functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, before: int
+) -> tuple[Callable[..., Made], dict[str, Any]]:
+    """Read a function and its arguments, behind so many that are known before."""
+    name, *typed = words
+    if name not in functions:
+        known = ", ".join(functions)
+        msg = f"{option}: there is no {name!r}{nearest(name, functions)}; known are {known}"
+        raise ComponentError(msg)
+    function = functions[name]
+    first = tuple(arguments_of(function))[:before]
+    known = arguments_of(function, without=first)
+    given = values_by_name(typed, option, f"{next(iter(known))}=...")
+    unknown = [one for one in given if one not in known]
+    lacking = [one for one, needed in known.items() if needed and one not in given]
+    if unknown or lacking:
+        said = f"has no {unknown[0]!r}{nearest(unknown[0], known)}" if unknown else ""
+        said = said or f"needs {lacking[0]}=..."
+        msg = f"{option}: {name} {said}; it takes {', '.join(known)}"
+        raise ComponentError(msg)
+    return function, {one: _value(text) for one, text in given.items()}
+
+
+def check_of(text: str, option: str) -> list[str]:
+    """Read a check that a file asks for, in words as they are typed; refuse what is none."""
+    words = split(text)
+    if not words:
+        msg = f"{option}: found an empty check; expected such as 'circolare_2019'"
+        raise ComponentError(msg)
+    call_of(CODES, words, option, 2)  # the scene and its motions
+    return words
+
+
+def target_from(words: Sequence[str], option: str) -> TargetSpectrum:
+    """Make the spectrum that was typed: that of a code, or of a table in a file."""
+    if words[0].lower().endswith(".csv"):
+        columns = _columns_of(words[0])
+        named = [*words, f"name={Path(words[0]).stem}"]
+        return called({words[0]: TargetSpectrum.from_table}, named, option, *columns)
+    return called(_SPECTRA, words, option)
+
+
+def _columns_of(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
+    """Read the periods and accelerations of a table, with their units."""
+    columns: dict[str, tuple[Any, str]] = {}
+    try:
+        frame = pd.read_csv(Path(path).expanduser(), comment="#")
+        for head in frame.columns:
+            match = _HEAD.fullmatch(str(head))
+            if match is not None:
+                columns[match[1]] = (frame[head].to_numpy(float), match[2])
+    except (OSError, ValueError) as problem:
+        words = f"the table cannot be read ({problem}); expected {_TABLE}"
+        raise FileError(path, [(None, words)]) from problem
+    if len(columns) != 2:
+        found = ", ".join(map(str, frame.columns))
+        raise FileError(path, [(1, f"found the columns {found}; expected {_TABLE}")])
+    return columns["period"], columns["acceleration"]
+
+
+def _value(text: str) -> float | str:
+    """Read a pure number; what has a unit, or is a word, stays text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

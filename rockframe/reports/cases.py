@@ -1,0 +1,163 @@
+"""The cases of a study in tables: what became of each, and the largest forces on it."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from rockframe.reports import page
+from rockframe.reports.values import column_head, number_in, value_of
+from rockframe.results.outcome import overturned_by
+from rockframe.results.variables.variable import TIME
+from rockframe.units import Unit
+from rockframe.units.shown import ReaderUnits
+
+MOST_ROWS: Final = 300
+"""Of a table of cases; of more, those that are worst."""
+_MOTION: Final = (
+    "peak_rotation",
+    "peak_relative_rotation",
+    "peak_body_rotation",
+    "impact_count",
+    "first_uplift_time",
+    "peak_friction_demand",
+    "peak_slip",
+    "residual_slip",
+    "peak_body_slip",
+    "peak_ground_acceleration",
+    "peak_ground_velocity",
+)
+_FORCES: Final = (
+    "peak_base_shear",
+    "peak_restrainer_force",
+    "broken_restrainer_count",
+    "left_reaction",
+    "right_reaction",
+    "soil_reaction",
+    "vertical_reaction",
+    "horizontal_reaction",
+    "base_overturning_moment",
+    "toe_pressure",
+    "peak_point_horizontal_displacement",
+    "peak_point_vertical_displacement",
+    "peak_point_horizontal_acceleration",
+    "peak_point_vertical_acceleration",
+)
+COLUMNS: Final = (*_MOTION, *_FORCES)
+"""Variables of a study that its tables show where it holds them, in this order.
+
+Of histories, such as reactions, the largest absolute value at the times that were kept.
+"""
+_MOST_COLUMNS: Final = 8
+"""Beside the labels of a case, of a table on a sheet of A4."""
+_OVER_CASES: Final = (("mean", np.nanmean), ("largest", np.nanmax))
+
+
+@dataclass(frozen=True)
+class _Column:
+    """Numbers of all cases, in SI units."""
+
+    head: str
+    unit: str
+    values: NDArray[np.float64]  # shape (cases,)
+
+
+def case_tables(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
+    """Give a row for each case, worst first where there are too many, and what all have."""
+    count = dataset["status"].size
+    order = np.arange(count)
+    if count > MOST_ROWS:
+        order = from_worst(dataset)[:MOST_ROWS]
+        yield page.paragraph(f"The {order.size} worst of {count} cases.", kind="soft")
+    for columns in _sheets(_columns(dataset, _MOTION, units)):
+        yield _table(dataset, order, columns, units, with_verdict=True)
+    forces = _sheets(_columns(dataset, _FORCES, units))
+    if forces:
+        yield page.subtitle("Forces, and what was asked for at points")
+    for columns in forces:
+        yield _table(dataset, order, columns, units, with_verdict=False)
+
+
+def _sheets(columns: Iterable[_Column]) -> list[list[_Column]]:
+    """Divide columns among tables that fit on a sheet, evenly."""
+    several = list(columns)
+    tables = -(-len(several) // _MOST_COLUMNS)
+    size = -(-len(several) // max(1, tables))
+    return [several[k : k + size] for k in range(0, len(several), max(1, size))]
+
+
+def _table(
+    dataset: xr.Dataset,
+    order: NDArray[np.intp],
+    columns: Sequence[_Column],
+    units: ReaderUnits,
+    *,
+    with_verdict: bool,
+) -> str:
+    """Give a table with some columns, and rows with their mean and largest values below."""
+    status = dataset["status"]
+    rows = list[list[str]]()
+    for place in order.tolist():
+        labels = [written(value) for value in labels_at(dataset, place).values()]
+        if with_verdict:
+            one = status.isel(dict.fromkeys(status.dims, 0)).copy()
+            one.values = status.to_numpy().ravel()[place]
+            labels.append(value_of(one))
+        numbers = [number_in(float(one.values[place]), one.unit, units) for one in columns]
+        rows.append([*labels, *numbers])
+    between = [""] * (len(status.dims) - 1 + with_verdict)
+    for words, over in _OVER_CASES:
+        numbers = [number_in(float(over(one.values)), one.unit, units) for one in columns]
+        rows.append([f"{words} of {status.size}", *between, *numbers])
+    heads = [str(dim).replace("_", " ") for dim in status.dims]
+    verdict = ["verdict"] if with_verdict else []
+    return page.columns(rows, [*heads, *verdict, *(one.head for one in columns)])
+
+
+def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> Iterator[_Column]:
+    """Give the columns of those variables that some case has; of several bodies one for each."""
+    status = dataset["status"]
+    for name in names:
+        if name not in dataset or not set(status.dims) & set(dataset[name].dims):
+            continue
+        found, words = dataset[name], name
+        if TIME[0] in found.dims:
+            found, words = abs(found).max(TIME[0]), f"largest {name}"
+        others = [dim for dim in found.dims if dim not in status.dims]
+        unit = str(dataset[name].attrs.get("units", Unit.ONE))
+        for one in found.stack(_other=others).transpose("_other", ...) if others else [found]:
+            values = one.drop_vars([*others, "_other"], errors="ignore").broadcast_like(status)
+            flat = values.transpose(*status.dims).to_numpy().astype(np.float64).ravel()
+            if np.isfinite(flat).any():
+                whose = "".join(
+                    f" ({written(one[dim].item())})"
+                    if dim in dataset.coords
+                    else f" ({dim} {1 + one[dim].item()})"
+                    for dim in others
+                )
+                yield _Column(column_head(f"{words}{whose}", unit, units), unit, flat)
+
+
+def from_worst(dataset: xr.Dataset) -> np.ndarray:
+    """Order cases with a result: those that overturn, the first before the later ones; the rest."""
+    share = dataset["peak_relative_rotation"].to_numpy().ravel()
+    when = np.nan_to_num(dataset["overturning_time"].to_numpy().ravel(), nan=np.inf)
+    fallen = overturned_by(dataset["status"].to_numpy().ravel()) == 1.0
+    order = np.lexsort((-np.nan_to_num(share, nan=-1.0), when, ~fallen))
+    return order[np.isfinite(share[order])]
+
+
+def labels_at(dataset: xr.Dataset, place: int) -> dict[str, Any]:
+    """Give the labels of a case by its place."""
+    status = dataset["status"]
+    places = np.unravel_index(place, status.shape)
+    return {str(dim): status[dim].to_numpy()[k].item() if dim in status.coords else int(k)
+            for dim, k in zip(status.dims, places, strict=True)}  # fmt: skip
+
+
+def written(value: object) -> str:
+    """Write the label of a case."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

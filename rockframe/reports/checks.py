@@ -1,0 +1,261 @@
+"""What a check by a code gives: numbers with their formulas and clauses, verdicts, and its page."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from html import escape
+from os import PathLike
+from pathlib import Path
+from typing import Final, cast
+
+from rockframe.arguments import one_of_names
+from rockframe.errors import ComponentError, shown
+from rockframe.notebook import card, number_with_unit
+from rockframe.proposals import proposing
+from rockframe.reports import page
+from rockframe.reports.page import KIND
+from rockframe.reports.values import powers_in_html
+from rockframe.units import Unit
+from rockframe.units.shown import ReaderUnits
+from rockframe.writing import write_file
+
+_SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
+
+
+@proposing
+@dataclass(frozen=True)
+class CheckedLine:
+    """A number of a check.
+
+    Parameters
+    ----------
+    symbol : str
+        What it is called in the clause.
+    value : float
+        In the unit.
+    unit : Unit
+        SI.
+    words : str
+        What it is, and its formula.
+    source : str
+        Clause and number of the formula; or where else it is from.
+    """
+
+    symbol: str
+    value: float
+    unit: Unit
+    words: str
+    source: str
+
+    def written(self, units: ReaderUnits | None = None) -> str:
+        """Give the number with its unit.
+
+        Parameters
+        ----------
+        units : ReaderUnits, optional
+            Those of a report; SI unless given.
+
+        Returns
+        -------
+        str
+        """
+        chosen = (units or ReaderUnits()).of(str(self.unit))
+        unit = "" if self.unit is Unit.ONE else chosen.words
+        return number_with_unit(self.value / chosen.size, unit)
+
+
+@proposing
+@dataclass(frozen=True)
+class CheckedVerdict:
+    """What a check says.
+
+    Parameters
+    ----------
+    title : str
+        What is checked.
+    passed : bool
+        Whether it is satisfied.
+    words : str
+        Demand and capacity.
+    source : str
+        Clause.
+    """
+
+    title: str
+    passed: bool
+    words: str
+    source: str
+
+
+@proposing
+@dataclass(frozen=True)
+class CodeCheck:
+    """A check by a code of practice.
+
+    Parameters
+    ----------
+    title : str
+        Of its page.
+    code : str
+        The code, with its year.
+    lines : mapping of str to tuple of CheckedLine
+        The numbers, by the sections of the check.
+    verdicts : tuple of CheckedVerdict
+        What follows.
+    notes : tuple of str
+        What the check leaves out.
+    scene : str
+        What was checked, in a line.
+    """
+
+    title: str
+    code: str
+    lines: Mapping[str, tuple[CheckedLine, ...]]
+    verdicts: tuple[CheckedVerdict, ...]
+    notes: tuple[str, ...] = field(default=())
+    scene: str = ""
+
+    def value(self, symbol: str) -> float:
+        """Give a number by its symbol.
+
+        Parameters
+        ----------
+        symbol : str
+            As in the clause.
+
+        Returns
+        -------
+        float
+            In its SI unit.
+
+        Raises
+        ------
+        ComponentError
+            No number has that symbol.
+        """
+        found = {one.symbol: one.value for several in self.lines.values() for one in several}
+        return found[one_of_names(symbol, found, owner="CodeCheck.value", name="symbol")]
+
+    @property
+    def passed(self) -> dict[str, bool]:
+        """Whether each check is satisfied, by its title."""
+        return {one.title: one.passed for one in self.verdicts}
+
+    def __str__(self) -> str:
+        text = [f"{self.title} ({self.code})"]
+        for title, several in self.lines.items():
+            text.append(f"{title}:")
+            wide = max(len(one.symbol) for one in several)
+            text += [
+                f"  {one.symbol:<{wide}}  {one.written():<16}  {one.words} [{one.source}]"
+                for one in several
+            ]
+        text += [
+            f"{one.title}: {_SAID[one.passed][0]}; {one.words} [{one.source}]"
+            for one in self.verdicts
+        ]
+        return "\n".join([*text, *(f"Left out: {one}" for one in self.notes)])
+
+    def _repr_html_(self) -> str:
+        rows = {one.title: f"{_SAID[one.passed][0]}; {one.words}" for one in self.verdicts}
+        return card(escape(self.title), rows)
+
+    def banners(self) -> Iterator[str]:
+        """Give each verdict with demand, capacity and clause, as pages show it.
+
+        Yields
+        ------
+        str
+            HTML.
+        """
+        for one in self.verdicts:
+            said, kind = _SAID[one.passed]
+            words = f"{one.words} [{one.source}]. {self.code}."
+            yield page.banner(f"{one.title}: {said}", words, kind)
+
+    def tables(self, units: ReaderUnits) -> Iterator[tuple[str, list[str]]]:
+        """Give titles and pieces of the numbers, and of what is left out, as pages show them.
+
+        Parameters
+        ----------
+        units : ReaderUnits
+            Of the numbers.
+
+        Yields
+        ------
+        tuple of str and list of str
+            HTML.
+        """
+        head = ("", "value", "", "source")
+        for title, several in self.lines.items():
+            cells = [
+                (one.symbol, powers_in_html(one.written(units)), one.words, one.source)
+                for one in several
+            ]
+            yield title, [page.rows(cells, head=head)]
+        if self.notes:
+            yield "Left out", [page.items(self.notes)]
+
+    def report(self, path: "str | PathLike[str]", *, overwrite: bool = False) -> Path:
+        """Write the check as one HTML page that needs no other file.
+
+        Parameters
+        ----------
+        path : str or path
+            Of the file; its name ends in ``.html``. A report that is there is replaced.
+        overwrite : bool, optional
+            Whether a file that is there is replaced though it is no report.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        FileError
+            The file cannot be written, its name has another ending, or it is there already and
+            no report.
+        """
+        body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
+        body += self._checked()
+        body += self.banners()
+        body += [page.section(title, pieces) for title, pieces in self.tables(ReaderUnits())]
+        content = page.page(self.title, body).encode()
+        return write_file(path, KIND, content, overwrite=overwrite)
+
+    def _checked(self) -> list[str]:
+        return [page.paragraph(f"Checked: {self.scene}.")] if self.scene else []
+
+    def section(self, units: ReaderUnits) -> str:
+        """Give its section of a larger page.
+
+        Parameters
+        ----------
+        units : ReaderUnits
+            Of the numbers.
+
+        Returns
+        -------
+        str
+            HTML.
+        """
+        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._checked()]
+        for title, inner in self.tables(units):
+            pieces += [page.subtitle(title), *inner]
+        return page.section(f"Check by {self.code.split(',')[0]}", pieces)
+
+
+def checks_of(given: object, owner: str) -> list[CodeCheck]:
+    """Read a check, or several."""
+    several = [given] if isinstance(given, CodeCheck) else given
+    if several is None:
+        return []
+    if not isinstance(several, Iterable) or isinstance(several, str):
+        msg = f"{owner}: checks must be of rf.codes, one or a list of them, got {shown(several)}"
+        raise ComponentError(msg)
+    found = list(cast("Iterable[object]", several))
+    for one in found:
+        if not isinstance(one, CodeCheck):
+            msg = f"{owner}: checks must be of rf.codes, such as circolare_2019, got {shown(one)}"
+            raise ComponentError(msg)
+    return cast("list[CodeCheck]", found)

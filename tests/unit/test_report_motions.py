@@ -1,0 +1,189 @@
+"""Reports: the spectra of the motions beside their target, their records, and checks by codes."""
+
+import re
+from html import unescape
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.errors import ComponentError
+from rockframe.reports import motions as in_reports
+from rockframe.results.schema import SCHEMA
+
+pytestmark = pytest.mark.unit
+
+BLOCK = rf.System(rf.Block(width="0.6 m", height="2.4 m", mass="1 t"))
+TARGET = rf.TargetSpectrum.eurocode_8("0.2 g_0", "B")
+KNOWN = {"event": "Irpinia <1980>", "station": "Sturno", "component": "N270", "magnitude": 6.9}
+
+
+def record(seed):
+    """A motion that only its samples describe, of which some things are known."""
+    made = rf.GroundMotion.stochastic(6.5, "15 km", seed=seed).window("4 s", "24 s")
+    known = {} if seed == 0 else {**KNOWN, "station": f"Sturno {seed}"}
+    return rf.GroundMotion(made.si, name=f"record {seed}", metadata=known)
+
+
+@pytest.fixture(scope="module")
+def suite():
+    motions = rf.MotionSuite({f"record {seed}": record(seed) for seed in range(4)})
+    return motions.scaled_to(TARGET, bounds=None)
+
+
+@pytest.fixture(scope="module")
+def runs(suite):
+    return rf.sweep(BLOCK, motions=suite, accuracy="fast")
+
+
+def text_of(path):
+    html = path.read_text(encoding="utf-8").split("</style>", 1)[1]
+    return " ".join(unescape(re.sub(r"<[^>]*>", " ", html)).split())
+
+
+def rows_of(path, section):
+    """Cells of the tables of a section."""
+    inner = path.read_text(encoding="utf-8").split(f"<h2>{section}</h2>", 1)[1].split("<h2>")[0]
+    lines = re.findall(r"<tr>(.*?)</tr>", inner, re.DOTALL)
+    return [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", line) for line in lines]
+
+
+def test_motions_that_fit_a_target_carry_it(suite):
+    seconds = np.geomspace(0.1, 4.0, 40)
+    for one in (suite, suite.only(["record 1"]), suite.sort("station"), suite.with_verticals()):
+        assert one.target.name == TARGET.name
+        assert one.target.limits == pytest.approx((0.1, 4.0))
+        wanted = TARGET.at((seconds, "s"))
+        assert one.target.at((seconds, "s")) == pytest.approx(wanted, rel=1e-12)
+    assert suite.changed(lambda motion: motion.scaled(2.0)).target is None
+    assert rf.MotionSuite(dict(suite)).target is None
+    chosen = suite.chosen_for(TARGET, 2, bounds=None, periods=["0.3 s", "0.5 s", "1 s"])
+    assert chosen.target.limits == (0.3, 1.0)
+    near = suite.only(["record 1"]).matched(TARGET, periods=("0.2 s", "1 s"), tolerance=0.2)
+    assert near.target.limits == (0.2, 1.0)
+    assert near.target.at(["0.7 s"]) == TARGET.at(["0.7 s"])
+
+
+def test_records_stand_beside_their_target(runs, suite, tmp_path):
+    path = rf.report(runs, tmp_path / "r.html", motions=suite, units={"acceleration": "g_0"})
+    words = text_of(path)
+    assert f"Target: {TARGET.name.replace('^2', '²')}. Compared at 40 periods from 0.1 s" in words
+    assert "Response spectra of the motions at 5 % damping, their mean, and the target" in words
+    head, *rows = rows_of(path, "Ground motions")
+    assert head == ["motion", "event", "magnitude", "station", "component", "scale factor",
+                    "peak ground acceleration [g]", "spectral misfit"]  # fmt: skip
+    for row, (label, motion) in zip(rows, suite.items(), strict=True):
+        peak = motion.si.peak / 9.80665
+        known = motion.metadata
+        of_record = ["-"] * 4
+        if label != "record 0":
+            of_record = ["Irpinia &lt;1980&gt;", "6.9", f"Sturno {label[-1]}", "N270"]
+        # the misfit is found anew, from the motions as they are
+        numbers = [f"{known['scale_factor']:.4g}", f"{peak:.4g}", f"{known['spectral_misfit']:.4g}"]
+        assert row == [label, *of_record, *numbers]
+    seconds = (np.geomspace(0.1, 4.0, 40), "s")
+    spectra = suite.response_spectrum(seconds).pseudo_spectral_acceleration.squeeze()
+    over = spectra.mean("motion") / TARGET.at(seconds)
+    said = f"The mean of the motions is {float(over.min()):.3g} to {float(over.max()):.3g} times"
+    assert said in words
+
+
+def test_a_target_is_given_in_three_ways(runs, suite, tmp_path):
+    raw = rf.MotionSuite(dict(suite))
+    found = raw.scaling_to(TARGET, periods=["0.5 s", "1 s", "2 s"], bounds=None)
+    path = tmp_path / "r.html"
+    assert "Compared at 3 periods from 0.5 s to 2 s" in text_of(rf.report(runs, path, target=found))
+    assert "Compared at 40 periods from 0.1 s" in text_of(rf.report(runs, path, target=TARGET))
+    without = text_of(rf.report(runs, path))
+    assert "Target:" not in without
+    assert "Response spectra of the motions at 5 % damping, their mean." in without
+    assert "spectral misfit" not in without
+    for wrong in ("Eurocode 8", raw.response_spectrum(["1 s"])):
+        with pytest.raises(ComponentError, match="target must be a TargetSpectrum, or what"):
+            rf.report(runs, path, target=wrong)
+    with pytest.raises(ComponentError, match="motions must be a GroundMotion, or several"):
+        rf.report(runs, path, motions=3.5)
+    with pytest.raises(ComponentError, match="no motion with the samples of 'record 9'"):
+        rf.report(runs, path, motions=[record(9)])
+
+
+def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypatch):
+    runs = rf.sweep(BLOCK, motions=suite, accuracy="fast", store=tmp_path / "kept")
+    runs.to_netcdf(tmp_path / "runs.nc")
+    forgotten = {}
+    monkeypatch.setattr("rockframe.studies.sweeps.case._studies", forgotten)
+    with xr.open_dataset(tmp_path / "runs.nc") as read:
+        read.load()
+    path = tmp_path / "r.html"
+    bare = text_of(rf.report(read, path))
+    assert "Ground motions" not in bare
+    assert "The worst case in full" not in bare
+    whole = text_of(rf.report(read, path, motions=suite))
+    assert "Compared at 40 periods" in whole
+    assert "The worst case in full" in whole
+    few = text_of(rf.report(read, path, motions=suite.only(["record 2"])))
+    assert "Sturno 2" in few
+    assert "Sturno 3" not in few
+    kept = text_of(rf.report(rf.open_study(tmp_path / "kept"), path))  # with its records
+    assert "Sturno 3" in kept
+    assert "The worst case in full" in kept
+
+
+def test_a_run_has_its_record_and_its_target(suite, tmp_path):
+    run = BLOCK.simulate(suite["record 3"])
+    path = rf.report(run, tmp_path / "r.html", motion=suite["record 3"], target=TARGET,
+                     certify=False)  # fmt: skip
+    words = text_of(path)
+    for said in ("Spectrum and target", "station Sturno 3", "component N270",
+                 f"scale factor {suite['record 3'].metadata['scale_factor']:.4g}"):  # fmt: skip
+        assert said in words, said
+
+
+def test_joined_runs_take_the_motions_that_are_given(suite, tmp_path):
+    runs = rf.concat([BLOCK.simulate(one, outputs=None) for one in suite.values()], "motion",
+                     list(suite))  # fmt: skip
+    assert "Sturno 2" in text_of(rf.report(runs, tmp_path / "r.html", motions=suite))
+
+
+def test_columns_of_records_are_those_of_suites():
+    assert set(in_reports.OF_RECORDS) <= set(SCHEMA)
+
+
+@pytest.fixture(scope="module")
+def check():
+    return rf.codes.circolare_2019(BLOCK, rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz"))
+
+
+def test_what_a_code_says_stands_beside_the_motion(check, tmp_path):
+    run = BLOCK.simulate(rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz"))
+    cabinet = rf.codes.asce_7_22(rf.Block(width="0.6 m", height="1.8 m", mass="300 kg"),
+                                 spectral_acceleration=1.0)  # fmt: skip
+    path = rf.report(run, tmp_path / "r.html", checks=[check, cabinet], certify=False,
+                     units={"force": "kN", "length": "mm"})  # fmt: skip
+    words = text_of(path)
+    above = words.split("Response")[0]
+    assert "Did not overturn" in above
+    for one in (*check.verdicts, *cabinet.verdicts):
+        said = "satisfied" if one.passed else "not satisfied"
+        assert f"{one.title}: {said} {one.words} [{one.source}]" in above
+    rows = {row[0]: row for row in rows_of(path, "Check by Circolare C.S.LL.PP. 21 January 2019")
+            if row}  # fmt: skip
+    assert rows["alpha_0"][1:] == ["0.25", "activation multiplier, sum(P d_Py)/sum((P + Q) d_PQx)",
+                                   "C8.7.1.1"]  # fmt: skip
+    assert rows["d_SLV"][1] == f"{1e3 * check.value('d_SLV'):.6g} mm"
+    assert rows["T_SLC"][3] == "C8.7.1.11"
+    assert "Checked: Block(width='0.6 m', height='2.4 m', mass='1000.0 kg')" in words
+    force = {row[0]: row for row in rows_of(path, "Check by ASCE/SEI 7-22") if row}["F_p"]
+    assert force[1] == f"{cabinet.value('F_p') / 1e3:.6g} kN"
+    for wrong in ("circolare_2019", [3.5], 3.5):
+        with pytest.raises(ComponentError, match=r"checks must be of rf\.codes"):
+            rf.report(run, path, checks=wrong)
+
+
+def test_a_study_has_its_checks_too(runs, check, tmp_path):
+    words = text_of(rf.report(runs, tmp_path / "r.html", checks=check))
+    above = words.split("Cases")[0]
+    assert "No case overturned" in above
+    assert "kinematic, SLV: " in above
+    assert "C8.7.1.2.1.9" in words
