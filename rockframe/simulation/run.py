@@ -15,6 +15,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import (
     Generic,
+    broken_links,
     event_columns,
     ground_on_slope,
     peak_of,
@@ -162,11 +163,14 @@ def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
 
 def scalars_of(
     system: Assembly, summary: Summary, missing: list[str]
-) -> dict[str, float | int | bool]:
+) -> dict[str, Generic | float | int | bool]:
     """Give the scalars of a run by their names in the schema, without those of its samples."""
     setting = system.setting
     uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
-    return scalars(summary, setting, uplift_angle=uplift)
+    found = scalars(summary, setting, uplift_angle=uplift)
+    if system.model.links:
+        found["broken_restrainer_count"] = broken_links(system.model, summary.ending)
+    return found
 
 
 def run(
