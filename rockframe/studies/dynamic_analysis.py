@@ -1,6 +1,6 @@
 """Incremental dynamic analysis: motions that are scaled until limit states are exceeded."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final, Unpack
 
 import numpy as np
@@ -8,7 +8,6 @@ import xarray as xr
 
 from rockframe.comparison.models import check_system
 from rockframe.errors import ModelWarning, StudyError, warn
-from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import MOTION
@@ -37,7 +36,7 @@ from rockframe.studies.lines import (
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import named_motions
+from rockframe.studies.sweeps.motions import MotionsLike, named_motions
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
@@ -48,7 +47,7 @@ _SCALES: Final = tuple(0.1 * k for k in range(1, 41))
 @takes(SweepArguments)
 def incremental_dynamic_analysis(
     system: System,
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     *,
     scale: Sequence[float] | np.ndarray = _SCALES,
     limits: Iterable[object] = (),

@@ -1,6 +1,6 @@
 """Fractile curves of motions that are scaled: response given the intensity, and the other way."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -9,7 +9,6 @@ import xarray as xr
 
 from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, StudyError, shown
-from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import ArrayLike
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, overturns
@@ -18,6 +17,7 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.intensities import PeriodLike, measure_in, told_period
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
+from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import Condition, Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
@@ -36,7 +36,7 @@ def fractile_curves(
     *,
     label: str | None = None,
     period: PeriodLike | None = None,
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     fractiles: Sequence[RatioLike] = (0.16, 0.5, 0.84),
     levels: ArrayLike | None = None,
 ) -> xr.Dataset:

@@ -1,8 +1,8 @@
 """Spectra of rocking and of overturning: motions and blocks of all sizes."""
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any, Final, TypeAlias, Unpack
+from collections.abc import Sequence
+from typing import Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -10,7 +10,6 @@ import xarray as xr
 from rockframe.comparison.models import check_system
 from rockframe.components import Block
 from rockframe.errors import ComponentError, StudyError, collected_warnings, shown
-from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
@@ -32,12 +31,9 @@ from rockframe.studies.lines import (
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
-from rockframe.studies.sweeps.motions import named_motions
+from rockframe.studies.sweeps.motions import MotionsLike, named_motions
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Unit
-
-Motions: TypeAlias = GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion]
-
 
 SIZE: Final = ("slenderness", "rocking_period")
 _SLENDER: Final = Measure("a pure ratio", Unit.ONE, "4")
@@ -150,7 +146,7 @@ _MOST_SCALES: Final = 100_000
 @takes(SweepArguments)
 def rocking_spectrum(
     system: System,
-    motions: Motions | None = None,
+    motions: MotionsLike | None = None,
     *,
     periods: Any,
     slenderness: Any = None,
@@ -214,7 +210,7 @@ def rocking_spectrum(
 @takes(SweepArguments)
 def overturning_spectrum(
     system: System,
-    motions: Motions | None = None,
+    motions: MotionsLike | None = None,
     *,
     periods: Any,
     slenderness: Any = None,

@@ -10,7 +10,6 @@ import xarray as xr
 
 from rockframe.arguments import hinted
 from rockframe.errors import ComponentError, SchemaError, StudyError, UnitsError, shown
-from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import LIMIT_STATE
@@ -47,6 +46,7 @@ from rockframe.studies.limit_states import (
 )
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import Changes, free_values
+from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import RatioLike
 
 
@@ -191,7 +191,7 @@ def fragility(
     *,
     limits: Iterable[object] | None = None,
     period: PeriodLike | None = None,
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     pooled: Iterable[str] = (),
     trials: str = "runs",
     dispersion: str = "each",
