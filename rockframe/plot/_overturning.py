@@ -5,6 +5,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     BLUE,
     GREEN,
@@ -45,6 +46,20 @@ _CAPPED: Final = 1.0
 """Peaks over the overturning angle that are drawn alike."""
 
 
+def of_one_structure(given: xr.Dataset) -> xr.Dataset:
+    """Give an analysis without the axes of which it has one value; refuse several structures."""
+    dims = given["capacity_scale"].dims
+    beside = [dim for dim in dims if dim not in ("limit_state", "motion")]
+    several = [f"{dim} ({given.sizes[dim]})" for dim in beside if given.sizes[dim] > 1]
+    if several:
+        msg = (
+            f"rf.plot.dynamic_analysis draws one structure, this analysis is of several, by "
+            f"{', '.join(several)}; choose one, for example with analysis.isel({beside[0]}=0)"
+        )
+        raise SchemaError(msg)
+    return given.squeeze(beside)
+
+
 @draws("dynamic_analysis", ax="two Axes", title="the verdict")
 def dynamic_analysis(
     dataset: xr.Dataset,
@@ -70,7 +85,7 @@ def dynamic_analysis(
     -------
     Panels
     """
-    given = drawable(dataset, "dynamic_analysis", units)
+    given = of_one_structure(drawable(dataset, "dynamic_analysis", units))
     name = str(given.attrs.get("intensity", "scale"))
     intensity = given[name].broadcast_like(given["peak_relative_rotation"])
     on = sheet(

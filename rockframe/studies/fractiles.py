@@ -230,7 +230,7 @@ def _falls(
     """Give the ranges that overturn by the brackets of a dynamic analysis; None of a sweep."""
     if along != SCALE or not all(one in runs for one in ("scale_above", "exceeds_above")):
         return None
-    last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore")
+    last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore").squeeze()
     above, below, after = (
         last[name].to_numpy() for name in ("scale_above", "scale_below", "exceeds_above")
     )

@@ -17,6 +17,7 @@ from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import POWERS, Intensity, of_motions, of_study, unscaled_motions
 from rockframe.studies.limit_states import overturns
+from rockframe.studies.line_axes import over_rows
 from rockframe.studies.lines import (
     CAPACITY,
     SCALE,
@@ -69,23 +70,11 @@ class BlockSizes:
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
         """Give what runs over the rows of the table the dimensions of the sizes."""
-        shape = {
-            "slenderness": len(self.slenderness),
-            "rocking_period": len(self.periods),
-        }
-        found: dict[str, xr.Variable] = {}
-        for name, one in runs.variables.items():
-            if name != CASE:
-                found[str(name)] = one.unstack({CASE: shape}) if CASE in one.dims else one
-                dims = [dim for dim in SIZE if dim in found[str(name)].dims]
-                others = [dim for dim in found[str(name)].dims if dim not in dims]
-                found[str(name)] = found[str(name)].transpose(*dims, *others)
         labels = build_dataset(
             {"slenderness": self.slenderness, "rocking_period": self.periods}, {}
         )
-        coordinates = [name for name in runs.coords if name != CASE]
-        made = xr.Dataset(found, attrs=runs.attrs).set_coords(coordinates)
-        return made.assign_coords(labels.coords)
+        sizes = {"slenderness": len(self.slenderness), "rocking_period": len(self.periods)}
+        return over_rows(runs, sizes, {str(name): labels[name].variable for name in labels.coords})
 
 
 def _by_shape_factor(system: System, block: Block) -> System:
