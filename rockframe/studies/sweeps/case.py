@@ -128,7 +128,10 @@ def case(
         dataset, kept = open_study(runs), Store.at(Path(runs))
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if not {"axes_json", "motions_json", "run_json", "study_sha256"} <= set(attributes):
-        msg = f"{_OWNER}: found a dataset that is no sweep; expected the result of rf.sweep"
+        msg = (
+            f"{_OWNER}: found a dataset that is no sweep; expected the result of rf.sweep, or of "
+            "rf.concat where sweeps differ along one axis, or in their motions, alone"
+        )
         raise SchemaError(msg)
     known = remembered(attributes)
     place = _place(dataset, labels)
