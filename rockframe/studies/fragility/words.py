@@ -71,6 +71,15 @@ def sentences(fragility: xr.Dataset) -> str:
     return " ".join([*said, *_below_scan(last), *_left_out(last)])
 
 
+def verdict_of_fragility(dataset: xr.Dataset) -> str:
+    """Say what was fitted, of a part of a fragility what was fitted of that; else nothing new."""
+    said = str(dataset.attrs.get("verdict", ""))
+    if "independent_count" not in dataset:  # as of a cloud
+        return said
+    own = sentences(dataset)
+    return said if said.startswith(own) else own
+
+
 def _of_another(fragility: xr.Dataset) -> list[str]:
     """Tell of the last limit state, besides the last of all, of which intensities tell."""
     for number in reversed(range(fragility.sizes.get(*LIMIT_STATE, 1) - 1)):
@@ -157,7 +166,7 @@ def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
     enough = last["independent_count"].to_numpy().ravel()[fitted] >= min(COVERAGE[Bands.JACKKNIFE])
     count = int((lacking & enough).sum())
     if count:
-        of = "" if len(fitted) == 1 else f" of {count} structures"
+        of = "" if len(fitted) == 1 else f" of {count} structure{'s' if count > 1 else ''}"
         yield (
             f"There are no bounds{of}: without one of the motions there is no fit, for hardly any "
             "run exceeds below one that does not."
