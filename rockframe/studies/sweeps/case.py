@@ -35,6 +35,8 @@ from rockframe.system.assembly import Assembly
 from rockframe.units import Measure, Unit, to_ratio, to_si
 
 _OWNER: Final = "case"
+_SHOWN: Final = 6
+"""Values that a message lists."""
 _REMEMBERED: Final = 16
 """Sweeps of this process whose functions and motions are kept at hand."""
 _studies: Final[OrderedDict[str, Study]] = OrderedDict()
@@ -195,6 +197,7 @@ def _found(labels: xr.DataArray, name: str, wanted: Any) -> int:
     values = np.atleast_1d(labels.to_numpy())
     if name == MOTION:
         return motion_number(wanted, values.tolist(), owner=_OWNER)
+    near = ""
     if values.dtype.kind == "f":
         measure = Measure("a value", Unit(labels.attrs["units"]), f"{values[0]:g}")
         number = (
@@ -209,12 +212,14 @@ def _found(labels: xr.DataArray, name: str, wanted: Any) -> int:
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
             return nearest
+        near = f"; the nearest is {values[nearest]}"
     else:
         places = np.flatnonzero(values == wanted)
         if len(places):
             return int(places[0])
-    few = ", ".join(str(one) for one in values[:6].tolist())
-    msg = f"{_OWNER}: {name} has no {shown(wanted)}; it has {few}{', ...' * (len(values) > 6)}"
+    few = ", ".join(str(one) for one in values[:_SHOWN].tolist())
+    more = f", ...{near}" if len(values) > _SHOWN else ""
+    msg = f"{_OWNER}: {name} has no {shown(wanted)}; it has {few}{more}"
     raise StudyError(msg)
 
 

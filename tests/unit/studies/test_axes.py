@@ -96,3 +96,10 @@ def test_slenderness_and_restitution_are_spread() -> None:
     )
     assert 0.0 < float(found.overturning_probability) < 1.0
     assert set(found.parameter.values) == {"slenderness", "restitution"}
+
+
+def test_the_nearest_of_many_values_is_named() -> None:
+    scales = np.linspace(0.5, 4.0, 20)
+    runs = rf.sweep(rf.System(BLOCK), PULSE, scale=scales, duration="1 s", accuracy="fast")
+    with pytest.raises(StudyError, match=r"scale has no 2\.0; .*; the nearest is 1\.97"):
+        rf.case(runs, scale=2.0)
