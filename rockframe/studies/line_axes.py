@@ -10,6 +10,7 @@ import xarray as xr
 from rockframe.errors import RockframeError, StudyError, nearest, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE
+from rockframe.studies.sweeps.arguments import OF_A_SWEEP
 from rockframe.studies.sweeps.axes import Axis, Changes
 from rockframe.studies.sweeps.scenes import SweptScene
 from rockframe.units import Unit
@@ -73,6 +74,9 @@ def read_line_axes(
         raise StudyError(msg)
     found, faults = list[Axis](), list[str]()
     for name, values in cast("Mapping[Any, Any]", given).items():
+        if name in OF_A_SWEEP:
+            faults.append(f"{owner} takes no {name!r}, as rf.sweep does")
+            continue
         try:
             found.append(scene.axis(str(name), values))
         except (StudyError, RockframeError) as problem:

@@ -46,6 +46,14 @@ TARGETS: Final = {
 """Axes that change the motion, by their names."""
 
 
+ABBREVIATIONS: Final = {
+    "PGA": "peak_ground_acceleration",
+    "PGV": "peak_ground_velocity",
+    "SA": SPECTRAL,
+}
+"""Of those that are measures of intensity."""
+
+
 def target_words(name: str) -> str:
     """Tell what an axis that scales the motion is."""
     return SCHEMA[name].long_name

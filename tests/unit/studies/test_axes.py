@@ -103,3 +103,15 @@ def test_the_nearest_of_many_values_is_named() -> None:
     runs = rf.sweep(rf.System(BLOCK), PULSE, scale=scales, duration="1 s", accuracy="fast")
     with pytest.raises(StudyError, match=r"scale has no 2\.0; .*; the nearest is 1\.97"):
         rf.case(runs, scale=2.0)
+
+
+def test_peaks_of_the_motion_have_their_abbreviations() -> None:
+    runs = rf.sweep(rf.System(BLOCK), PULSE, PGA=["2 m/s^2", "4 m/s^2"], duration="2 s")
+    assert runs.overturned.dims == ("peak_ground_acceleration", "motion")
+    assert rf.case(runs, PGA="4 m/s^2").motion.peak_acceleration.m_as("m/s^2") == 4.0
+    spectral = rf.sweep(rf.System(BLOCK), PULSE, SA=["3 m/s^2"], period="1 s", duration="2 s")
+    assert "pseudo_spectral_acceleration" in spectral.dims
+    with pytest.raises(StudyError, match="all scale the motion"):
+        rf.sweep(rf.System(BLOCK), PULSE, PGA=["2 m/s^2"], scale=[1.0], duration="2 s")
+    own = rf.sweep(lambda PGA: rf.System(BLOCK), PULSE, PGA=[1, 2], duration="2 s")  # noqa: N803
+    assert "PGA" in own.dims
