@@ -26,7 +26,7 @@ from rockframe.plot._axes import (
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
-from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.units import ACCELERATION
 from rockframe.units.shown import UnitsLike
 
@@ -139,7 +139,7 @@ def dynamic_analysis(
     for axes in on.panels:
         grid(axes)
     on.name_lines()
-    on.entitle(cases_verdict(given), title)
+    on.entitle(verdict_of_analysis(given), title)
     return on.panels
 
 

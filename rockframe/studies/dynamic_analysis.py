@@ -17,6 +17,7 @@ from rockframe.simulation.friction import share_words
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import (
+    OVERTURNING,
     STATES,
     exceeds,
     labels_of_states,
@@ -39,6 +40,7 @@ from rockframe.studies.lines import (
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import MotionsLike, named_motions
 from rockframe.studies.sweeps.scenes import own_motion, scene_of
+from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
@@ -217,6 +219,18 @@ def _say_what_lies_below(found: xr.Dataset) -> None:
             "capacities lie at or below it; give lesser scales",
             ModelWarning,
         )
+
+
+def verdict_of_analysis(dataset: xr.Dataset) -> str:
+    """Say under how many motions a dynamic analysis, or a part of it, overturned."""
+    capacity = dataset["capacity_scale"]
+    whole = {"limit_state", MOTION} <= set(capacity.dims) and SCALE in dataset.dims
+    if not whole or str(capacity["limit_state"][-1].item()) != OVERTURNING:
+        return cases_verdict(dataset)
+    structures = {
+        str(dim): size for dim, size in capacity.sizes.items() if dim not in ("limit_state", MOTION)
+    }
+    return _sentence(dataset, structures)
 
 
 def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:

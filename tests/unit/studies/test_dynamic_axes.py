@@ -79,6 +79,16 @@ def test_one_structure_is_drawn_and_has_fractiles(wide):
     np.testing.assert_array_equal(curves.intensity_fractile, same.intensity_fractile)
 
 
+def test_a_part_tells_of_itself(wide):
+    assert wide.rockframe.verdict == wide.verdict
+    one = wide.isel(width=0, restitution=1)
+    assert one.rockframe.verdict == alone("0.5 m", 0.8).verdict
+    some = wide.isel(width=0, motion=[0, 2])
+    assert some.rockframe.verdict.startswith("Of 4 lines, of 2 structures by restitution under 2")
+    assert wide.isel(limit_state=[0]).rockframe.verdict  # which is not of overturning
+    assert wide.isel(motion=0).rockframe.verdict.startswith("Of 12 of the 36 cases")
+
+
 def test_the_system_may_be_a_function_of_the_axes(wide):
     def cabinet(width: object, kind: str, columns: int) -> rf.System:
         block = rf.Block(width=width, height="2 m", mass="300 kg")
