@@ -140,9 +140,15 @@ class RockframeAccessor:
 
     @property
     def verdict(self) -> str:
-        """What became of it in one sentence; of a part of a sweep, what became of that part."""
+        """What became of it in one sentence; of a part, what became of that part."""
+        from rockframe.studies.dynamic_analysis import verdict_of_analysis
+        from rockframe.studies.fragility.words import verdict_of_fragility
         from rockframe.studies.sweeps.words import cases_verdict
 
+        if "fragility_status" in self._dataset:
+            return verdict_of_fragility(self._dataset)
+        if {"capacity_scale", "censored_count"} <= set(self._dataset):
+            return verdict_of_analysis(self._dataset)
         return cases_verdict(self._dataset)
 
     @property

@@ -47,8 +47,13 @@ def documented_by(kind: type) -> Callable[[Function], Function]:
     return decorate
 
 
-def takes(kind: type, **otherwise: object) -> Callable[[Function], Function]:
-    """Let a function take shared arguments, which it has as ``**run: Unpack[kind]``."""
+def takes(
+    kind: type, *, further: str | None = None, **otherwise: object
+) -> Callable[[Function], Function]:
+    """Let a function take shared arguments, which it has as ``**run: Unpack[kind]``.
+
+    Any other name goes into the mapping that the argument `further` is, if there is one.
+    """
     declared = declared_in(kind)
 
     def decorate(function: Function) -> Function:
@@ -61,21 +66,30 @@ def takes(kind: type, **otherwise: object) -> Callable[[Function], Function]:
             for name, one in declared.items()
         ]
         whole = own.replace(parameters=[*first, *shared])
+        more = inspect.Parameter(f"more_{further}", inspect.Parameter.VAR_KEYWORD, annotation=Any)
+        shown = whole.replace(parameters=[*first, *shared, *([more] if further else [])])
 
         @wraps(function)
         def call(*given: Any, **named: Any) -> Any:
-            for name in named:
-                if name not in whole.parameters:
-                    raise ArgumentError(_unknown(function.__qualname__, name, whole.parameters))
+            others = [name for name in named if name not in whole.parameters]
+            if others and further is None:
+                raise ArgumentError(_unknown(function.__qualname__, others[0], whole.parameters))
+            if others and further is not None:
+                mapping = named.get(further) or {}
+                twice = [name for name in others if name in mapping]
+                if twice:
+                    msg = f"{function.__qualname__}() got {twice[0]!r} twice, also in {further!r}"
+                    raise ArgumentError(msg)
+                named[further] = {**mapping, **{name: named.pop(name) for name in others}}
             try:
                 return function(*given, **{**otherwise, **named})
             except TypeError as problem:
                 raise_refused(problem, whole.parameters)
                 raise
 
-        cast("Any", call).__signature__ = whole
+        cast("Any", call).__signature__ = shown
         cast("Any", call).hints = {}  # nothing of it has to be hinted
-        call.__doc__ = completed(function.__doc__ or "", whole.parameters, declared)
+        call.__doc__ = completed(function.__doc__ or "", shown.parameters, declared)
         return cast("Function", call)
 
     return decorate
@@ -85,7 +99,10 @@ def _unknown(function: str, name: str, known: Iterable[str]) -> str:
     names = list(known)
     # an axis has the name of a parameter, so that `width` is always that of a block
     if f"bracket_{name}" in names:
-        return f"{function}() takes no {name!r}; the width of a bracket is 'bracket_{name}'"
+        return (
+            f"{function}() takes no {name!r}; the width of a bracket is 'bracket_{name}', and "
+            "incremental_dynamic_analysis takes axes such as that of a block"
+        )
     return f"{function}() takes no {name!r}{meant(name, names)} It takes {', '.join(names)}"
 
 

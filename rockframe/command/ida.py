@@ -40,18 +40,16 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs.check(arguments.output, _RESULT)
     outputs.check(arguments.picture, PICTURE)
     outputs.check(arguments.csv, _TABLE)
-    axes = found.arguments.get(AXES, {})
-    others = [
-        name for name in (*axes, *([CASES] if CASES in found.arguments else ())) if name != SCALE
-    ]
-    if others:
-        words = f"a dynamic analysis has scales alone, and no {' or '.join(others)}"
+    axes = {**found.arguments.get(AXES, {})}
+    if CASES in found.arguments:
+        words = "a dynamic analysis has axes, and no table of cases"
         raise FileError(arguments.scene, [(None, f"{words}; 'fragility' fits each structure")])
     given: dict[str, Any] = {
         "intensity": _USUAL,
         "store": found.store,
-        **axes,
         **taken_by(incremental_dynamic_analysis, found.arguments),
+        **({SCALE: axes.pop(SCALE)} if SCALE in axes else {}),
+        AXES: axes,
         **asked(arguments, incremental_dynamic_analysis),
     }
     period = given_of(arguments, "period")

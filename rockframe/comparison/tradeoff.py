@@ -12,6 +12,7 @@ import xarray as xr
 
 from rockframe.arguments import several, whole_number
 from rockframe.comparison.models import check_system, model_ladder
+from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
@@ -185,10 +186,11 @@ def tradeoff(
         title="Speed against accuracy",
         source="repeated runs",
     )
-    return dataset.assign_coords(
+    dataset = dataset.assign_coords(
         model=("model", list(chosen), {"long_name": "model"}),
         accuracy=("accuracy", list(settings), {"long_name": "accuracy of the integration"}),
     )
+    return dataset.assign_attrs(verdict=recommend(dataset).sentence)
 
 
 def measure(

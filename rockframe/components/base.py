@@ -283,6 +283,33 @@ class Component(metaclass=Proposing):
         """
         return cls._declared
 
+    @classmethod
+    def varied(cls) -> Mapping[str, Declared[Any, Any]]:
+        """Give the declarations of all that :meth:`with_si` takes, by their names.
+
+        Returns
+        -------
+        mapping
+            Those of all parameters; and of what stands for several of them, where a class has
+            such.
+        """
+        return cls._declared
+
+    def too_many(self, changed: Collection[str]) -> tuple[str, ...]:
+        """Name what determines the same parameters more than once.
+
+        Parameters
+        ----------
+        changed : collection of str
+            Names of what becomes another, of those in :meth:`varied`.
+
+        Returns
+        -------
+        tuple of str
+            None, unless a class has names that stand for several parameters.
+        """
+        return ()
+
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
         """Name what would stay as it was given, although it goes with what is changed.
 

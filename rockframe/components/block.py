@@ -1,6 +1,6 @@
 """The rigid block."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Any, ClassVar, Final, Self, cast
 
 from rockframe.components.alternatives import OneOf
@@ -11,7 +11,14 @@ from rockframe.components.block_numbers import (
     check_representable,
     unphysical_inertia,
 )
-from rockframe.components.parameters import DERIVED, Parameter, Ratio, SIProperty, SIValues
+from rockframe.components.parameters import (
+    DERIVED,
+    Declared,
+    Parameter,
+    Ratio,
+    SIProperty,
+    SIValues,
+)
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
 from rockframe.many import hypot
@@ -36,6 +43,19 @@ SOLID_RECTANGLE_SHAPE_FACTOR = 3.0
 
 _SIZES: Final = frozenset({"width", "height", "mass"})
 """What a moment of inertia goes with."""
+_SIDES: Final = ("width", "height")
+
+
+class _Size:
+    """What stands for width and height together, as in :meth:`Block.from_size`."""
+
+    radius = Parameter(LENGTH, POSITIVE, doc="R0, distance from a corner to the centre of mass.")
+    slenderness = Ratio(POSITIVE, doc="Height over width, H/B.", example="4")
+
+
+_BY_SIZE: Final = {
+    name: one for name, one in vars(_Size).items() if isinstance(one, Parameter | Ratio)
+}
 
 
 class Block(Component):
@@ -184,6 +204,70 @@ class Block(Component):
             warn(msg, ModelWarning)
         return made
 
+    @classmethod
+    def varied(cls) -> Mapping[str, Declared[Any, Any]]:
+        """Give the declarations of all parameters, and of `radius` and `slenderness`.
+
+        Returns
+        -------
+        mapping
+        """
+        return {**super().varied(), **_BY_SIZE}
+
+    def too_many(self, changed: Collection[str]) -> tuple[str, ...]:
+        """Name what determines width and height more than once.
+
+        Parameters
+        ----------
+        changed : collection of str
+            Names of what becomes another.
+
+        Returns
+        -------
+        tuple of str
+        """
+        named = [name for name in (*_BY_SIZE, *_SIDES) if name in changed]
+        sides = sum(name in _SIDES for name in named)
+        twice = sides == 2 if "slenderness" in named else False
+        return tuple(named) if twice or ("radius" in named and sides) else ()
+
+    def with_si(self, values: Mapping[str, Any]) -> Self:
+        """Build a block of which some parameters are others, without warnings.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            Numbers in SI units by the names of parameters. A `slenderness` leaves the `radius`,
+            or the side that is given beside it; a `radius` leaves the slenderness.
+
+        Returns
+        -------
+        Block
+
+        Raises
+        ------
+        ComponentError
+            A value is out of range, or does not fit the others.
+        """
+        sizes = {name: values[name] for name in _BY_SIZE if name in values}
+        if not sizes:
+            return super().with_si(values)
+        for name, value in sizes.items():
+            if not POSITIVE.holds(value):
+                _BY_SIZE[name].read(_BY_SIZE[name].write(value), type(self).__name__)
+        others = {name: value for name, value in values.items() if name not in _BY_SIZE}
+        return super().with_si({**others, **self._sides(sizes, others)})
+
+    def _sides(self, sizes: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
+        """Give width and height by radius and slenderness, or by a side and the slenderness."""
+        ratio = sizes.get("slenderness", self.slenderness)
+        if "width" in others:
+            return {"height": ratio * others["width"]}
+        if "height" in others:
+            return {"width": others["height"] / ratio}
+        width = 2.0 * sizes.get("radius", self.si.radius) / hypot(1.0, ratio)
+        return {"width": width, "height": ratio * width}
+
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
         """Name what would stay as it was given, although it goes with what is changed.
 
@@ -203,6 +287,8 @@ class Block(Component):
         super().left_behind(changed)
         if self.given.inertia is None:
             return ()
+        if any(name in changed for name in _BY_SIZE):
+            changed = {*changed, *_SIDES}
         behind: list[str] = []
         if _SIZES.intersection(changed) and not {"inertia", "shape_factor"}.intersection(changed):
             behind.append("inertia")

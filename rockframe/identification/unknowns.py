@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.components import Component, RigidGround
+from rockframe.components import Component
 from rockframe.components.parameters import Ratio
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.simulation.system import System
@@ -69,9 +69,8 @@ class TrialSystems:
     """Systems that differ in some parameters from the one that was given."""
 
     def __init__(self, system: System, names: Sequence[str], owner: str) -> None:
-        self._parts = system.parts.structural()
-        if system.parts.signature == frozenset({"block"}) and system.parts.ground is None:
-            self._parts.append(RigidGround())
+        alone = system.parts.signature == frozenset({"block"})
+        self._parts = (system.parts.standing() if alone else system.parts).structural()
         options = system.options
         self._options: dict[str, Any] = {
             "restraint": options.restraint,

@@ -138,6 +138,13 @@ class HorizontalPair(metaclass=Proposing):
         return f"{self.first.name}, {self.second.name}"
 
     @property
+    def components(self) -> tuple[GroundMotion, GroundMotion]:
+        """Both horizontal components, each with the vertical one beside it, if there is one."""
+        if self.vertical is None:
+            return self.first, self.second
+        return self.first.with_vertical(self.vertical), self.second.with_vertical(self.vertical)
+
+    @property
     def signals(self) -> tuple[Signal, Signal]:
         """Both components in SI units, of the same length."""
         count = max(len(self.first), len(self.second))

@@ -194,6 +194,9 @@ def draws(function: str = "", *, ax: str = "Axes", title: str = "") -> Callable[
     return decorate
 
 
+_OF_KINDS: Final = tuple(one.known for one in KINDS.values())
+
+
 def drawn_by(given: xr.Dataset) -> str:
     """Give the function that draws a dataset."""
     for function, kind in KINDS.items():
@@ -322,6 +325,9 @@ def _words(function: str, given: object) -> tuple[str, str]:
         return f"{given!r}" if given is None else f"a value of type {type(given).__name__}", ""
     for names, what, way in _DRAWN_BY:
         if _holds(given, names):
+            several = "overturned" in given and given["overturned"].ndim > 0
+            if several and names not in _OF_KINDS:
+                return "a Dataset with many runs", "rf.plot.sweep draws it"
             return f"a Dataset with {what}", way
     title = given.attrs.get("title")
     return "a Dataset" + (f" with the title {title!r}" if title else " of another kind"), ""

@@ -11,7 +11,7 @@ from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
-from rockframe.studies.fragility.words import measures_of, sentences
+from rockframe.studies.fragility.words import measures_of, verdict_of_fragility
 from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units.shown import UnitsLike
 
@@ -173,8 +173,7 @@ def fragility(
             _contours(axes, one, measures)
     if len(measures) == 1:
         on.name_lines()
-    known = "independent_count" in given
-    on.entitle(sentences(given) if known else str(dataset.attrs.get("verdict", "")), title)
+    on.entitle(verdict_of_fragility(given), title)
     return on.axes if len(measures) == 1 and not structures else on.panels
 
 

@@ -5,6 +5,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     BLUE,
     GREEN,
@@ -25,7 +26,7 @@ from rockframe.plot._axes import (
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
-from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.units import ACCELERATION
 from rockframe.units.shown import UnitsLike
 
@@ -43,6 +44,20 @@ MAP_COLOURS: Final = (STANDS, *_WAYS)
 """Of what stands, and of what overturns after none, one and more impacts."""
 _CAPPED: Final = 1.0
 """Peaks over the overturning angle that are drawn alike."""
+
+
+def of_one_structure(given: xr.Dataset) -> xr.Dataset:
+    """Give an analysis without the axes of which it has one value; refuse several structures."""
+    dims = given["capacity_scale"].dims
+    beside = [dim for dim in dims if dim not in ("limit_state", "motion")]
+    several = [f"{dim} ({given.sizes[dim]})" for dim in beside if given.sizes[dim] > 1]
+    if several:
+        msg = (
+            f"rf.plot.dynamic_analysis draws one structure, this analysis is of several, by "
+            f"{', '.join(several)}; choose one, for example with analysis.isel({beside[0]}=0)"
+        )
+        raise SchemaError(msg)
+    return given.squeeze(beside)
 
 
 @draws("dynamic_analysis", ax="two Axes", title="the verdict")
@@ -70,7 +85,7 @@ def dynamic_analysis(
     -------
     Panels
     """
-    given = drawable(dataset, "dynamic_analysis", units)
+    given = of_one_structure(drawable(dataset, "dynamic_analysis", units))
     name = str(given.attrs.get("intensity", "scale"))
     intensity = given[name].broadcast_like(given["peak_relative_rotation"])
     on = sheet(
@@ -124,7 +139,7 @@ def dynamic_analysis(
     for axes in on.panels:
         grid(axes)
     on.name_lines()
-    on.entitle(cases_verdict(given), title)
+    on.entitle(verdict_of_analysis(given), title)
     return on.panels
 
 

@@ -231,10 +231,12 @@ def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
         raise SchemaError(msg)
     values = given[variable]
     if not 1 <= values.ndim <= _MOST_AXES:
-        dims = ", ".join(map(str, values.dims)) or "none"
+        names = [str(dim) for dim in values.dims]
+        plain = next((name for name in reversed(names) if name.isidentifier()), "scale")
         msg = (
-            f"rf.plot.sweep draws over one or two axes, {variable!r} has {values.ndim} ({dims}); "
-            "choose from the others, for example with runs.isel(motion=0)"
+            f"rf.plot.sweep draws over one or two axes, {variable!r} has {values.ndim} "
+            f"({', '.join(names) or 'none'}); choose from the others, for example with "
+            f"runs.isel({plain}=0)"
         )
         raise SchemaError(msg)
     if values.dtype.kind not in "fiub":

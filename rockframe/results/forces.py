@@ -24,6 +24,8 @@ STACKED: Final = "rotation_on_cap"
 """A column of scenes in which a block stands on a cap."""
 OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
 """Columns that the friction between cap and soil follows from, where a scene has them all."""
+OF_SETTLEMENT: Final = ("vertical_displacement", "rotation")
+"""Columns that the settlement of the base follows from."""
 HALF: Final = 0.5
 ENOUGH: Final = 1.0
 """The friction demand is told to last while it is above half its peak, or above what floors seldom
@@ -144,12 +146,23 @@ def _shear_and_demand(values: Values) -> Array:
 
 def residuals(values: Values, load: BaseLoad) -> dict[str, float]:
     """Give what is left at the end of a run, by its names in the schema."""
-    rotation = float(values["rotation"][-1])
-    body = load.body
-    sines, _ = sines_cosines(np.array([0.5 * rotation, rotation]), small=load.options.small)
-    half, whole = float(sines[0]), float(sines[1])
-    sunk = -float(values["vertical_displacement"][-1]) - body.eccentricity * whole
+    last = {name: values[name][-1:] for name in OF_SETTLEMENT}
     return {
-        "residual_rotation": rotation,
-        "residual_settlement": sunk - 2.0 * body.centre_height * half**2,
+        "residual_rotation": float(last["rotation"][0]),
+        "residual_settlement": float(_settlement(last, load)[0]),
     }
+
+
+def peak_settlement(along: AlongSteps, load: BaseLoad) -> dict[str, float]:
+    """Give how far the middle of the base went down from rest at most."""
+    ((deepest,), _) = along.largest(lambda values: _settlement(values, load)[None])
+    return {"peak_settlement": max(float(deepest), 0.0) + 0.0}
+
+
+def _settlement(values: Values, load: BaseLoad) -> Array:
+    """Give how much lower than at rest the middle of the base is, :eq:`eq-settlement`."""
+    body, small = load.body, load.options.small
+    half, _ = sines_cosines(0.5 * values["rotation"], small=small)
+    whole, _ = sines_cosines(values["rotation"], small=small)
+    sunk = -values["vertical_displacement"] - body.eccentricity * whole
+    return sunk - 2.0 * body.centre_height * half**2

@@ -1,5 +1,7 @@
 """Many runs in one dataset, which says of all only what holds for each."""
 
+import hashlib
+import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, cast
 
@@ -39,6 +41,9 @@ OF_ONE_RUN: Final = frozenset(
 """Attributes that tell what became of one run; of several none of them is said."""
 CASE_COUNT: Final = "case_count"
 """Attribute that tells how many cases one sweep has; of several it is not said."""
+
+OF_ITS_MOTIONS: Final = ("motion_names", "motions_json")
+"""Attributes by which a sweep tells its motions."""
 
 _OWNER: Final = "concat"
 
@@ -85,7 +90,8 @@ def concat(
     `verdict`, `overturned`, `overturning_time`, `overturning_direction`, `cautions`,
     `certificate`, `certificate_runs`, `solver_substeps`, `solver_steps`,
     `solver_rejected_steps`, `solver_end_time` and `end_state`, which tell of one run, and
-    `case_count` of one sweep, which are left out however many agree. So it does not matter in
+    `case_count` of one sweep, which are left out however many agree. Sweeps that differ along one
+    axis, or in their motions, alone are one sweep again. So it does not matter in
     which order runs are joined.
     `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps what some of its datasets do
     not have: of a row of runs in which some overturned and a row in which none did, it says
@@ -138,6 +144,7 @@ def concat(
     except ValueError as problem:
         msg = f"{_OWNER}: the runs do not fit one another: {problem}"
         raise SchemaError(msg) from problem
+    joined.attrs |= _as_one_sweep(given, dim, joined)
     joined.attrs["history"] = dated(f"{joined.sizes[dim]} joined along {dim!r}")
     if labels is not None:
         joined = _labelled(joined, dim, labels)
@@ -200,6 +207,41 @@ def _shared(given: Sequence[Mapping[Any, Any]], context: object = None) -> dict[
         if name not in {*OF_ONE_RUN, CASE_COUNT}
         and all(name in other and _same(value, other[name]) for other in others)
     }
+
+
+_OF_A_SWEEP: Final = (*OF_ITS_MOTIONS, "axes_json", "run_json", "study_sha256")
+_ALIKE: Final = (
+    "axes_json", "run_json", "accuracy", "system_json", "function", "spectral_period",
+    "rockframe_version",
+)  # fmt: skip
+"""What sweeps have alike that differ along one axis, or in their motions, alone."""
+
+
+def _as_one_sweep(given: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
+    """Tell of sweeps that differ along one dimension alone what is told of one; else nothing."""
+    attributes = [run.attrs for run in given]
+    if not all(name in one for one in attributes for name in _OF_A_SWEEP):
+        return {}
+    first = attributes[0]
+    alike = _ALIKE if dim == MOTION else (*_ALIKE, *OF_ITS_MOTIONS)
+    if any(one.get(name) != first.get(name) for one in attributes for name in alike):
+        return {}
+    axes = [axis["name"] for axis in json.loads(first["axes_json"])]
+    if dim not in (MOTION, *axes) or dim not in joined.coords or not joined.indexes[dim].is_unique:
+        return {}
+    digests = " ".join(str(one["study_sha256"]) for one in attributes)
+    told = {
+        CASE_COUNT: joined["status"].size,
+        "study_sha256": hashlib.sha256(f"joined along {dim}: {digests}".encode()).hexdigest(),
+    }
+    if dim != MOTION:
+        return told
+    motions = {
+        name: json.dumps([motion for one in attributes for motion in json.loads(one[name])])
+        for name in OF_ITS_MOTIONS
+    }
+    names = json.loads(motions["motion_names"])
+    return told | motions if len(set(names)) == len(names) else {}
 
 
 def _same(one: object, other: object) -> bool:

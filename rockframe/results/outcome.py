@@ -2,19 +2,20 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.dynamics.events import OVERTURNING, SILENT, TOPPLED
+from rockframe.dynamics.events import OVERTURNING, SILENT, TOPPLED, LinkState
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
     IMPULSIVE_INPUT,
     LINK_LOSS,
     REPINNING_LOSS,
     ContactModel,
+    Ending,
     column_of,
 )
 from rockframe.many import largest
@@ -101,6 +102,13 @@ def link_histories(model: ContactModel, values: Mapping[str, Generic]) -> dict[s
         return {}
     links = range(model.links)
     return {name: np.array([values[column_of(name, i)] for i in links]) for name in OF_EACH_LINK}
+
+
+def broken_links(model: ContactModel, ending: Ending) -> int:
+    """Tell how many restrainers are broken at the end of a run; once broken, they stay so."""
+    system = cast("Any", model.system)
+    rows = [system.row_of_link(i) for i in range(model.links)]
+    return sum(system.link_state(ending.mode, row) == LinkState.BROKEN for row in rows)
 
 
 def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
@@ -200,7 +208,7 @@ def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
 def scalars(
     run: Summary, setting: Setting, *, uplift_angle: float
 ) -> dict[str, Generic | float | int | bool]:
-    """Give the scalars of a run by their names in the schema."""
+    """Give the scalars of a run by their names in the schema, also those of each body."""
     angles = setting.overturning_angles
     sides: dict[str, Generic | float] = {}
     if setting.leans:
@@ -211,11 +219,11 @@ def scalars(
             "right_peak_rotation": _unsigned(run.peak_right),
             "rest_rotation": setting.rest_rotation,
         }
-    slips = setting.slips_of(run.ending)
-    if slips:
-        sides |= {"peak_slip": slips[0].peak + 0.0, "residual_slip": slips[0].residual}
-    if len(slips) > 1:
-        sides["peak_body_slip"] = np.array([one.peak for one in slips])
+    every = setting.slips_of(run.ending)
+    for slips in every[:1]:
+        sides |= {"peak_slip": slips.peak + 0.0, "residual_slip": slips.residual}
+    if len(every) > 1:
+        sides["peak_body_slip"] = np.array([one.peak for one in every])
     return sides | {
         "overturned": run.passed,
         "overturning_time": run.overturning_time,

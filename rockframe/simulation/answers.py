@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rockframe.compiled import Integers
-from rockframe.dynamics.events import IMPACT, LINK_BREAKS, SILENT
+from rockframe.dynamics.events import IMPACT, SILENT
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
@@ -13,11 +13,13 @@ from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.dataset import fitting
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.forces import (
+    OF_SETTLEMENT,
     OF_SOIL_FRICTION,
     EventStates,
     force_histories,
     force_scalars,
     friction_demands,
+    peak_settlement,
     residuals,
 )
 from rockframe.results.outcome import (
@@ -97,6 +99,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         **force_scalars(along, upright, load.body.mass),
         **sliding_scalars(found),
         **residuals(values, load),
+        **peak_settlement(along, load),
     }
     if "slip" in values:
         scalars["residual_displacement"] = float(values["horizontal_displacement"][-1])
@@ -104,7 +107,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         scalars["peak_body_rotation"] = _peak_rotations(system, along)
     places: dict[str, Generic] = {}
     if system.model.links:
-        scalars |= _of_links(system, run, along)
+        scalars |= _of_links(system, along)
         places = {"restrainer": np.array(system.setting.link_names)}
     if plan.points:
         scalars |= point_peaks(plan.points, along, load)
@@ -223,7 +226,7 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
         shown |= force_histories(shown, moved, load)
         shown |= _state_of(shown, steps.time, _level(moved, slope))
     else:
-        names = BODY_FORCES
+        names = BODY_FORCES + OF_SETTLEMENT
         if system.setting.stacked:
             names += OF_SOIL_FRICTION
         if system.model.shows_bodies:
@@ -263,12 +266,11 @@ def forces_of_links(links: int) -> tuple[str, ...]:
     return tuple(column_of("restrainer_force", i) for i in range(links))
 
 
-def _of_links(system: Assembly, run: Trajectory, along: AlongSteps) -> dict[str, Generic | float]:
-    """Give the largest force of each restrainer, and how many broke."""
+def _of_links(system: Assembly, along: AlongSteps) -> dict[str, Generic | float]:
+    """Give the largest force of each restrainer."""
     names = forces_of_links(system.model.links)
     peaks = along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
-    broken = int(np.sum(run.events.kind == LINK_BREAKS))
-    return {"peak_restrainer_force": peaks, "broken_restrainer_count": broken}
+    return {"peak_restrainer_force": peaks}
 
 
 def _peak_rotations(system: Assembly, along: AlongSteps) -> Array:

@@ -17,7 +17,7 @@ import xarray as xr
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import AssemblyError, RockframeError, nearest, shown
-from rockframe.motion import GroundMotion
+from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
 from rockframe.results.forces import OF_SOIL_FRICTION
 from rockframe.results.outcome import verdict_of
@@ -376,6 +376,8 @@ def _motion_hint(given: object) -> str:
         return f"; read the file first: GroundMotion.read({str(given)!r})"  # pyright: ignore[reportUnknownArgumentType]
     if hasattr(given, "shape") or isinstance(given, list):
         return "; build one: GroundMotion.from_arrays((samples, 'm/s^2'), '0.01 s')"
+    if isinstance(given, HorizontalPair):
+        return "; give its component in one direction: pair.first, or pair.rotated('30 deg')"
     return ""
 
 

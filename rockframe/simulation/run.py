@@ -15,6 +15,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import (
     Generic,
+    broken_links,
     event_columns,
     ground_on_slope,
     peak_of,
@@ -168,7 +169,10 @@ def scalars_of(
     """Give the scalars of a run by their names in the schema, without those of its samples."""
     setting = system.setting
     uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
-    return scalars(summary, setting, uplift_angle=uplift)
+    found = scalars(summary, setting, uplift_angle=uplift)
+    if system.model.links:
+        found["broken_restrainer_count"] = broken_links(system.model, summary.ending)
+    return found
 
 
 def run(

@@ -10,7 +10,6 @@ import xarray as xr
 
 from rockframe.arguments import whole_number
 from rockframe.errors import StudyError
-from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, overturns
@@ -29,6 +28,7 @@ from rockframe.studies.intensities import (
 )
 from rockframe.studies.limit_states import OVERTURNING, check_runs, listed_limits, scalar_of
 from rockframe.studies.logistic import Logistic, fit_logistic
+from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import POSITIVE, Measure, RatioLike, Unit, to_ratio, to_si
 
 _OWNER: Final = "cloud_analysis"
@@ -159,7 +159,7 @@ def cloud_analysis(
     limits: Iterable[Any] = (0.1, 0.5),
     least: Any = None,
     period: PeriodLike | None = None,
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     confidence: RatioLike = 0.95,
     seed: int = 0,
 ) -> xr.Dataset:

@@ -1,14 +1,13 @@
 """Incremental dynamic analysis: motions that are scaled until limit states are exceeded."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Final, Unpack
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
 
-from rockframe.comparison.models import check_system
 from rockframe.errors import ModelWarning, StudyError, warn
-from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import MOTION
@@ -18,12 +17,14 @@ from rockframe.simulation.friction import share_words
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import (
+    OVERTURNING,
     STATES,
     exceeds,
     labels_of_states,
     limit_states,
     states_json,
 )
+from rockframe.studies.line_axes import read_line_axes
 from rockframe.studies.lines import (
     CAPACITY,
     INTERRUPTED,
@@ -37,18 +38,24 @@ from rockframe.studies.lines import (
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import named_motions
+from rockframe.studies.sweeps.motions import MotionsLike, named_motions
+from rockframe.studies.sweeps.scenes import own_motion, scene_of
+from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
 _MOST_SCALES: Final = 100_000
+_ARGUMENTS: Final = (
+    *SweepArguments.__annotations__, "scale", "limits", "intensity", "period", "resolution",
+    "bracket_width",
+)  # fmt: skip
 _SCALES: Final = tuple(0.1 * k for k in range(1, 41))
 
 
-@takes(SweepArguments)
+@takes(SweepArguments, further="axes")
 def incremental_dynamic_analysis(
-    system: System,
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    system: System | Callable[..., System],
+    motions: MotionsLike | None = None,
     *,
     scale: Sequence[float] | np.ndarray = _SCALES,
     limits: Iterable[object] = (),
@@ -56,14 +63,15 @@ def incremental_dynamic_analysis(
     period: QuantityLike | None = None,
     resolution: RatioLike = 0.02,
     bracket_width: RatioLike = 1e-3,
+    axes: Mapping[str, Any] | None = None,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Scale motions, and find all scales between which limit states begin or cease to be exceeded.
 
     Parameters
     ----------
-    system : System
-        The scene.
+    system : System or callable
+        The scene; or a function that takes the axes by their names and returns a System.
     motions : GroundMotion, or sequence or mapping of them, optional
         Motions; the one among the parts of the system unless given.
     scale : sequence of float, optional
@@ -83,17 +91,22 @@ def incremental_dynamic_analysis(
         halved, under all motions at once; 1 leaves the scales as they are [1].
     bracket_width : float, optional
         Width of a bracket, over its upper scale [1].
+    axes : mapping of str to values, optional
+        What else varies, as for :func:`rockframe.sweep`: each combination of values is a
+        structure, with capacities of its own.
+    **more_axes : values
+        Axes whose names a keyword can have. A `width` is that of a block.
 
     Returns
     -------
     xarray.Dataset
-        The sweep over ``scale`` and ``motion``, with the intensity measure; and over
-        ``limit_state`` and ``motion``: ``capacity_scale``, the least scale found to exceed the
-        limit state, infinite if none, and a bound from above where it is the least of the scan;
-        ``capacity_resolution``; ``flip_count``; over ``flip`` too ``scale_below``,
-        ``scale_above`` [1] and ``exceeds_above``, NaN beyond the last one. Over ``limit_state``:
-        ``censored_count``, of motions that did not exceed it. The attribute ``verdict`` says it
-        in words.
+        The sweep over the axes, ``scale`` and ``motion``, with the intensity measure; and over
+        ``limit_state``, the axes and ``motion``: ``capacity_scale``, the least scale found to
+        exceed the limit state, infinite if none, and a bound from above where it is the least of
+        the scan; ``capacity_resolution``; ``flip_count``; over ``flip`` too ``scale_below``,
+        ``scale_above`` [1] and ``exceeds_above``, NaN beyond the last one. Over ``limit_state``
+        and the axes: ``censored_count``, of motions that did not exceed it. The attribute
+        ``verdict`` says it in words.
 
     Raises
     ------
@@ -130,39 +143,47 @@ def incremental_dynamic_analysis(
     >>> round(found.capacity_scale.item(), 2)
     1.13
     """
-    check_system(system, _OWNER)
+    scene = scene_of(system)
+    line_axes = read_line_axes(axes, scene, owner=_OWNER, others=_ARGUMENTS)
     states = limit_states(limits, owner=_OWNER)
     scales = read_scales(scale, owner=_OWNER, most=_MOST_SCALES)
     share = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
     measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)
-    given = system.motion if motions is None else motions
+    given = own_motion(scene) if motions is None else motions
     if given is None:
         msg = f"{_OWNER}: there is no motion to scale; give one"
         raise StudyError(msg)
-    lines = Lines(system, named_motions(given), {}, run, _OWNER)
+    lines = Lines(system, named_motions(given), line_axes.columns, run, _OWNER)
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)
 
     scan, seen, brackets = lines.followed(scales, verdicts, width=share, resolution=finest)
-    below, above, _, after = bracket_arrays(brackets, (len(states), scan.sizes[MOTION]))
-    capacity = least_exceeding(seen.first, above, after)
+    scan = line_axes.arranged(scan)
+    over = {**line_axes.sizes, MOTION: scan.sizes[MOTION]}
+    shape = (len(states), *over.values())
+    below, above, _, after = (
+        one.reshape((*shape, -1)) for one in bracket_arrays(brackets, seen.first.shape)
+    )
+    capacity = least_exceeding(seen.first.reshape(shape), above, after)
     narrow = build_dataset(
         {
             "capacity_scale": capacity,
-            "capacity_resolution": seen.resolution,
-            "flip_count": np.isfinite(below).sum(axis=2),
+            "capacity_resolution": seen.resolution.reshape(shape),
+            "flip_count": np.isfinite(below).sum(axis=-1),
             "scale_below": below,
             "scale_above": above,
             "exceeds_above": after,
         },
         {},
-        over=("limit_state", MOTION),
+        over=("limit_state", *over),
         source="scan and bisection of event-driven runs",
     )
     censored = build_dataset(
-        {"censored_count": np.isinf(capacity).sum(axis=1)}, {}, over=("limit_state",)
+        {"censored_count": np.isinf(capacity).sum(axis=-1)},
+        {},
+        over=("limit_state", *line_axes.sizes),
     )
     labels = labels_of_states(states)
     found = scan.assign(narrow.data_vars).assign(censored.data_vars).assign_coords(labels)
@@ -177,7 +198,7 @@ def incremental_dynamic_analysis(
         STATES: states_json(states),
         "resolution": finest,
         "bracket_width": share,
-        "verdict": _sentence(found),
+        "verdict": _sentence(found, line_axes.sizes),
     }
     return found
 
@@ -191,20 +212,38 @@ def _at_the_least(found: xr.Dataset) -> Array:
 def _say_what_lies_below(found: xr.Dataset) -> None:
     below = _at_the_least(found)
     if below.any():
+        lines = "motions" if below.ndim == 1 else "lines"
         warn(
-            f"{_OWNER}: the scan starts too high: {int(below.sum())} of {below.size} motions "
+            f"{_OWNER}: the scan starts too high: {int(below.sum())} of {below.size} {lines} "
             f"overturn at its least scale, {float(found[SCALE].min()):.4g}, already, and their "
             "capacities lie at or below it; give lesser scales",
             ModelWarning,
         )
 
 
-def _sentence(found: xr.Dataset) -> str:
+def verdict_of_analysis(dataset: xr.Dataset) -> str:
+    """Say under how many motions a dynamic analysis, or a part of it, overturned."""
+    capacity = dataset["capacity_scale"]
+    whole = {"limit_state", MOTION} <= set(capacity.dims) and SCALE in dataset.dims
+    if not whole or str(capacity["limit_state"][-1].item()) != OVERTURNING:
+        return cases_verdict(dataset)
+    structures = {
+        str(dim): size for dim, size in capacity.sizes.items() if dim not in ("limit_state", MOTION)
+    }
+    return _sentence(dataset, structures)
+
+
+def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
     """Tell for how many motions overturning was found, and from which scale on."""
     of_overturning = found.isel(limit_state=-1)
     capacity = of_overturning["capacity_scale"].to_numpy()
     count, some = capacity.size, np.isfinite(capacity)
-    text = f"Of {count} motions {int(some.sum())} overturned"
+    motions = found.sizes[MOTION]
+    lines = f"{motions} motion{'s' if motions > 1 else ''}"
+    if structures:
+        many = math.prod(structures.values())
+        lines = f"{count} lines, of {many} structures by {', '.join(structures)} under {lines},"
+    text = f"Of {lines} {int(some.sum())} overturned"
     below = _at_the_least(found)
     if some.any() and below.all():
         text += f", at or below {capacity[some].min():.4g} times the motion"

@@ -1,6 +1,6 @@
 """Fractile curves of motions that are scaled: response given the intensity, and the other way."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -9,7 +9,6 @@ import xarray as xr
 
 from rockframe.arguments import several
 from rockframe.errors import ComponentError, StudyError, shown
-from rockframe.motion import GroundMotion
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
@@ -19,6 +18,7 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.intensities import PeriodLike, measure_in, told_period
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
+from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import Condition, Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
@@ -37,7 +37,7 @@ def fractile_curves(
     *,
     label: str | None = None,
     period: PeriodLike | None = None,
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     fractiles: Sequence[RatioLike] = (0.16, 0.5, 0.84),
     levels: ArrayLike | None = None,
 ) -> xr.Dataset:
@@ -231,7 +231,7 @@ def _falls(
     """Give the ranges that overturn by the brackets of a dynamic analysis; None of a sweep."""
     if along != SCALE or not all(one in runs for one in ("scale_above", "exceeds_above")):
         return None
-    last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore")
+    last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore").squeeze()
     above, below, after = (
         last[name].to_numpy() for name in ("scale_above", "scale_below", "exceeds_above")
     )

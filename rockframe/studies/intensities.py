@@ -22,7 +22,12 @@ from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.studies.sweeps.case import remembered, store_of, unscaled_motion
-from rockframe.studies.sweeps.motions import SPECTRAL, motion_of_case, named_motions
+from rockframe.studies.sweeps.motions import (
+    ABBREVIATIONS,
+    SPECTRAL,
+    motion_of_case,
+    named_motions,
+)
 from rockframe.units import (
     ACCELERATION,
     PERIOD,
@@ -42,11 +47,9 @@ PeriodLike: TypeAlias = QuantityLike | tuple[Any, str] | Sequence[QuantityLike]
 RATIO: Final = "velocity_to_acceleration_ratio"
 AVERAGE: Final = "average_spectral_acceleration"
 SHORT: Final = {
-    "PGA": "peak_ground_acceleration",
-    "PGV": "peak_ground_velocity",
+    **ABBREVIATIONS,
     "PGD": "peak_ground_displacement",
     "CAV": "cumulative_absolute_velocity",
-    "SA": SPECTRAL,
     "PGV/PGA": RATIO,
     "Sa_avg": AVERAGE,
 }

@@ -14,7 +14,10 @@ from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.bodies import BODIES, RESTRAINERS
+from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
+from rockframe.results.variables.variable import TIME
 from rockframe.units import Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
@@ -22,6 +25,11 @@ OVERTURNING: Final = "overturning"
 STATES: Final = "limits_json"
 """Attribute by which a dynamic analysis keeps its limit states."""
 _SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
+_OF_SAMPLES: Final = {"residual_displacement", *(row.name for row in FORCE_SCALARS)} | {
+    row.name for row in (*BODIES, *RESTRAINERS) if row.name.startswith("peak_")
+}
+"""What a run has that was looked at along its steps, as those with histories are."""
+_AT_POINTS: Final = {row.name for row in POINT_PEAKS}
 _NEEDED: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
 _TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
 """Attributes of a sweep."""
@@ -87,8 +95,12 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
     """Read a limit state on a scalar of runs: its name, from where on, and of which point."""
     name, value, label = (*given, None, None)[:3] if len(given) in (2, 3) else ("", None, None)
     if isinstance(name, str) and name and name not in SCHEMA:
-        example = nearest(name, SCHEMA) or "; give one such as in ('peak_slip', '5 cm')"
-        msg = f"{owner}: limits: runs have no variable {name!r}{example}"
+        scalars = [row.name for row in SCHEMA.values() if TIME[0] not in row.dims]
+        near = nearest(name, scalars)
+        msg = (
+            f"{owner}: limits: no variable of runs is called {name!r}{near}; a limit state is for "
+            "example ('peak_slip', '5 cm')"
+        )
         raise ComponentError(msg)
     if not isinstance(name, str) or not name:
         msg = (
@@ -169,16 +181,12 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr.DataArray:
     """Give a scalar of runs, of one of the points, bodies or restrainers that it is of."""
     if not isinstance(cast("Any", name), str) or name not in runs:
-        near = nearest(name, [str(one) for one in runs])
-        numbers = [str(one) for one, values in runs.items() if values.dtype.kind in "fiu"]
-        msg = (
-            f"{owner}: the runs have no {shown(name)}{near}; they have {', '.join(numbers)}; a "
-            "sweep with outputs=[...] or points={...} has more"
-        )
+        msg = f"{owner}: the runs have no {shown(name)}{_instead(runs, name)}"
         raise SchemaError(msg)
     values = runs[name]
     beside = [dim for dim in values.dims if dim not in runs["status"].dims]
     labels = values[beside[0]].to_numpy().astype(str).tolist() if beside else [""]
+    label = labels[0] if not label and len(labels) == 1 else label
     if len(beside) > 1 or label not in labels:
         msg = (
             f"{owner}: {name} is of {' and '.join(map(str, beside)) or 'the whole'}; "
@@ -186,6 +194,20 @@ def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr
         )
         raise ComponentError(msg)
     return values.isel({beside[0]: labels.index(label)}, drop=True) if beside else values
+
+
+def _instead(runs: xr.Dataset, name: str) -> str:
+    """Say which sweep has a scalar; or which there are."""
+    if name in _AT_POINTS:
+        return "; a sweep has it with points={...}"
+    if name in _OF_SAMPLES:
+        return (
+            "; a sweep has it with points={...}, which names points of the body, or with "
+            "outputs=[], and then the histories of all cases, too"
+        )
+    numbers = [str(one) for one, values in runs.items() if values.dtype.kind in "fiu"]
+    near = nearest(name, numbers)
+    return f"{near}; they have {', '.join(numbers)}"
 
 
 def interrupted(runs: xr.Dataset) -> bool:

@@ -10,7 +10,6 @@ import xarray as xr
 
 from rockframe.arguments import several
 from rockframe.errors import ComponentError, StudyError, shown
-from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
@@ -26,6 +25,7 @@ from rockframe.studies.intensities import (
     told_period,
 )
 from rockframe.studies.limit_states import check_runs, scalar_of
+from rockframe.studies.sweeps.motions import MotionsLike
 
 _OWNER: Final = "compare_intensities"
 _SOURCE: Final = "least squares and logistic regression"
@@ -44,7 +44,7 @@ def compare_intensities(
     label: str | None = None,
     against: Sequence[str] | Covariates = (),
     least: Any = None,
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
 ) -> xr.Dataset:
     """Compare intensity measures by how well each tells the response.
 

@@ -10,7 +10,6 @@ import xarray as xr
 
 from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
-from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
@@ -22,7 +21,7 @@ from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import head
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis
-from rockframe.studies.sweeps.motions import named_motions
+from rockframe.studies.sweeps.motions import MotionsLike, named_motions
 from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import SweptScene, own_motion, scene_of
 from rockframe.studies.sweeps.sweep import sweep
@@ -259,7 +258,7 @@ _MOST_CASES: Final = 1_000_000_000
 @takes(SweepArguments)
 def probability_of_overturning(
     system: System | Callable[..., System],
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     *,
     spread: Mapping[str, Any],
     correlation: Mapping[tuple[str, str], RatioLike] | Array | None = None,

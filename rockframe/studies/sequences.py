@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import accumulate
 from typing import Any, Final, Unpack, cast
 
@@ -20,6 +21,7 @@ from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
 from rockframe.signals.signal import COEFFICIENTS
+from rockframe.simulation.certify.perturbations import cut
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
 from rockframe.studies.limit_states import overturns
@@ -30,6 +32,8 @@ from rockframe.units import NOT_NEGATIVE, TIME, QuantityLike, to_si
 _OWNER: Final = "earthquake_sequences"
 _SAME_STEP: Final = 1e-9
 """Relative difference up to which two time steps are the same."""
+_MOST_PARTS: Final = 64
+"""Parts of an interval, beyond which a refinement does as well."""
 NUMBER: Final = "earthquake"
 
 
@@ -48,7 +52,8 @@ def earthquake_sequences(
     system : System
         The scene.
     sequences : mapping of str to sequence of GroundMotion, or sequence of sequences
-        Earthquakes in their order, such as a main shock and its aftershocks; of one time step.
+        Earthquakes in their order, such as a main shock and its aftershocks. Where their time
+        steps differ, intervals are divided, down to a 64th; the motions stay what they are.
     pause : str or Quantity, optional
         Still ground after each of them [s].
 
@@ -63,7 +68,8 @@ def earthquake_sequences(
     Raises
     ------
     UnitsError, ComponentError
-        No motions, or motions of several time steps; `pause` has a wrong unit or none.
+        No motions, or time steps in a sequence without a common part; `pause` has a wrong
+        unit or none.
     StudyError
         As for :func:`rockframe.sweep`.
 
@@ -137,14 +143,29 @@ def _sequences(given: object) -> dict[str, list[GroundMotion]]:
     if not found:
         msg = f"{_OWNER}: found {shown(given)}; expected sequences of GroundMotions"
         raise ComponentError(msg)
-    steps = sorted({one.si.time_step for each in found.values() for one in each})
-    if not math.isclose(steps[0], steps[-1], rel_tol=_SAME_STEP):
+    return {name: _of_one_step(each) for name, each in found.items()}
+
+
+def _of_one_step(motions: list[GroundMotion]) -> list[GroundMotion]:
+    """Divide the intervals of motions, so that all have one time step; each stays as it is."""
+    steps = [one.si.time_step for one in motions]
+    least = min(steps)
+    ratios = [Fraction(step / least).limit_denominator(_MOST_PARTS) for step in steps]
+    common = math.lcm(*(one.denominator for one in ratios))  # parts of the least step
+    parts = [int(one * common) for one in ratios]
+    fits = [
+        math.isclose(step, count * least / common, rel_tol=_SAME_STEP)
+        for step, count in zip(steps, parts, strict=True)
+    ]
+    if not all(fits) or max(parts) > _MOST_PARTS:
         msg = (
-            f"{_OWNER}: the motions have time steps from {steps[0]!r} s to {steps[-1]!r} s; "
-            f"resample them, for example motion.resampled('{steps[0]!r} s')"
+            f"{_OWNER}: the motions have time steps from {least!r} s to {max(steps)!r} s, which "
+            f"have no common part; resample them, for example motion.resampled('{least!r} s')"
         )
         raise ComponentError(msg)
-    return found
+    return [
+        one if count == 1 else cut(one, count) for one, count in zip(motions, parts, strict=True)
+    ]
 
 
 def _followed(rest: float) -> Any:

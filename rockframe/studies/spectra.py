@@ -1,8 +1,8 @@
 """Spectra of rocking and of overturning: motions and blocks of all sizes."""
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any, Final, TypeAlias, Unpack
+from collections.abc import Sequence
+from typing import Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -10,7 +10,6 @@ import xarray as xr
 from rockframe.comparison.models import check_system
 from rockframe.components import Block
 from rockframe.errors import ComponentError, StudyError, collected_warnings, shown
-from rockframe.motion import GroundMotion
 from rockframe.results.dataset import build_dataset
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
@@ -18,6 +17,7 @@ from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import POWERS, Intensity, of_motions, of_study, unscaled_motions
 from rockframe.studies.limit_states import overturns
+from rockframe.studies.line_axes import over_rows
 from rockframe.studies.lines import (
     CAPACITY,
     SCALE,
@@ -32,12 +32,9 @@ from rockframe.studies.lines import (
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
-from rockframe.studies.sweeps.motions import named_motions
+from rockframe.studies.sweeps.motions import MotionsLike, named_motions
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Unit
-
-Motions: TypeAlias = GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion]
-
 
 SIZE: Final = ("slenderness", "rocking_period")
 _SLENDER: Final = Measure("a pure ratio", Unit.ONE, "4")
@@ -73,23 +70,11 @@ class BlockSizes:
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
         """Give what runs over the rows of the table the dimensions of the sizes."""
-        shape = {
-            "slenderness": len(self.slenderness),
-            "rocking_period": len(self.periods),
-        }
-        found: dict[str, xr.Variable] = {}
-        for name, one in runs.variables.items():
-            if name != CASE:
-                found[str(name)] = one.unstack({CASE: shape}) if CASE in one.dims else one
-                dims = [dim for dim in SIZE if dim in found[str(name)].dims]
-                others = [dim for dim in found[str(name)].dims if dim not in dims]
-                found[str(name)] = found[str(name)].transpose(*dims, *others)
         labels = build_dataset(
             {"slenderness": self.slenderness, "rocking_period": self.periods}, {}
         )
-        coordinates = [name for name in runs.coords if name != CASE]
-        made = xr.Dataset(found, attrs=runs.attrs).set_coords(coordinates)
-        return made.assign_coords(labels.coords)
+        sizes = {"slenderness": len(self.slenderness), "rocking_period": len(self.periods)}
+        return over_rows(runs, sizes, {str(name): labels[name].variable for name in labels.coords})
 
 
 def _by_shape_factor(system: System, block: Block) -> System:
@@ -150,7 +135,7 @@ _MOST_SCALES: Final = 100_000
 @takes(SweepArguments)
 def rocking_spectrum(
     system: System,
-    motions: Motions | None = None,
+    motions: MotionsLike | None = None,
     *,
     periods: Any,
     slenderness: Any = None,
@@ -214,7 +199,7 @@ def rocking_spectrum(
 @takes(SweepArguments)
 def overturning_spectrum(
     system: System,
-    motions: Motions | None = None,
+    motions: MotionsLike | None = None,
     *,
     periods: Any,
     slenderness: Any = None,

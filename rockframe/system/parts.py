@@ -252,6 +252,11 @@ class Parts:
         """Give the same by their slots."""
         return {slot: part for slot, part in self.filled if isinstance(part, Component)}
 
+    def standing(self) -> "Parts":
+        """Give the parts with the rigid ground on which bodies stand when no base is given."""
+        bases = {"pads", "soil", "ground"}.intersection(self.components())
+        return self if bases or self.own() else self.changed(ground=RigidGround())
+
     def own(self) -> dict[str, Component]:
         """Give the parts in slots that scenes of users' own have, by these."""
         return {

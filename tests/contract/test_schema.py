@@ -70,6 +70,7 @@ DIMENSIONS = {
     "peak_base_shear": (1, 1, -2, 0),
     "residual_rotation": (0, 0, 0, 1),
     "residual_settlement": (0, 1, 0, 0),
+    "peak_settlement": (0, 1, 0, 0),
     "kinetic_energy": (1, 2, -2, 0),
     "potential_energy": (1, 2, -2, 0),
     "elastic_energy": (1, 2, -2, 0),

@@ -200,3 +200,55 @@ def test_what_cannot_be_joined(runs):
     ):
         with pytest.raises(SchemaError, match=words):
             rf.concat(given, **options)
+
+
+CABINET = rf.System(rf.Block(width="0.5 m", height="2 m", mass="300 kg"))
+SOME = {"free_vibration": "2 s", "scale": [0.5, 1.0, 2.0]}
+
+
+def sweep_of(widths, *pulses):
+    """Sweep over some widths, under pulses of some frequencies."""
+    motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("3 m/s^2", f"{f} Hz") for f in pulses or (1,)}
+    return rf.sweep(CABINET, motions, width=(widths, "m"), **SOME)
+
+
+@pytest.mark.parametrize("dim", ["width", "motion"])
+def test_sweeps_that_differ_along_one_dimension_are_one_sweep(dim, tmp_path):
+    if dim == "width":
+        parts = [sweep_of([0.4, 0.5]), sweep_of([0.6])]
+        whole = sweep_of([0.4, 0.5, 0.6])
+    else:
+        parts = [sweep_of([0.5], 1), sweep_of([0.5], 0.5, 2)]
+        whole = sweep_of([0.5], 1, 0.5, 2)
+    joined = rf.concat(parts, dim)
+    assert joined.rockframe.verdict == whole.verdict
+    assert joined.attrs["study_sha256"] not in [one.attrs["study_sha256"] for one in parts]
+    for name in ("motion_names", "motions_json", "axes_json", "case_count", "system_json"):
+        assert joined.attrs[name] == whole.attrs[name]
+    last = {"width": 0.6} if dim == "width" else {"motion": "2 Hz"}
+    case = rf.case(joined, scale=2.0, **last).simulate(outputs=None)
+    assert case.peak_rotation.item() == joined.peak_rotation.sel(scale=2.0, **last).item()
+    pooled = ["width"] if dim == "width" else []
+    found, same = (rf.fragility(one, "PGA", pooled=pooled) for one in (joined, whole))
+    np.testing.assert_array_equal(found.median_intensity, same.median_intensity)
+    joined.to_netcdf(tmp_path / "joined.nc")
+    with xr.open_dataset(tmp_path / "joined.nc") as again:
+        assert again.rockframe.verdict == whole.verdict
+
+
+def test_sweeps_that_differ_otherwise_are_none():
+    one = sweep_of([0.4, 0.5])
+    pulse = {"1 Hz": rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")}
+    worn = rf.sweep(CABINET, pulse, width=["0.4 m", "0.5 m"], restitution=[0.7], **SOME)
+    worn = worn.isel(restitution=0, drop=True)
+    longer = rf.sweep(CABINET, pulse, width=["0.6 m"], **{**SOME, "free_vibration": "1 s"})
+    others = {
+        "width": [sweep_of([0.5, 0.6]), longer],
+        "base": [worn],
+    }  # fmt: skip
+    for dim, several in others.items():
+        for other in several:
+            joined = rf.concat([one, other], dim)
+            assert "case_count" not in joined.attrs
+            with pytest.raises(SchemaError, match="differ along one axis"):
+                rf.case(joined, width=0.4, scale=1.0)

@@ -188,6 +188,12 @@ FORCE_SCALARS: Final = (
         "how much lower than at rest the middle of the base stands at the end of the run",
     ),
     Variable(
+        "peak_settlement",
+        (),
+        Unit.METRE,
+        "how much lower than at rest the middle of the base stands at most, up to overturning",
+    ),
+    Variable(
         "would_slide",
         (),
         None,

@@ -3,14 +3,14 @@
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, cast
+from itertools import repeat
+from typing import Any, Final, TypeVar, cast
 
 import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_names, several
 from rockframe.errors import ComponentError, SchemaError, StudyError, UnitsError, shown
-from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
@@ -47,7 +47,10 @@ from rockframe.studies.limit_states import (
 )
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.axes import Changes, free_values
+from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.units import RatioLike
+
+Values = TypeVar("Values", xr.DataArray, xr.Dataset)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +67,7 @@ class Structures:
         """Number of structures along each dimension."""
         return tuple(int(group.max()) + 1 for group in self.groups.values())
 
-    def parts(self, values: xr.DataArray) -> Iterator[xr.DataArray]:
+    def parts(self, values: Values) -> Iterator[Values]:
         """Give what belongs to each structure, the last dimension fastest."""
         places = [
             [np.flatnonzero(group == k) for k in range(size)]
@@ -191,7 +194,7 @@ def fragility(
     *,
     limits: Iterable[object] | None = None,
     period: PeriodLike | None = None,
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     pooled: Iterable[str] = (),
     trials: str = "runs",
     dispersion: str = "each",
@@ -336,13 +339,14 @@ def fragility(
     parts = zip(*(structures.parts(one) for one in (*verdicts, *measures)), strict=True)
     found: list[StructureTrials] = []
     fits: list[Fit] | None = [] if common else None
-    for part in parts:
+    analyses = structures.parts(runs) if of_capacities else repeat(runs)
+    for part, analysis in zip(parts, analyses, strict=False):
         those, along = part[: len(states)], part[len(states) :]
         if fits is not None:
             fits += _ordered(those, along[0], states, means.bands)
         for state, verdict in zip(states, those, strict=True):
             if of_capacities:
-                found.append(_of_capacities(runs, state, verdict, along))
+                found.append(_of_capacities(analysis, state, verdict, along))
             else:
                 made, count = trials_of_runs(verdict, along, by_motion=by_motion)
                 left_out = verdict.size - int(made.weight.sum())
@@ -359,7 +363,8 @@ def fragility(
     dataset = dataset.assign_coords({**structures.coordinates, **labels_of_states(states)})
     if of_capacities:
         below = np.array([int((~one.trials.has_lower).sum()) for one in found])
-        added = build_dataset({"below_scan_count": below}, {}, over=LIMIT_STATE)
+        below = below.reshape((*over.values(), len(states)))
+        added = build_dataset({"below_scan_count": below}, {}, over=(*over, *LIMIT_STATE))
         dataset = dataset.assign(added.data_vars)
     dataset.attrs["verdict"] = f"{sentences(dataset)}{_sliding(runs, of_capacities=of_capacities)}"
     # a system that the sweep changed is not that of the runs
@@ -443,12 +448,9 @@ def _of_capacities(
         msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
         raise SchemaError(msg)
     one = analysis.sel(limit_state=state.name) if "limit_state" in analysis.dims else analysis
-    known = verdict.notnull()
-    if MOTION not in analysis.dims:
-        one, known = one.expand_dims(MOTION), known.expand_dims(MOTION)
-    trials = trials_of_capacities(one, known, measures)
+    trials, lines = trials_of_capacities(one, verdict.notnull(), measures)
     count = len(trials.weight)
-    return StructureTrials(trials, None, one.sizes[MOTION] - count, count)
+    return StructureTrials(trials, None, lines - count, count)
 
 
 def _ordered(

@@ -164,7 +164,7 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
         log_median, spread = 0.5 * sum(ends), 0.0
     else:
         (log_median, log_spread), covariance = _log_parameters(each.fit)
-        spread, log_errors = math.exp(log_spread), np.sqrt(np.diag(covariance))
+        spread, log_errors = _exp(log_spread), np.sqrt(np.diag(covariance))
         errors = log_errors * np.array([1.0, spread])
     if each.edge is not None:
         bounds = _extremes(each.edge)
@@ -174,19 +174,25 @@ def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
         middle = np.array([log_median, math.log(spread) + _lacking(clusters)])
         reach: Array = means.deviations(clusters) * log_errors
         bounds = middle[:, None] + reach[:, None] * np.array([-1.0, 1.0])
-        bounds[1] = np.exp(bounds[1])
+        bounds[1] = [_exp(one) for one in bounds[1]]
     return {
-        "median_intensity": math.exp(log_median),
-        "median_intensity_lower_bound": float(np.exp(bounds[0, 0])),
-        "median_intensity_upper_bound": float(np.exp(bounds[0, 1])),
-        "separation_lower_intensity": math.exp(ends[0]),
-        "separation_upper_intensity": math.exp(ends[1]),
+        "median_intensity": _exp(log_median),
+        "median_intensity_lower_bound": _exp(bounds[0, 0]),
+        "median_intensity_upper_bound": _exp(bounds[0, 1]),
+        "separation_lower_intensity": _exp(ends[0]),
+        "separation_upper_intensity": _exp(ends[1]),
         "log_median_error": float(errors[0]),
         "dispersion": spread,
         "dispersion_lower_bound": float(bounds[1, 0]),
         "dispersion_upper_bound": float(bounds[1, 1]),
         "dispersion_error": float(errors[1]),
     }
+
+
+def _exp(log: float) -> float:
+    """Give what a logarithm is of: infinite where the intensity hardly matters."""
+    with np.errstate(over="ignore"):
+        return float(np.exp(log))
 
 
 def _log_parameters(fit: Fit) -> tuple[Array, Array]:

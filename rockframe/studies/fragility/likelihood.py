@@ -8,7 +8,7 @@ log-concave in the coefficients, so that there is one maximum, or none.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Any, Final, cast
@@ -440,33 +440,51 @@ def trials_of_runs(
 
 def trials_of_capacities(
     analysis: xr.Dataset, known: xr.DataArray, measures: Sequence[xr.DataArray]
-) -> Trials:
-    """Give the trials of a dynamic analysis: one for each motion, from its first exceedance."""
+) -> tuple[Trials, int]:
+    """Give the trials of a dynamic analysis, one for each line, from its first exceedance.
+
+    A line is a motion, and a value of all else that is taken for one population. Their number is
+    given, too.
+    """
+    sizes = {str(dim): size for dim, size in known.sizes.items() if dim != SCALE}
     scales = analysis[SCALE].to_numpy()
-    below, above = first_brackets(analysis, known)
+    below, above = _first_brackets(analysis, known, sizes)
     has_lower, has_upper = below > 0.0, np.isfinite(above)
-    ends: list[Array] = []
-    for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1])):
-        columns = [_at_scales(measure, scale) for measure in measures]
-        ends.append(np.log(np.column_stack(columns)))
-    lower, upper = ends
+    rows = [_in_lines(measure, sizes, SCALE) for measure in measures]
+    lower, upper = (
+        np.log(np.column_stack([_at_scales(row, scales, scale) for row in rows]))
+        for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
+    )
     told = has_lower | has_upper
     weight = np.ones(int(told.sum()))
-    return Trials(lower[told], upper[told], has_lower[told], has_upper[told], weight, None)
+    found = Trials(lower[told], upper[told], has_lower[told], has_upper[told], weight, None)
+    return found, len(told)
 
 
-def first_brackets(analysis: xr.Dataset, known: xr.DataArray) -> tuple[Array, Array]:
-    """Give for each motion the scales between which the limit state is first exceeded."""
-    capacity = analysis["capacity_scale"].to_numpy()
-    above = analysis["scale_above"].transpose(MOTION, "flip").to_numpy()
-    below = analysis["scale_below"].transpose(MOTION, "flip").to_numpy()
-    seen = known.transpose(MOTION, SCALE).to_numpy()
+def _first_brackets(
+    analysis: xr.Dataset, known: xr.DataArray, sizes: Mapping[str, int]
+) -> tuple[Array, Array]:
+    """Give for each line the scales between which the limit state is first exceeded."""
+    capacity = _in_lines(analysis["capacity_scale"], sizes)[:, 0]
+    above, below = (
+        _in_lines(analysis[f"scale_{end}"], sizes, "flip") for end in ("above", "below")
+    )
+    seen = _in_lines(known, sizes, SCALE)
     largest = np.where(seen, analysis[SCALE].to_numpy(), 0.0).max(axis=1)
     lower = np.zeros(len(capacity))
     for k, least in enumerate(capacity):
         (at,) = np.nonzero(above[k] == least)
         lower[k] = below[k, at[0]] if len(at) else 0.0 if np.isfinite(least) else largest[k]
     return lower, np.where(np.isfinite(capacity), capacity, np.inf)
+
+
+def _in_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -> Generic:
+    """Lay values out in a row for each line, along a dimension; of one value each without it."""
+    lacking = {dim: size for dim, size in sizes.items() if dim not in values.dims}
+    own = [along] if along in values.dims else []
+    laid = values.variable.set_dims({**lacking, **values.sizes}).transpose(*sizes, *own)
+    count = math.prod(sizes.values())
+    return laid.to_numpy().reshape((count, values.sizes[along] if own else 1))
 
 
 def flat(first: xr.DataArray, others: Sequence[xr.DataArray]) -> tuple[Array, Array]:
@@ -486,12 +504,10 @@ def motion_numbers(runs: xr.DataArray) -> Generic:
     return np.unique(names.astype(str), return_inverse=True)[1]
 
 
-def _at_scales(measure: xr.DataArray, scales: Array) -> Array:
-    """Give a measure of each motion at its scale; measures are powers of the scale."""
-    if SCALE not in measure.dims:
-        return np.broadcast_to(measure.to_numpy(), scales.shape)
-    least = measure.isel({SCALE: 0}), measure.isel({SCALE: -1})
-    near, far = (one.to_numpy() for one in least)
-    ends = measure[SCALE].to_numpy()[[0, -1]]
-    power = np.log(far / near) / np.log(ends[1] / ends[0])
-    return near * (scales / ends[0]) ** power
+def _at_scales(measure: Generic, known: Array, scales: Array) -> Array:
+    """Give a measure of each line at its scale; measures are powers of the scale."""
+    near, far = measure[:, 0], measure[:, -1]
+    if measure.shape[1] == 1:
+        return near
+    power = np.log(far / near) / np.log(known[-1] / known[0])
+    return near * (scales / known[0]) ** power

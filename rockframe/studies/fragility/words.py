@@ -46,7 +46,10 @@ def bounded(bands: Bands, independent: int) -> bool:
 
 
 def sentences(fragility: xr.Dataset) -> str:
-    """Tell what was fitted to the last limit state, what was left out, and what bounds are."""
+    """Tell what was fitted to the last limit state, what was left out, and what bounds are.
+
+    Where nothing fits that one, as where no run overturns, also of the last one that a fit is of.
+    """
     last = fragility.isel({dim: -1 for dim in LIMIT_STATE if dim in fragility.dims})
     status = last["fragility_status"].to_numpy().ravel()
     fitted = status == FragilityStatus.FITTED
@@ -61,9 +64,31 @@ def sentences(fragility: xr.Dataset) -> str:
             bands, last.attrs["confidence"], independent, trials,
             kind="trials" if kind == "trials" else "motions", measures=len(measures_of(last)),
         )  # fmt: skip
+    else:
+        said += _of_another(fragility)
     if last.attrs.get("dispersions") == "common":
         said.append("One dispersion is common to all limit states.")
     return " ".join([*said, *_below_scan(last), *_left_out(last)])
+
+
+def verdict_of_fragility(dataset: xr.Dataset) -> str:
+    """Say what was fitted, of a part of a fragility what was fitted of that; else nothing new."""
+    said = str(dataset.attrs.get("verdict", ""))
+    if "independent_count" not in dataset:  # as of a cloud
+        return said
+    own = sentences(dataset)
+    return said if said.startswith(own) else own
+
+
+def _of_another(fragility: xr.Dataset) -> list[str]:
+    """Tell of the last limit state, besides the last of all, of which intensities tell."""
+    for number in reversed(range(fragility.sizes.get(*LIMIT_STATE, 1) - 1)):
+        one = fragility.isel({LIMIT_STATE[0]: number})
+        status = one["fragility_status"].to_numpy().ravel()
+        fitted = status == FragilityStatus.FITTED
+        if fitted.any() or (status == FragilityStatus.SEPARATED).any():
+            return [_fit(one, status, fitted)]
+    return []
 
 
 def measures_of(fragility: xr.Dataset) -> list[str]:
@@ -141,7 +166,7 @@ def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
     enough = last["independent_count"].to_numpy().ravel()[fitted] >= min(COVERAGE[Bands.JACKKNIFE])
     count = int((lacking & enough).sum())
     if count:
-        of = "" if len(fitted) == 1 else f" of {count} structures"
+        of = "" if len(fitted) == 1 else f" of {count} structure{'s' if count > 1 else ''}"
         yield (
             f"There are no bounds{of}: without one of the motions there is no fit, for hardly any "
             "run exceeds below one that does not."

@@ -21,7 +21,12 @@ from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
-from rockframe.studies.sweeps.motions import motion_number, motion_of_case, named_motions
+from rockframe.studies.sweeps.motions import (
+    ABBREVIATIONS,
+    motion_number,
+    motion_of_case,
+    named_motions,
+)
 from rockframe.studies.sweeps.runs import AGAIN
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
@@ -36,6 +41,8 @@ from rockframe.system.assembly import Assembly
 from rockframe.units import Measure, Unit, to_ratio, to_si
 
 _OWNER: Final = "case"
+_SHOWN: Final = 6
+"""Values that a message lists."""
 _REMEMBERED: Final = 16
 """Sweeps of this process whose functions and motions are kept at hand."""
 _studies: Final[OrderedDict[str, Study]] = OrderedDict()
@@ -132,7 +139,10 @@ def case(
         dataset, kept = open_study(runs), Store.at(Path(runs))
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if not {"axes_json", "motions_json", "run_json", "study_sha256"} <= set(attributes):
-        msg = f"{_OWNER}: found a dataset that is no sweep; expected the result of rf.sweep"
+        msg = (
+            f"{_OWNER}: found a dataset that is no sweep; expected the result of rf.sweep, or of "
+            "rf.concat where sweeps differ along one axis, or in their motions, alone"
+        )
         raise SchemaError(msg)
     known = remembered(attributes)
     place = _place(dataset, labels)
@@ -174,6 +184,7 @@ def remember(study: Study) -> None:
 def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
     """Find where the case stands along each dimension."""
     dims = [str(dim) for dim in dataset["status"].dims]
+    labels = {ABBREVIATIONS.get(name, name): value for name, value in labels.items()}
     fixed = [str(name) for name in dataset.coords if not dataset[name].dims]
     unknown = [name for name in labels if name not in (*dims, *fixed)]
     lacking = [name for name in dims if name not in labels and dataset.sizes[name] > 1]
@@ -201,6 +212,7 @@ def _found(labels: xr.DataArray, name: str, wanted: Any) -> int:
     values = np.atleast_1d(labels.to_numpy())
     if name == MOTION:
         return motion_number(wanted, values.tolist(), owner=_OWNER)
+    near = ""
     if values.dtype.kind == "f":
         measure = Measure("a value", Unit(labels.attrs["units"]), f"{values[0]:g}")
         number = (
@@ -215,12 +227,14 @@ def _found(labels: xr.DataArray, name: str, wanted: Any) -> int:
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
             return nearest
+        near = f"; the nearest is {values[nearest]}"
     else:
         places = np.flatnonzero(values == wanted)
         if len(places):
             return int(places[0])
-    few = ", ".join(str(one) for one in values[:6].tolist())
-    msg = f"{_OWNER}: {name} has no {shown(wanted)}; it has {few}{', ...' * (len(values) > 6)}"
+    few = ", ".join(str(one) for one in values[:_SHOWN].tolist())
+    more = f", ...{near}" if len(values) > _SHOWN else ""
+    msg = f"{_OWNER}: {name} has no {shown(wanted)}; it has {few}{more}"
     raise StudyError(msg)
 
 

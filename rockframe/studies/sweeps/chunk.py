@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -49,6 +49,25 @@ class CaseResults:
     histories: dict[str, Generic]  # the same; NaN beyond a run's end too
     message: Generic  # places in `texts`
     texts: tuple[str, ...]  # what is said of cases, each once; the first says nothing
+
+
+def put_into(
+    columns: dict[str, Generic], count: int, name: str, where: Any, values: Generic | float
+) -> None:
+    """Put what some of a number of cases have, or one, into a column.
+
+    Cases may have unlike numbers of bodies or restrainers: a column has room for the most, with
+    NaN where a case has fewer.
+    """
+    beside = np.shape(values)[np.ndim(where) if not isinstance(where, slice) else 1 :]
+    there = columns[name].shape[1:] if name in columns else beside
+    room = tuple(map(max, there, beside))
+    if name not in columns or there != room:
+        wider = np.full((count, *room), np.nan)
+        if name in columns:
+            wider[(slice(None), *map(slice, there))] = columns[name]
+        columns[name] = wider
+    columns[name][(where, *map(slice, beside))] = values
 
 
 def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> CaseResults | None:
@@ -156,11 +175,10 @@ class _Collector:
             self._put_scalars(case, {REPEATED: 1.0, VERDICT_CHANGED: float(changed)})
 
     def _put_scalars(self, case: int | Places, values: Mapping[str, Generic | float]) -> None:
-        columns, of_case = self._scalars, np.ndim(case)
         for name, value in values.items():
-            if name not in columns:
-                self._of(columns, name, np.shape(value)[of_case:])
-            columns[name][case] = value
+            # what is the same in all of several cases has no row for each
+            row = value if np.ndim(value) else np.broadcast_to(value, np.shape(case))
+            put_into(self._scalars, self._count, name, case, row)
 
     def _put_histories(self, case: int, values: dict[str, Generic], kept: Histories) -> None:
         time = values[TIME[0]]
@@ -170,9 +188,9 @@ class _Collector:
         names = values if kept.names is None else kept.names
         for name in names:
             if name != TIME[0] and name in values and SCHEMA[name].dims in (TIME, POINT_TIME):
-                shape = (*values[name].shape[:-1], kept.count)
-                row = self._of(self._histories, name, shape)[case]
+                row = np.full((*values[name].shape[:-1], kept.count), np.nan)
                 row[..., :count] = values[name][..., :count]
+                put_into(self._histories, self._count, name, case, row)
 
     def _refuse(self, case: int, problem: Exception) -> None:
         """Note why a case has no run."""
@@ -192,8 +210,3 @@ class _Collector:
 
     def _say(self, case: int | Places, text: str) -> None:
         self._message[case] = self._texts.setdefault(text, len(self._texts))
-
-    def _of(self, columns: dict[str, Generic], name: str, shape: tuple[int, ...]) -> Generic:
-        if name not in columns:
-            columns[name] = np.full((self._count, *shape), np.nan)
-        return columns[name]

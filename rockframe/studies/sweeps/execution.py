@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import (
     FIRST_COMPLETED,
+    BrokenExecutor,
     CancelledError,
     Executor,
     Future,
@@ -195,7 +196,7 @@ def run_chunks(
                     if chunk is _END:
                         some_left = False
                     else:
-                        going[pool.submit(run, job_of(chunk))] = chunk
+                        going[_submitted(pool, run, job_of(chunk))] = chunk
                 if going:
                     done, _ = wait(going, timeout=_GLANCE, return_when=FIRST_COMPLETED)
                     _take_all(done, going, take)
@@ -216,6 +217,23 @@ def run_chunks(
                 one.cancel()
 
 
+def _submitted(
+    pool: Executor, run: Callable[..., CaseResults | None], job: SweepJob
+) -> Future[CaseResults | None]:
+    """Hand a job out, also to a pool whose workers may have died meanwhile."""
+    try:
+        return pool.submit(run, job)
+    except BrokenExecutor as problem:
+        raise _not_run(problem) from problem
+
+
+def _not_run(problem: Exception) -> StudyError:
+    return StudyError(
+        f"the executor could not run a chunk: {type(problem).__name__}: {problem}; with a process "
+        "pool everything in the scene must be importable, and a worker must not have died"
+    )
+
+
 def _take_all(
     done: Iterable[Future[CaseResults | None]],
     going: dict[Future[CaseResults | None], Chunk],
@@ -229,12 +247,7 @@ def _take_all(
         except RockframeError:
             raise
         except Exception as problem:
-            msg = (
-                f"the executor could not run a chunk: {type(problem).__name__}: {problem}; with a "
-                "process pool everything in the scene must be importable, and a worker must not "
-                "have died"
-            )
-            raise StudyError(msg) from problem
+            raise _not_run(problem) from problem
         chunk = going.pop(one)
         if rows is not None:
             take(chunk, rows)

@@ -13,7 +13,7 @@ from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MOTION
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import Grid
-from rockframe.studies.sweeps.chunk import CaseResults
+from rockframe.studies.sweeps.chunk import CaseResults, put_into
 from rockframe.studies.sweeps.execution import Chunk
 from rockframe.studies.sweeps.identity import difference
 from rockframe.studies.sweeps.scenes import SystemScene
@@ -159,9 +159,7 @@ class _Rows:
             (self._scalars, rows.scalars), (self._histories, rows.histories)
         ):  # fmt: skip
             for name, values in given.items():
-                if name not in kept:
-                    kept[name] = np.full((self._count, *values.shape[1:]), np.nan)
-                kept[name][here] = values[which]
+                put_into(kept, self._count, name, here, values[which])
 
     def results(self) -> CaseResults:
         """Give them all."""

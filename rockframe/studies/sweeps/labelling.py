@@ -13,14 +13,14 @@ from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint, point_labels
 from rockframe.results.schema import SCHEMA
-from rockframe.results.variables.bodies import RESTRAINER
+from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import Axis, Grid
-from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, Driver
+from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, Driver, put_into
 from rockframe.studies.sweeps.runs import SCREEN
 from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
 from rockframe.studies.sweeps.study import Histories, Study
@@ -37,7 +37,6 @@ SIDE_BY_SIDE: Final = (
     "or ground need a closer look"
 )
 """How cases were run."""
-_LINK_NAMES: Final = "restrainer_names"
 """Attribute with the names of restrainers, as those of a run's coordinate."""
 
 
@@ -66,13 +65,13 @@ def sweep_labels(study: Study) -> Labels:
         "motion_names": json.dumps(list(study.motions)),
         "study_sha256": study.digest,
     }
+    if names := study.restrainers:
+        attributes["restrainer_names"] = json.dumps(names)
     if study.period is not None:
         attributes["spectral_period"] = study.period
     if isinstance(scene, SystemScene):
         attributes["model"] = scene.assembly.setting.model
         attributes["system_json"] = scene.assembly.json
-        if names := scene.assembly.setting.link_names:
-            attributes[_LINK_NAMES] = json.dumps(list(names))
     elif isinstance(scene, FunctionScene):
         attributes["function"] = scene.name
     return Labels(study.grid, tuple(study.motions), study.histories, arguments.points, attributes)
@@ -144,10 +143,7 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
 def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
     """Add the axes, and what is said of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
-    links = json.loads(str(labels.attributes.get(_LINK_NAMES, "[]")))
-    if dataset.sizes.get(RESTRAINER[0]) == len(links):
-        named = (RESTRAINER, np.array(links, dtype=object), SCHEMA[RESTRAINER[0]].attributes())
-        dataset = dataset.assign_coords({RESTRAINER[0]: named})
+    dataset = dataset.assign_coords(_of_bodies(labels, dataset.sizes))
     for name in dataset.coords:
         # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
         dataset[name].encoding["_FillValue"] = None
@@ -171,9 +167,7 @@ def _joined(count: int, found: Iterable[tuple[range, CaseResults]]) -> CaseResul
         message[here] = np.array([texts.get(text, 0) for text in rows.texts])[rows.message]
         for kept, given in ((scalars, rows.scalars), (histories, rows.histories)):
             for name, values in given.items():
-                if name not in kept:
-                    kept[name] = np.full((count, *values.shape[1:]), np.nan)
-                kept[name][here] = values
+                put_into(kept, count, name, here, values)
     few, message = summed_up(list(texts), message)
     return CaseResults(status, scalars, histories, message, few)
 
@@ -192,6 +186,19 @@ def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
         names = np.array(labels.motions, dtype=object)[grid.motion_column]
         found[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
     return found
+
+
+def _of_bodies(labels: Labels, sizes: Mapping[Any, int]) -> Mapping[Any, xr.DataArray]:
+    """Give the numbers of bodies, and the names of restrainers, that results are of."""
+    found: dict[str, Any] = {}
+    if BODY[0] in sizes:
+        found[BODY[0]] = 1 + np.arange(sizes[BODY[0]])
+    if RESTRAINER[0] in sizes:
+        count = sizes[RESTRAINER[0]]
+        names = json.loads(str(labels.attributes.get("restrainer_names", "[]")))
+        numbers = [str(k + 1) for k in range(count)]
+        found[RESTRAINER[0]] = np.array(names if len(names) == count else numbers, dtype=object)
+    return build_dataset(found, {}).coords
 
 
 def _labels(values: Generic) -> Generic:

@@ -106,7 +106,8 @@ class _Column(BackendArray):
             if self._kept.has(chunk):
                 values = _values(_rows(self._kept, chunk), self._name)
                 if values is not None:
-                    found[places] = values[numbers[places] - first]
+                    beside = map(slice, values.shape[1:])
+                    found[(places, *beside)] = values[numbers[places] - first]
         return found
 
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, cast
+from typing import Any, Final, TypeAlias, cast
 
 import numpy as np
 
 from rockframe.arguments import by_words
 from rockframe.errors import ComponentError, StudyError, shown
-from rockframe.motion import GroundMotion
+from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.motion.description import shown_name
 from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps.axes import OWNER
@@ -20,6 +20,11 @@ OF_THE_SCENE: Final = "of the scene"
 """Name of motions that a function puts into its systems."""
 _FEW: Final = 6
 """Names that a message lists."""
+
+
+Motions: TypeAlias = GroundMotion | HorizontalPair
+MotionsLike: TypeAlias = Motions | Mapping[str, Motions] | Sequence[Motions]
+"""Motions of a study; a pair of components is two motions."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +44,14 @@ TARGETS: Final = {
     SPECTRAL: MotionAxis("spectral_acceleration", ACCELERATION),
 }
 """Axes that change the motion, by their names."""
+
+
+ABBREVIATIONS: Final = {
+    "PGA": "peak_ground_acceleration",
+    "PGV": "peak_ground_velocity",
+    "SA": SPECTRAL,
+}
+"""Of those that are measures of intensity."""
 
 
 def target_words(name: str) -> str:
@@ -64,10 +77,14 @@ def named_motions(given: object) -> dict[str, GroundMotion]:
     named: dict[str, Any]
     if isinstance(given, GroundMotion):
         return {given.name: given}
+    if isinstance(given, HorizontalPair):
+        given = [given]
     if isinstance(given, Mapping):
-        named = by_words(cast("Mapping[Any, Any]", given), owner=OWNER)
+        named = _each_component(by_words(cast("Mapping[Any, Any]", given), owner=OWNER))
     elif isinstance(given, Iterable) and not isinstance(given, str):
-        named = _distinct_names(list(cast("Iterable[Any]", given)))
+        several = list(cast("Iterable[Any]", given))
+        pairs = (one.components if isinstance(one, HorizontalPair) else (one,) for one in several)
+        named = _distinct_names([motion for pair in pairs for motion in pair])
     else:
         named = {"": given}
     wrong = [one for one in named.values() if not isinstance(one, GroundMotion)]
@@ -76,6 +93,19 @@ def named_motions(given: object) -> dict[str, GroundMotion]:
         msg = f"{OWNER}: motions must be a GroundMotion, or several, got {found}"
         raise ComponentError(msg)
     return named
+
+
+def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
+    """Give motions by their names, of a pair each component by its own beside that of the pair."""
+    found: dict[str, Any] = {}
+    for name, one in named.items():
+        if not isinstance(one, HorizontalPair):
+            found[name] = one
+            continue
+        told = [str(motion.metadata.get("component", "")) for motion in one.components]
+        words = told if all(told) and len(set(told)) == len(told) else ["first", "second"]
+        found |= {f"{name} {word}": each for word, each in zip(words, one.components, strict=True)}
+    return found
 
 
 def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:

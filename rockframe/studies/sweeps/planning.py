@@ -45,7 +45,13 @@ from rockframe.studies.sweeps.motions import (
     named_motions,
 )
 from rockframe.studies.sweeps.runs import FIRST, SCREEN
-from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, own_motion, scene_of
+from rockframe.studies.sweeps.scenes import (
+    FunctionScene,
+    SweptScene,
+    SystemScene,
+    own_motion,
+    scene_of,
+)
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
@@ -229,6 +235,8 @@ def plan_study(
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name} {length}" for name, length in lengths.items())
         faults.append(f"the columns of cases differ in length: {told}")
+    if isinstance(made, SystemScene):
+        made = made.with_parts_of([*rows, *grid_axes])
     seconds = tried(lambda: _period(period, [*rows, *grid_axes]), None)
     if arguments is None or faults:
         raise StudyError(*faults)

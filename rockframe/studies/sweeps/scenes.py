@@ -26,7 +26,7 @@ from rockframe.studies.sweeps.axes import (
     words_of,
 )
 from rockframe.studies.sweeps.identity import name_of
-from rockframe.studies.sweeps.motions import TARGETS, target_words
+from rockframe.studies.sweeps.motions import ABBREVIATIONS, TARGETS, target_words
 from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.links import link_labels
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
@@ -90,6 +90,7 @@ class SystemScene:
 
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names the motion's scale, an option, or a parameter of a part."""
+        name = ABBREVIATIONS.get(name, name)
         if name in TARGETS:
             return _of_motion(name, given)
         if name in STARTS:
@@ -97,11 +98,8 @@ class SystemScene:
         kind, _, parameter = name.rpartition(".")
         if parameter in _OPTIONS and kind in ("", _SYSTEM):
             return _of_option(name, parameter, given)
-        found = [
-            (slot, part, part.declared()[parameter])
-            for slot, part in self.assembly.parts.components().items()
-            if parameter in part.declared() and kind in ("", *_names(part), self._label(part))
-        ]
+        found = self._having(parameter, kind, self.assembly.parts.components())
+        found = found or self._having(parameter, kind, self._parts())
         if len(found) != 1:
             raise StudyError(self._not_one(name, parameter, [part for _, part, _ in found]))
         ((slot, part, declared),) = found
@@ -126,7 +124,7 @@ class SystemScene:
             if what in seen:
                 found.append(f"{seen[what]!r} and {axis.name!r} are the same parameter")
             seen[what] = axis.name
-        for slot, part in self.assembly.parts.components().items():
+        for slot, part in self._parts().items():
             given = {
                 parameter: name for (_, place, parameter), name in seen.items() if place == slot
             }
@@ -136,10 +134,24 @@ class SystemScene:
                 if len(heads) > 1:
                     names = " and ".join(repr(given[name]) for name in ways)
                     found.append(f"axes {names} stand for one another; give one of them")
+            if twice := part.too_many(given):
+                names = " and ".join(repr(given[name]) for name in twice)
+                found.append(f"axes {names} of {type(part).__name__} determine its size twice")
             behind = part.left_behind([*given])
             if behind:
                 found.append(_left_behind(part, behind, given))
         return found
+
+    def with_parts_of(self, axes: Iterable[Axis]) -> "SystemScene":
+        """Give the scene with the rigid ground as a part, where axes name its parameters."""
+        parts = self.assembly.parts
+        if all(axis.slot in ("", *parts.components()) for axis in axes):
+            return self
+        return SystemScene(assembly_of(parts.standing(), self.assembly.options))
+
+    def _parts(self) -> dict[str, Component]:
+        """Give the parts whose parameters axes may name, by their slots."""
+        return self.assembly.parts.standing().components()
 
     def assembled(self, values: Values) -> Assembly:
         """Give the system with the values of a case in the place of its own."""
@@ -161,6 +173,16 @@ class SystemScene:
             warn(caution, ModelWarning)
         return found
 
+    def _having(
+        self, parameter: str, kind: str, parts: Mapping[str, Component]
+    ) -> list[tuple[str, Component, Declared[Any, Any]]]:
+        """Give the parts that have a parameter, with their slots and its declaration."""
+        return [
+            (slot, part, part.varied()[parameter])
+            for slot, part in parts.items()
+            if parameter in part.varied() and kind in ("", *_names(part), self._label(part))
+        ]
+
     def _label(self, part: Component) -> str | None:
         """Give the name that results call a link by; None of other parts."""
         links = self.assembly.parts.links
@@ -180,7 +202,7 @@ class SystemScene:
                 f"axes={{...}}: {ways}"
             )
         known = [*TARGETS, *_OPTIONS, *STARTS]
-        known += [one for part in self.assembly.parts.structural() for one in part.declared()]
+        known += [one for part in self._parts().values() for one in part.varied()]
         listed = ", ".join(dict.fromkeys(known))
         question = meant(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"
@@ -197,6 +219,7 @@ class FunctionScene:
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names an argument, or else the motion's scale."""
         arguments = self._arguments()
+        name = name if name in arguments else ABBREVIATIONS.get(name, name)
         if name in TARGETS and name not in arguments:
             return _of_motion(name, given)
         if name in STARTS and name not in arguments:

@@ -265,7 +265,9 @@ class Store:
         found: dict[str, tuple[int, ...]] = {}
         for file in files:
             for name, shape in read_shapes(file).items():
-                found[name.removeprefix(_SCALAR).removeprefix(_HISTORY)] = shape[1:]
+                plain = name.removeprefix(_SCALAR).removeprefix(_HISTORY)
+                # of unlike numbers of bodies or restrainers there is room for the most
+                found[plain] = tuple(map(max, found.get(plain, shape[1:]), shape[1:]))
         return {name: found[name] for name in found if name not in _OF_CHUNKS}, len(files)
 
     def labels(self) -> Labels:

@@ -14,7 +14,8 @@ from rockframe.results.outcome import Generic
 from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, run_length
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Grid
 from rockframe.studies.sweeps.identity import description_of, digest_of
-from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene
+from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene
+from rockframe.system.assembly import Assembly
 from rockframe.version import __version__
 
 LONG_ENOUGH: Final = 1.0
@@ -128,21 +129,37 @@ class Study:
             "scenes": self._scene_digests(),
         }
 
+    @property
+    def restrainers(self) -> tuple[str, ...]:
+        """What results call the restrainers; nothing where some of its scenes have others."""
+        if isinstance(self.scene, SystemScene):
+            return self.scene.assembly.setting.link_names
+        made = [one.setting.link_names for one in self._some_scenes if isinstance(one, Assembly)]
+        return made[0] if made and len(set(made)) == 1 else ()
+
     def _scene_digests(self) -> list[str]:
         """Give digests of scenes that a function has made, which its source need not tell."""
+        return [
+            digest_of(description_of(one)) if isinstance(one, Assembly) else type(one).__name__
+            for one in self._some_scenes
+        ]
+
+    @cached_property
+    def _some_scenes(self) -> list[Assembly | Exception]:
+        """Some scenes that a function makes, or why it makes none."""
         if not isinstance(self.scene, FunctionScene):
             return []
         count = self.grid.count
         spread = [int((k * _GOLDEN) % 1.0 * count) for k in range(_SCENES_TOLD)]
-        found: list[str] = []
+        found: list[Assembly | Exception] = []
         for case in sorted({*spread, count - 1}):
             axes = self.grid.of_cases(range(case, case + 1))
             values = {axis: each.item() for axis, each in axes if axis.changes in OF_SCENES}
             try:
                 with collected_warnings():
-                    found.append(digest_of(description_of(self.scene.assembled(values))))
+                    found.append(self.scene.assembled(values))
             except Exception as problem:  # of which its run tells
-                found.append(type(problem).__name__)
+                found.append(problem)
         return found
 
     @cached_property

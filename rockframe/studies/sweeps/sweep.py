@@ -10,7 +10,6 @@ import xarray as xr
 from rockframe.arguments import several, truth
 from rockframe.components import InitialState
 from rockframe.errors import ModelWarning, StudyError, shown, warn
-from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.shared_arguments import documented_by
 from rockframe.simulation.system import System
@@ -19,6 +18,7 @@ from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.studies.sweeps.execution import bar_of
 from rockframe.studies.sweeps.lazily import lazy_dataset
+from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.running import folder_of, run_study, stored_dataset
 from rockframe.studies.sweeps.store import Store
@@ -31,7 +31,7 @@ from rockframe.version import __version__
 @documented_by(SweepArguments)
 def sweep(
     scene: System | Callable[..., System],
-    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    motions: MotionsLike | None = None,
     *,
     axes: Mapping[str, Any] | None = None,
     cases: Any = None,
@@ -59,8 +59,9 @@ def sweep(
         A system with parts whose parameters the axes name; or a function that takes the axes
         by their names and returns a System.
     motions : GroundMotion, or sequence or mapping of them, optional
-        Each is combined with all cases; the one among the parts of the system, or of the
-        systems that the function returns, unless given.
+        Each is combined with all cases; of a HorizontalPair each of its two components. The
+        one among the parts of the system, or of the systems that the function returns, unless
+        given.
     axes : mapping of str to values, optional
         Axes whose names no keyword can have, such as ``"Block.mass"``, or that are also
         arguments here.

@@ -108,8 +108,16 @@ def test_a_dynamic_analysis_tells_the_capacity_under_each_record(typed, records)
     code, _, problem = typed("plot", "i.nc", "-o", "again.svg")
     assert code == 0
     Path("wide.toml").write_text('scene = "scene.toml"\n[axes]\nwidth = ["0.7 m", "0.9 m"]\n')
-    code, _, problem = typed("ida", "wide.toml", "records")
-    assert (code, "scales alone, and no width" in problem) == (2, True)
+    code, told, _ = typed("ida", "wide.toml", "records", "--scales", "0.5,1,1.5,2", "-o", "w.nc")
+    assert (code, "2 structures by width" in told) == (0, True)
+    with xr.open_dataset("w.nc") as wide:
+        assert wide.capacity_scale.dims == ("limit_state", "width", "motion")
+    code, _, problem = typed("plot", "w.nc", "-o", "again.svg", "--overwrite")
+    assert (code, "analysis.isel(width=0)" in problem) == (2, True)
+    Path("rows.csv").write_text("width [m]\n0.7\n0.9\n")
+    Path("rows.toml").write_text('scene = "scene.toml"\ncases = "rows.csv"\n')
+    code, _, problem = typed("ida", "rows.toml", "records")
+    assert (code, "no table of cases" in problem) == (2, True)
 
 
 def test_a_map_tells_the_boundaries_at_each_frequency(typed):

@@ -16,6 +16,7 @@ TARGET = rf.TargetSpectrum.eurocode_8("0.2 g_0")
 MADE = {
     "run": lambda: SYSTEM.simulate(PULSE),
     "bare run": lambda: SYSTEM.simulate(PULSE, outputs=None),
+    "sweep": lambda: rf.sweep(SYSTEM, PULSE, scale=[1.0, 2.0]),
     "rungs": lambda: rf.tradeoff(
         SYSTEM, PULSE, models=["two pads"], accuracies=["fast"], repeats=1
     ),
@@ -37,6 +38,7 @@ MADE = {
 WORDS = {
     "run": ("a Dataset with the result of a run", "rf.plot.response draws it"),
     "bare run": ("the result of a run without histories", "outputs=() instead of None"),
+    "sweep": ("a Dataset with many runs", "rf.plot.sweep draws it"),
     "rungs": ("a Dataset with a comparison of models", "rf.plot.tradeoff draws it"),
     "response spectra": ("a Dataset with response spectra", "rf.plot.spectra draws them from"),
     "Fourier spectrum": ("a Dataset with a Fourier spectrum", "rf.plot.spectra draws it from"),

@@ -585,14 +585,39 @@ def test_earthquakes_in_sequence_are_runs_that_go_on(tmp_path):
     assert found.peak_rotation.sel(sequence="first").values == pytest.approx(peaks, rel=1e-4)
 
 
+@pytest.mark.parametrize("step", ["0.02 s", "0.004 s", "0.0125 s"])
+@pytest.mark.parametrize("first", [0, 1])
+def test_earthquakes_of_unlike_time_steps_stay_what_they_are(step, first):
+    """Each earthquake is the function of time that it is alone."""
+    coarse = motions()["seed 1"].resampled(step)
+    vertical = motions()["seed 0"]
+    several = [coarse, vertical.with_vertical(vertical.scaled(0.4))]
+    one, two = several[first], several[1 - first]
+    found = rf.earthquake_sequences(SYSTEM, {"both": [one, two]}, pause="2 s", **QUIET)
+    before = SYSTEM.simulate(one, free_vibration="2 s", outputs=None)
+    after = SYSTEM.simulate(two, free_vibration="2 s", initial=before, outputs=None)
+    peaks = [before.peak_rotation.item(), max(before.peak_rotation, after.peak_rotation).item()]
+    assert found.peak_rotation.sel(sequence="both").values == pytest.approx(peaks, rel=1e-6)
+
+
+def test_pulses_and_records_are_in_one_sequence():
+    pulse = rf.GroundMotion.cosine_pulse("3 m/s^2", "1 Hz", 0.5)
+    record = motions()["seed 0"]
+    assert pulse.si.time_step != record.si.time_step
+    found = rf.earthquake_sequences(SYSTEM, [[pulse, record]], pause="8 s", **QUIET)
+    alone = SYSTEM.simulate(pulse, free_vibration="8 s", outputs=None)
+    assert found.peak_rotation[0, 0].item() == pytest.approx(alone.peak_rotation.item(), rel=1e-9)
+
+
 def test_pulses_keep_their_polynomials_in_a_sequence():
     pulse = rf.GroundMotion.cosine_pulse("3 m/s^2", "1 Hz", 0.5)
     found = rf.earthquake_sequences(SYSTEM, [[pulse, pulse]], pause="8 s", **QUIET)
     alone = SYSTEM.simulate(pulse, free_vibration="8 s", outputs=None)
     peaks = found.peak_rotation.squeeze().values
     assert peaks == pytest.approx([alone.peak_rotation.item()] * 2, rel=1e-9)
-    with pytest.raises(ComponentError, match="resample"):
-        rf.earthquake_sequences(SYSTEM, [[pulse, motions()["seed 0"]]])
+    odd = rf.GroundMotion.from_arrays(([0.0, 1.0, 0.0], "m/s^2"), f"{np.pi / 500} s")
+    with pytest.raises(ComponentError, match="no common part; resample"):
+        rf.earthquake_sequences(SYSTEM, [[odd, motions()["seed 0"]]])
     for wrong in ({}, [[]], [["x"]], 3):
         with pytest.raises(ComponentError):
             rf.earthquake_sequences(SYSTEM, wrong)

@@ -6,7 +6,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import ComponentError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.dynamic_analysis import _sentence
+from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.probability import _counted, ranked
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
@@ -71,7 +71,7 @@ def test_a_dynamic_analysis_counts_runs_without_a_verdict():
     analysis = rf.incremental_dynamic_analysis(SYSTEM, motions(3), scale=[1.0, 4.0, 9.0], **HOW)
     assert "no verdict" not in analysis.verdict
     fail(analysis, motion=0, scale=slice(0, 2))
-    assert "2 of 9 runs of the scan have no verdict" in _sentence(analysis)
+    assert "2 of 9 runs of the scan have no verdict" in verdict_of_analysis(analysis)
 
 
 def test_a_map_does_not_draw_runs_without_a_verdict_as_standing():

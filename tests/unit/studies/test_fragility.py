@@ -443,3 +443,26 @@ def test_a_file_for_openquake(runs, tmp_path):
     assert mine.read_text() == "<nrml/>"
     assert rf.export.to_openquake({"b": velocity}, mine, overwrite=True).read_text() == text
     assert rf.export.to_openquake({"b": velocity}, file).read_text() == text  # its own
+
+
+def test_a_median_beyond_all_numbers_is_infinite():
+    counts = {"intensity": ([1.0, 2.0], "m/s^2"), "exceeded": [100_000, 100_010], "trials": 10**6}
+    found = rf.fragility(counts, "PGA")
+    assert found.median_intensity == np.inf
+    np.testing.assert_allclose(found.exceedance_probability, 0.1, rtol=1e-3)
+    assert "median" in found.verdict
+
+
+def test_a_verdict_tells_of_another_limit_state_where_none_overturn():
+    slides = rf.System(rf.Block(width="1 m", height="1.2 m", mass="300 kg"),
+                       rf.RigidGround(friction=0.3))  # fmt: skip
+    suite = {f"{f} Hz": rf.GroundMotion.sine_pulse("4 m/s^2", f"{f} Hz") for f in (0.8, 1, 1.3)}
+    runs = rf.sweep(slides, suite, scale=[0.5, 1, 1.5, 2], free_vibration="1 s")
+    found = rf.fragility(runs, "PGV", limits=[("peak_slip", "5 cm"), ("peak_slip", "1 km")])
+    assert "Against overturning no lognormal" in found.verdict
+    assert "exceeded. Against peak slip 0.05 m no lognormal" in found.verdict
+    assert "None exceeded up to" in found.verdict
+    rough = suite | {"later": rf.GroundMotion.stochastic(6, "10 km", seed=1).scaled(peak="4 m/s^2")}
+    runs = rf.sweep(slides, rough, scale=[0.5, 1, 1.5, 2], free_vibration="1 s")
+    found = rf.fragility(runs, "PGA", limits=[("peak_slip", "5 cm")])
+    assert "Capacity against peak slip 0.05 m: median" in found.verdict

@@ -129,7 +129,6 @@ def test_what_was_put_together_is_told_apart(runs):
     for given, kind, said in (
         (run, SchemaError, "found a single run, which is no sweep"),
         (joined, SchemaError, "found joined runs, which is no sweep"),
-        (rf.concat([one, other], "motion"), SchemaError, "found joined runs"),
         (
             xr.concat([one, other], "suite", join="outer"),
             StudyError,
@@ -147,6 +146,8 @@ def test_what_was_put_together_is_told_apart(runs):
     for twice in (("PGA", "PGA"), ("PGA", "peak_ground_acceleration")):
         with pytest.raises(ComponentError, match="are one, peak_ground_acceleration"):
             rf.fragility(one, twice)
+    both = rf.sweep(SYSTEM, {**motions(0), **motions(10)}, scale=SCALES[:3], **HOW)
+    assert_same_fit(rf.fragility(rf.concat([one, other], "motion")), rf.fragility(both))
     # what an axis goes on with is one sweep, and numbers of one's own need no motions
     split = [runs.isel(scale=slice(0, 3)), runs.isel(scale=slice(3, None))]
     assert_same_fit(rf.fragility(xr.concat(split, "scale")), rf.fragility(runs))

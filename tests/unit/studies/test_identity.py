@@ -79,7 +79,9 @@ OF_LINES = {
 ANALYSES = {
     "incremental_dynamic_analysis": (
         {"system": SYSTEM, "motions": MOTIONS, **LINES, "intensity": "PGA"},
-        {**RUN, **OF_LINES, "system": OTHER, "motions": TURNED, "limits": ["uplift", 0.5]},
+        {**RUN, **OF_LINES, "system": OTHER, "motions": TURNED, "limits": ["uplift", 0.5],
+         "axes": {"height": ["1 m", "2 m"]},
+         "more_axes": ({"width": ["0.5 m"]}, {"width": ["0.6 m"]})},
     ),
     "overturning_map": (
         {"system": SYSTEM, "pulse": rf.GroundMotion.sine_pulse, "amplitude": ([2, 4, 8], "m/s^2"),

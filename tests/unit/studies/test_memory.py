@@ -40,7 +40,7 @@ def test_what_cannot_fit_is_refused_before_it_begins(study, monkeypatch):
 
 def test_what_needs_most_of_it_is_told_of(monkeypatch):
     monkeypatch.setattr(planning, "available", lambda: 7e4)
-    with pytest.warns(SolverWarning, match=r"sweep: 100 cases need about 0.056 MB of memory"):
+    with pytest.warns(SolverWarning, match=r"sweep: 100 cases need about 0.058 MB of memory"):
         runs = rf.sweep(SYSTEM, PULSE, scale=np.linspace(0.1, 1, 100), free_vibration="5 s")
     assert runs.overturned.notnull().all()
 

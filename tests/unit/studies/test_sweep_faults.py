@@ -5,7 +5,7 @@ import os
 import random
 import signal
 import time
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context, parent_process
 from pathlib import Path
 
@@ -179,3 +179,13 @@ def test_a_folder_that_has_become_read_only_can_be_read(disk, whole):
     with pytest.raises(StudyError, match=r"cannot be kept in .*Read-only file system"):
         rf.sweep(SYSTEM, PULSE, scale=[1.0], store=disk.place / "another")
     assert is_part_of(rf.open_study(folder), whole[1]) == CASES - 3
+
+
+def test_a_pool_that_breaks_as_a_chunk_is_handed_out_is_told_of():
+    class Broken(ThreadPoolExecutor):
+        def submit(self, *_: object, **__: object) -> Future[object]:
+            msg = "a child process terminated abruptly"
+            raise BrokenExecutor(msg)
+
+    with Broken(1) as pool, pytest.raises(StudyError, match=r"BrokenExecutor: a child.*have died"):
+        rf.sweep(dying, PULSE, height=HEIGHTS, executor=pool)

@@ -89,3 +89,22 @@ def test_numbers_of_texts_become_ranges_and_words_stay():
     assert few == ("none", "x2: 0.0 to 1.6 m at -7.0e+00 to 9.0e+00 s, Eq. (6)")
     assert places.tolist() == [1, 0, 1, 1, 1]
     assert summed_up(texts[:-1], message[:-1])[0] == tuple(texts[:-1])
+
+
+def test_a_part_of_a_fragility_tells_of_itself():
+    runs = rf.sweep(
+        rf.System(BLOCK), MOTIONS, scale=[1.0, 2.0, 4.0, 6.0], width=["0.5 m", "0.8 m"],
+        free_vibration="2 s",
+    )  # fmt: skip
+    found = rf.fragility(runs, "PGA", limits=[0.3])
+    assert found.rockframe.verdict == found.verdict
+    assert "(2 structures by width)" in found.verdict
+    one = found.isel(width=0)
+    assert "structures" not in one.rockframe.verdict
+    assert one.isel(limit_state=0).rockframe.verdict.count("rotation 0.3") == 1
+    assert found.verdict in found.rockframe.summary
+
+
+def test_a_comparison_of_models_has_a_verdict():
+    rungs = rf.tradeoff(rf.System(BLOCK), MOTIONS["strong"], accuracies=["fast"], repeats=1)
+    assert rungs.verdict == rf.recommend(rungs).sentence == rungs.rockframe.verdict

@@ -1,0 +1,104 @@
+"""Axes of an analysis that follows lines of scales: a line for each of their combinations."""
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import RockframeError, StudyError, nearest, shown
+from rockframe.results.outcome import Generic
+from rockframe.results.variables.studies import CASE
+from rockframe.studies.sweeps.arguments import OF_A_SWEEP
+from rockframe.studies.sweeps.axes import Axis, Changes
+from rockframe.studies.sweeps.scenes import SweptScene
+from rockframe.units import Unit
+
+
+@dataclass(frozen=True, eq=False)
+class LineAxes:
+    """Axes beside the scale of the motions."""
+
+    axes: tuple[Axis, ...] = ()
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """The dimensions that they make, in their order, and their lengths."""
+        return {axis.name: len(axis.values) for axis in self.axes}
+
+    @property
+    def columns(self) -> dict[str, tuple[Generic, str]]:
+        """Their combinations in rows of a table, the last axis fastest, with units."""
+        if not self.axes:
+            return {}
+        grid = np.meshgrid(*(np.arange(size) for size in self.sizes.values()), indexing="ij")
+        return {
+            axis.name: (axis.values[places.ravel()], axis.unit or str(Unit.ONE))
+            for axis, places in zip(self.axes, grid, strict=True)
+        }
+
+    def arranged(self, runs: xr.Dataset) -> xr.Dataset:
+        """Give what runs over the rows of the table the dimensions of the axes."""
+        if not self.axes:
+            return runs
+        labels = {
+            axis.name: xr.Variable(axis.name, axis.values, axis.attributes()) for axis in self.axes
+        }
+        return over_rows(runs, self.sizes, labels)
+
+
+def over_rows(
+    runs: xr.Dataset, sizes: Mapping[str, int], labels: Mapping[str, xr.Variable]
+) -> xr.Dataset:
+    """Give what runs over the rows of a table several dimensions in their place."""
+    found: dict[Hashable, xr.Variable] = {}
+    for name, one in runs.variables.items():
+        if name == CASE or name in labels:
+            continue
+        wide = one.unstack({CASE: dict(sizes)}) if CASE in one.dims else one
+        others = [dim for dim in wide.dims if dim not in sizes]
+        found[name] = wide.transpose(*(dim for dim in sizes if dim in wide.dims), *others)
+    made = xr.Dataset(found, attrs=runs.attrs)
+    return made.set_coords([one for one in runs.coords if one in found]).assign_coords(labels)
+
+
+def read_line_axes(
+    given: object, scene: SweptScene, *, owner: str, others: Sequence[str]
+) -> LineAxes:
+    """Read the axes of an analysis; `others` are names of its arguments."""
+    if given is None:
+        return LineAxes()
+    if not isinstance(given, Mapping):
+        msg = f"{owner}: axes must be a mapping of names to values, got {shown(given)}"
+        raise StudyError(msg)
+    found, faults = list[Axis](), list[str]()
+    for name, values in cast("Mapping[Any, Any]", given).items():
+        if name in OF_A_SWEEP:
+            faults.append(f"{owner} takes no {name!r}, as rf.sweep does")
+            continue
+        try:
+            found.append(scene.axis(str(name), values))
+        except (StudyError, RockframeError) as problem:
+            told = [str(problem)] if not isinstance(problem, StudyError) else list(problem.faults)
+            argument = nearest(name, others)
+            faults += [one if argument in one else f"{one}{argument}" for one in told]
+    faults += _faults(found)
+    faults += scene.faults(found)
+    if faults:
+        raise StudyError(*faults)
+    return LineAxes(tuple(found))
+
+
+def _faults(axes: Iterable[Axis]) -> list[str]:
+    """Tell what is wrong with axes as lines."""
+    faults: list[str] = []
+    for axis in axes:
+        if axis.changes is Changes.MOTION:
+            faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")
+        kept, counts = np.unique(axis.values, return_counts=True)
+        if not len(kept):
+            faults.append(f"axis {axis.name!r} has no values")
+        elif (counts > 1).any():
+            faults.append(f"axis {axis.name!r} has the value {kept[counts > 1][0]!s} twice")
+    return faults

@@ -1,0 +1,117 @@
+"""Axes that name what a system has without being given it."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.errors import StudyError
+
+PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+BLOCK = rf.Block.from_size(radius="3 m", slenderness=4, mass="10 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+
+
+def test_the_ground_that_is_not_given_has_a_restitution() -> None:
+    runs = rf.sweep(rf.System(BLOCK), PULSE, restitution=[0.8, 0.85], duration="4 s")
+    given = rf.System(BLOCK, rf.RigidGround(restitution=0.85)).simulate(PULSE, duration="4 s")
+    assert float(runs.peak_rotation.sel(restitution=0.85).squeeze()) == float(given.peak_rotation)
+    again = rf.case(runs, restitution=0.85).simulate()
+    assert float(again.peak_rotation) == float(given.peak_rotation)
+
+
+def test_the_ground_that_is_not_given_has_a_friction() -> None:
+    runs = rf.sweep(rf.System(BLOCK), PULSE, friction=[0.1, 0.3], duration="4 s")
+    given = rf.System(BLOCK, rf.RigidGround(friction=0.1)).simulate(PULSE, duration="4 s")
+    assert float(runs.peak_slip.sel(friction=0.1).squeeze()) == float(given.peak_slip) > 0.0
+
+
+def test_parts_that_are_given_come_before_the_ground() -> None:
+    before = rf.System(BLOCK, rf.RearWall(side="left"))
+    runs = rf.sweep(before, PULSE, restitution=[-0.5, -0.1], duration="4 s")
+    assert rf.case(runs, restitution=-0.1).system.parts.wall.restitution == -0.1
+    with pytest.raises(StudyError, match="restitution"):
+        rf.sweep(rf.System(BLOCK, rf.WinklerSoil(stiffness="9 MPa", damping=None,
+                 damping_ratio=0.1)), PULSE, restitution=[0.8])  # fmt: skip
+
+
+@pytest.mark.parametrize("base", [(), (PADS,)], ids=["rigid ground", "pads"])
+def test_slenderness_leaves_the_radius(base: tuple[rf.TwoSpringSupport, ...]) -> None:
+    slender = np.linspace(3.0, 6.0, 20)  # enough for lanes
+    runs = rf.sweep(rf.System(BLOCK, *base), PULSE, slenderness=slender, duration="6 s")
+    for ratio in slender[[0, 7, 19]]:
+        body = rf.Block.from_size(radius="3 m", slenderness=ratio, mass="10 t")
+        alone = rf.System(body, *base).simulate(PULSE, duration="6 s", outputs=None)
+        found = float(runs.peak_rotation.sel(slenderness=ratio).squeeze())
+        assert found == pytest.approx(float(alone.peak_rotation), rel=1e-9)
+
+
+def test_radius_leaves_the_slenderness_and_goes_with_it() -> None:
+    size = {"radius": ["2 m", "5 m"], "slenderness": [3, 5]}
+    runs = rf.sweep(rf.System(BLOCK), PULSE, axes=size, duration="4 s")
+    block = rf.case(runs, radius="5 m", slenderness=3).system.parts.block
+    assert (block.radius.m_as("m"), block.slenderness) == pytest.approx((5.0, 3.0))
+    alone = rf.sweep(rf.System(BLOCK), PULSE, radius=["2 m"], duration="4 s")
+    assert rf.case(alone).system.parts.block.slenderness == pytest.approx(4.0)
+
+
+def test_slenderness_beside_a_side() -> None:
+    runs = rf.sweep(rf.System(BLOCK), PULSE, slenderness=[5], width=["2 m"], duration="2 s")
+    block = rf.case(runs).system.parts.block
+    assert (block.width.m_as("m"), block.height.m_as("m")) == pytest.approx((2.0, 10.0))
+    runs = rf.sweep(rf.System(BLOCK), PULSE, slenderness=[5], height=["2 m"], duration="2 s")
+    assert rf.case(runs).system.parts.block.width.m_as("m") == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize(
+    "axes",
+    [
+        {"radius": ["1 m"], "width": ["1 m"]},
+        {"slenderness": [3], "width": ["1 m"], "height": ["3 m"]},
+    ],
+)
+def test_size_is_told_once(axes: dict[str, list[object]]) -> None:
+    with pytest.raises(StudyError, match="determine its size twice"):
+        rf.sweep(rf.System(BLOCK), PULSE, axes=axes)
+
+
+def test_slenderness_of_a_body_with_an_inertia_is_refused() -> None:
+    drum = rf.Block.cylinder(diameter="1 m", height="3 m", mass="1 t")
+    with pytest.raises(StudyError, match="would leave inertia"):
+        rf.sweep(rf.System(drum), PULSE, slenderness=[2, 3])
+
+
+def test_a_slenderness_below_zero_is_a_case_that_is_refused() -> None:
+    with pytest.warns(rf.errors.SolverWarning, match="slenderness must be greater than zero"):
+        runs = rf.sweep(rf.System(BLOCK), PULSE, slenderness=[-1.0, 4.0], duration="2 s")
+    assert runs.message.values[0, 0].startswith("Block: slenderness")
+
+
+def test_slenderness_and_restitution_are_spread() -> None:
+    found = rf.probability_of_overturning(
+        rf.System(BLOCK),
+        PULSE.scaled(1.5),
+        spread={"slenderness": ("uniform", 3, 7), "restitution": ("uniform", 0.6, 0.8)},
+        cases=64,
+        free_vibration="8 s",
+    )
+    assert 0.0 < float(found.overturning_probability) < 1.0
+    assert set(found.parameter.values) == {"slenderness", "restitution"}
+
+
+def test_the_nearest_of_many_values_is_named() -> None:
+    scales = np.linspace(0.5, 4.0, 20)
+    runs = rf.sweep(rf.System(BLOCK), PULSE, scale=scales, duration="1 s", accuracy="fast")
+    with pytest.raises(StudyError, match=r"scale has no 2\.0; .*; the nearest is 1\.97"):
+        rf.case(runs, scale=2.0)
+
+
+def test_peaks_of_the_motion_have_their_abbreviations() -> None:
+    runs = rf.sweep(rf.System(BLOCK), PULSE, PGA=["2 m/s^2", "4 m/s^2"], duration="2 s")
+    assert runs.overturned.dims == ("peak_ground_acceleration", "motion")
+    assert rf.case(runs, PGA="4 m/s^2").motion.peak_acceleration.m_as("m/s^2") == 4.0
+    spectral = rf.sweep(rf.System(BLOCK), PULSE, SA=["3 m/s^2"], period="1 s", duration="2 s")
+    assert "pseudo_spectral_acceleration" in spectral.dims
+    with pytest.raises(StudyError, match="all scale the motion"):
+        rf.sweep(rf.System(BLOCK), PULSE, PGA=["2 m/s^2"], scale=[1.0], duration="2 s")
+    own = rf.sweep(lambda PGA: rf.System(BLOCK), PULSE, PGA=[1, 2], duration="2 s")  # noqa: N803
+    assert "PGA" in own.dims

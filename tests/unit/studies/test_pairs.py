@@ -1,0 +1,49 @@
+"""Two horizontal components as the motions of a study."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.errors import AssemblyError
+
+NORTH = rf.GroundMotion.stochastic(6.0, "10 km", seed=1).window("9 s", "15 s")
+EAST = rf.GroundMotion.stochastic(6.0, "10 km", seed=2).window("9 s", "15 s")
+PAIR = rf.HorizontalPair(NORTH, EAST)
+SYSTEM = rf.System(rf.Block(width="0.4 m", height="2 m", mass="300 kg"))
+HOW = {"scale": [4.0, 6.0], "free_vibration": "1 s"}
+
+
+def test_a_pair_is_its_two_components():
+    runs = rf.sweep(SYSTEM, PAIR, **HOW)
+    apart = rf.sweep(SYSTEM, [NORTH, EAST], **HOW)
+    assert runs.motion.values.tolist() == apart.motion.values.tolist()
+    np.testing.assert_array_equal(runs.peak_rotation, apart.peak_rotation)
+    assert (runs.peak_rotation > 0.0).all()
+    assert rf.fragility(runs, "PGA", limits=[0.1]).trial_count.values.tolist() == [4, 4]
+
+
+def test_pairs_among_other_motions_are_named():
+    runs = rf.sweep(SYSTEM, {"station": PAIR, "pulse": rf.GroundMotion.sine_pulse()}, **HOW)
+    assert runs.motion.values.tolist() == ["station first", "station second", "pulse"]
+    told = rf.HorizontalPair(
+        *(
+            rf.GroundMotion(one.si, name=one.name, metadata={"component": name})
+            for one, name in ((NORTH, "N"), (EAST, "E"))
+        )
+    )
+    runs = rf.sweep(SYSTEM, {"station": told}, **HOW)
+    assert runs.motion.values.tolist() == ["station N", "station E"]
+    found = rf.incremental_dynamic_analysis(SYSTEM, [told], **HOW, resolution=1.0)
+    assert found.sizes["motion"] == 2
+
+
+def test_the_vertical_component_goes_with_both():
+    pair = rf.HorizontalPair(NORTH, EAST, NORTH.scaled(0.3))
+    runs = rf.sweep(SYSTEM, pair, **HOW)
+    alone = SYSTEM.simulate(EAST.with_vertical(NORTH.scaled(0.3)).scaled(6.0), free_vibration="1 s")
+    assert runs.peak_rotation.values[1, 1] == alone.peak_rotation.item()
+
+
+def test_one_run_needs_one_direction():
+    with pytest.raises(AssemblyError, match=r"pair\.rotated\('30 deg'\)"):
+        SYSTEM.simulate(PAIR)

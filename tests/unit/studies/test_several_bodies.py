@@ -1,0 +1,149 @@
+"""Sweeps of scenes with restrainers and several bodies: what is told of each, and its labels."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.dynamics.events import LINK_BREAKS
+from rockframe.errors import ComponentError, SchemaError
+
+PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+STATUE = rf.Block(width="0.6 m", height="2.4 m", mass="800 kg")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+ROUGH = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1, friction=0.5)
+FOUR = {"free_vibration": "1 s"}
+
+
+def tie(name: str, side: float, strength: str = "8 kN") -> rf.Restrainer:
+    return rf.Restrainer(
+        on=(f"{0.3 * side} m", "2 m"), to=(f"{1.3 * side} m", "2 m"), stiffness="500 kN/m",
+        slack="5 mm", strength=strength, brittle=True, name=name,
+    )  # fmt: skip
+
+
+def column(drums: int) -> rf.System:
+    """Make a column of drums on one another."""
+    drum = rf.Block(width="1 m", height="1.5 m", mass="2 t")
+    return rf.System(rf.Stack(*[drum] * drums, interfaces=[ROUGH] * (drums - 1)), ROUGH)
+
+
+TIED = rf.System(STATUE, PADS, tie("west", -1), tie("east", 1, "3 kN"))
+
+
+@pytest.fixture(scope="module")
+def broken():
+    """Sweep over what one of two ties stands; enough cases for lanes."""
+    axes = {"west.strength": (np.linspace(1.0, 30.0, 12), "kN")}
+    return rf.sweep(TIED, PULSE, axes=axes, scale=[0.3, 0.6, 1.0], **FOUR)
+
+
+@pytest.mark.parametrize("scale", [0.3, 0.6, 1.0])
+def test_broken_ties_are_counted_in_all_runs(broken, scale):
+    assert set(np.unique(broken.broken_restrainer_count)) > {0.0, 2.0}
+    for strength in broken["west.strength"].values[[0, 3, 11]]:
+        place = {"west.strength": strength, "scale": scale}
+        alone = rf.case(broken, **place).simulate()
+        breaks = int((alone.event_kind == LINK_BREAKS).sum())
+        found = broken.broken_restrainer_count.sel(place).item()
+        assert found == breaks == alone.broken_restrainer_count.item()
+
+
+def frame() -> rf.System:
+    """Make a frame with a tendon that breaks along each column."""
+    pier = rf.Block(width="1.6 m", height="9.6 m", mass="60 t")
+    tendon = rf.Tendon(stiffness="10 MN/m", preload="400 kN", strength="600 kN", brittle=True)
+    return rf.System(rf.RockingFrame(pier, columns=3, beam_mass="200 t"), tendon)
+
+
+def stacked() -> rf.System:
+    """Make a statue on a plinth, rigid on rigid ground, that is tied."""
+    plinth = rf.Block(width="0.9 m", height="0.8 m", mass="1500 kg")
+    statue = rf.Block(width="0.5 m", height="1.5 m", mass="600 kg")
+    wire = rf.Restrainer(
+        on_body=1, on=("0 m", "1.4 m"), to=("-1.5 m", "2.2 m"), stiffness="200 kN/m",
+        breaking_elongation="1 cm",
+    )  # fmt: skip
+    return rf.System(rf.Stack(statue, plinth, interfaces=[rf.RigidGround()]), wire)
+
+
+@pytest.mark.parametrize("scene", [frame, stacked])
+def test_what_is_broken_at_the_end_are_the_breaks_of_a_run(scene):
+    motion = rf.GroundMotion.type_a_pulse("1.2 m/s", "1.6 s") if scene is frame else PULSE
+    scales = [0.3, 0.8, 1.3333]  # PULSE is then one of 4 m/s^2
+    runs = rf.sweep(scene(), motion, scale=scales, overturning="continue", **FOUR)
+    for scale, count in zip(scales, runs.broken_restrainer_count.values.ravel(), strict=True):
+        alone = scene().simulate(motion.scaled(scale), overturning="continue", **FOUR)
+        assert count == int((alone.event_kind == LINK_BREAKS).sum())
+    assert runs.broken_restrainer_count.max() == 1
+
+
+def test_a_broken_tie_is_a_limit_state(broken):
+    found = rf.fragility(broken, limits=[("broken_restrainer_count", 1)], pooled=["west.strength"])
+    assert found.trial_count.values.tolist() == [36, 36]
+    assert found.stripe_exceedances.isel(limit_state=0).sum() == int(
+        (broken.broken_restrainer_count > 0).sum()
+    )
+
+
+def test_restrainers_and_bodies_have_their_labels(tmp_path):
+    runs = rf.sweep(TIED, PULSE, scale=[0.3, 1.0], outputs=[], **FOUR)
+    assert runs.restrainer.values.tolist() == ["west", "east"]
+    limit = ("peak_restrainer_force", "2 kN", "east")
+    state = rf.fragility(runs, limits=[limit]).limit_state.values[0]
+    assert state == "peak restrainer force east 2000 N"
+    with pytest.raises(ComponentError, match="give one of 'west', 'east', got ''"):
+        rf.fragility(runs, limits=[limit[:2]])
+    one = rf.System(STATUE, PADS, tie("only", -1))
+    runs = rf.sweep(one, PULSE, scale=[0.3, 1.0], outputs=[], store=tmp_path / "kept", **FOUR)
+    assert rf.fragility(runs, limits=[limit[:2]]).limit_state.size == 2
+    for lazy in (False, True):
+        kept = rf.open_study(tmp_path / "kept", lazy=lazy)
+        assert kept.restrainer.values.tolist() == ["only"]
+
+
+def test_a_function_tells_the_names_of_restrainers_where_all_are_alike():
+    def alike(strength: float) -> rf.System:
+        return rf.System(STATUE, PADS, tie("upper", -1, f"{strength} kN"))
+
+    def unlike(number: int) -> rf.System:
+        return rf.System(STATUE, PADS, tie(f"tie {number}", -1))
+
+    kept = {"outputs": ["energy"], **FOUR}
+    assert rf.sweep(alike, PULSE, strength=[1.0, 9.0], **kept).restrainer.values == ["upper"]
+    assert rf.sweep(unlike, PULSE, number=[7, 8], **kept).restrainer.values == ["1"]
+
+
+@pytest.mark.parametrize("outputs", [None, [], ["energy"]])
+def test_unlike_numbers_of_bodies_stand_side_by_side(tmp_path, outputs):
+    asked = {"drums": [3, 2, 4], "scale": [0.5, 1.0], "outputs": outputs, **FOUR}
+    runs = rf.sweep(column, PULSE, chunk=1, store=tmp_path / "kept", **asked)
+    assert runs.body.values.tolist() == [1, 2, 3, 4]
+    slips = runs.peak_body_slip
+    assert np.isfinite(slips).sum("body").squeeze().values.tolist() == [[3, 3], [2, 2], [4, 4]]
+    alone = rf.case(runs, drums=2, scale=1.0, scene=column).simulate()
+    picked = slips.sel(drums=2, scale=1.0).squeeze()
+    np.testing.assert_array_equal(picked[:2], alone.peak_body_slip)
+    assert alone.peak_slip == alone.peak_body_slip[0]
+    xr_again = rf.open_study(tmp_path / "kept", lazy=True)
+    np.testing.assert_array_equal(xr_again.peak_body_slip.values, slips.values)
+    in_memory = rf.sweep(column, PULSE, **asked)
+    np.testing.assert_array_equal(in_memory.peak_body_slip, slips)
+
+
+def test_slips_of_a_body_are_a_limit_state():
+    runs = rf.sweep(column(2), PULSE, friction=[0.2, 0.3], scale=[0.5, 1.0, 2.0], **FOUR)
+    found = rf.fragility(runs, limits=[("peak_body_slip", "1 cm", 2)], pooled=["friction"])
+    most = int(((runs.peak_body_slip.sel(body=2) >= 0.01) | runs.overturned).sum())
+    assert int(found.stripe_exceedances.isel(limit_state=0).sum()) == most > 0
+
+
+def test_what_is_missing_is_told_with_its_remedy():
+    runs = rf.sweep(rf.System(STATUE, PADS), PULSE, scale=[0.3, 1.0], **FOUR)
+    for wrong, kind, match in (
+        (("peak_settlement", "1 cm"), SchemaError, r"a sweep has it with points=\{...\}"),
+        (("peak_setlement", "1 cm"), ComponentError, "'peak_settlement' or"),
+        (("peak_point_vertical_displacement", "1 cm"), SchemaError, "has it with points"),
+        (("peak_body_slip", "1 cm", 1), SchemaError, "the runs have no peak_body_slip"),
+    ):
+        with pytest.raises(kind, match=match):
+            rf.fragility(runs, limits=[wrong])
