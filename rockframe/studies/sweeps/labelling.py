@@ -37,7 +37,6 @@ SIDE_BY_SIDE: Final = (
     "or ground need a closer look"
 )
 """How cases were run."""
-"""Attribute with the names of restrainers, as those of a run's coordinate."""
 
 
 @dataclass(frozen=True, eq=False)
