@@ -51,8 +51,10 @@ class LimitState:
         return " ".join(filter(None, words))
 
 
-def limit_states(given: Iterable[object], *, owner: str) -> tuple[LimitState, ...]:
-    """Read the argument ``limits``: rotations by size, other limit states, overturning."""
+def limit_states(
+    given: Iterable[object], *, owner: str, name: str = "limits"
+) -> tuple[LimitState, ...]:
+    """Read limit states: rotations by size, other limit states, overturning."""
     if isinstance(given, str | int | float):
         given = [given]
     rotations, others = set[float](), dict[LimitState, None]()
@@ -63,9 +65,7 @@ def limit_states(given: Iterable[object], *, owner: str) -> tuple[LimitState, ..
             rotations.add(0.0)
         elif one != OVERTURNING:
             rotations.add(
-                to_ratio(
-                    cast("Any", one), owner=owner, name="limits", condition=_SHARE, example="0.5"
-                )
+                to_ratio(cast("Any", one), owner=owner, name=name, condition=_SHARE, example="0.5")
             )
     return (*map(LimitState, sorted(rotations)), *others, LimitState(1.0))
 
@@ -74,10 +74,11 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
     """Read a limit state on a scalar of runs: its name, from where on, and of which point."""
     name, value, label = (*given, None, None)[:3] if len(given) in (2, 3) else ("", None, None)
     if not isinstance(name, str) or name not in SCHEMA:
+        near = nearest(name, SCHEMA) if name else ""
         msg = (
             f"{owner}: a limit state on a variable of runs is its name, a value with a unit or "
             "None, and of several points, bodies or restrainers which one, for example "
-            f"('peak_slip', '5 cm'); got {shown(given)}"
+            f"('peak_slip', '5 cm'); got {shown(given)}{near}"
         )
         raise ComponentError(msg)
     row, least = SCHEMA[name], math.nan
@@ -147,6 +148,20 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     )
     known = runs["peak_relative_rotation"].notnull()
     return (beyond | (runs["overturned"] == 1)).astype(float).where(known)
+
+
+def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
+    """Give the response over its limit, infinite where the block overturned.
+
+    From 1 on it exceeds; overturning, where it is infinite. NaN where `exceeds` tells nothing.
+    """
+    beyond = exceeds(runs, state)
+    fell = beyond if state.rotation == 1.0 else runs["overturned"]
+    if state.variable:
+        size = abs(scalar_of(runs, state.variable, state.label, owner="limits")) / state.value
+    else:
+        size = runs["peak_relative_rotation"] / state.rotation
+    return size.where(fell != 1, np.inf).where(beyond.notnull())
 
 
 def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr.DataArray:

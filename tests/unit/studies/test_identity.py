@@ -96,6 +96,13 @@ ANALYSES = {
          "correlation": CORRELATED, "cases": 25, "sampling": "random",
          "seed": 1, "confidence": 0.9},
     ),
+    "subset_simulation": (
+        {"system": SYSTEM, "motions": MOTIONS, "spread": {"scale": ("lognormal", 0.9, 0.2)},
+         "cases": 60, "levels": 2},
+        {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 0.8, 0.2)},
+         "correlation": CORRELATED, "limit": 0.5, "cases": 61, "share": 0.2, "levels": 3,
+         "seed": 1, "confidence": 0.9, "points": {"top": ("0 m", "2 m")}},
+    ),
     "earthquake_sequences": (
         {"system": SYSTEM, "sequences": {"zwei": [WEAK, STRONG], "1": [STRONG]}, "pause": "1 s"},
         {**{name: RUN[name] for name in SEQUENCE}, "system": OTHER, "pause": "2 s",
