@@ -22,7 +22,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.studies.limit_states import check_names
 from rockframe.studies.sweeps.case import remembered, unscaled_motion
-from rockframe.studies.sweeps.motions import SPECTRAL, motion_of_case
+from rockframe.studies.sweeps.motions import ABBREVIATIONS, SPECTRAL, motion_of_case
 from rockframe.units import (
     ACCELERATION,
     PERIOD,
@@ -42,11 +42,9 @@ PeriodLike: TypeAlias = QuantityLike | tuple[Any, str] | Sequence[QuantityLike]
 RATIO: Final = "velocity_to_acceleration_ratio"
 AVERAGE: Final = "average_spectral_acceleration"
 SHORT: Final = {
-    "PGA": "peak_ground_acceleration",
-    "PGV": "peak_ground_velocity",
+    **ABBREVIATIONS,
     "PGD": "peak_ground_displacement",
     "CAV": "cumulative_absolute_velocity",
-    "SA": SPECTRAL,
     "PGV/PGA": RATIO,
     "Sa_avg": AVERAGE,
 }

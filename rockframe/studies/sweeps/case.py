@@ -20,7 +20,7 @@ from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
-from rockframe.studies.sweeps.motions import motion_number, motion_of_case, named_motions
+from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.runs import AGAIN
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
@@ -131,7 +131,8 @@ def case(
         msg = f"{_OWNER}: found a dataset that is no sweep; expected the result of rf.sweep"
         raise SchemaError(msg)
     known = remembered(attributes)
-    place = _place(dataset, labels)
+    full = {name if name in dataset.dims else full_name(name): one for name, one in labels.items()}
+    place = _place(dataset, full)
     values = _values(dataset, attributes, place)
     made = _scene(scene, attributes, known)
     names: list[str] = json.loads(attributes["motion_names"])

@@ -337,9 +337,16 @@ def _name_fault(name: object) -> str | None:
 
 def _twice(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
     """Tell what is both a column and an axis, and motions that are scaled in two ways."""
-    columns = {axis.name for axis in rows}
-    both = [axis.name for axis in axes if axis.name in columns]
+    columns = [axis.name for axis in rows]
+    along = [axis.name for axis in axes]
+    both = [name for name in along if name in columns]
     faults = [f"{name!r} is both an axis and a column of cases" for name in both]
+    faults += [
+        f"{name!r} is given twice, once by its abbreviation"
+        for names in (columns, along)
+        for name in dict.fromkeys(names)
+        if names.count(name) > 1
+    ]
     scales = [axis.name for axis in (*rows, *axes) if axis.changes is Changes.MOTION]
     if len(set(scales)) > 1:
         faults.append(f"{' and '.join(map(repr, scales))} all scale the motion; give one of them")

@@ -26,7 +26,7 @@ from rockframe.studies.sweeps.axes import (
     words_of,
 )
 from rockframe.studies.sweeps.identity import name_of
-from rockframe.studies.sweeps.motions import TARGETS, target_words
+from rockframe.studies.sweeps.motions import TARGETS, full_name, target_words
 from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.links import link_labels
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
@@ -90,6 +90,7 @@ class SystemScene:
 
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names the motion's scale, an option, or a parameter of a part."""
+        name = full_name(name)
         if name in TARGETS:
             return _of_motion(name, given)
         if name in STARTS:
@@ -197,6 +198,7 @@ class FunctionScene:
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names an argument, or else the motion's scale."""
         arguments = self._arguments()
+        name = name if name in arguments else full_name(name)
         if name in TARGETS and name not in arguments:
             return _of_motion(name, given)
         if name in STARTS and name not in arguments:
