@@ -44,8 +44,14 @@ from rockframe.studies.sweeps.motions import (
     motion_number,
     named_motions,
 )
-from rockframe.studies.sweeps.runs import FIRST, SCREEN
-from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, own_motion, scene_of
+from rockframe.studies.sweeps.runs import AGAIN, FIRST, SCREEN
+from rockframe.studies.sweeps.scenes import (
+    FunctionScene,
+    SweptScene,
+    SystemScene,
+    own_motion,
+    scene_of,
+)
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
@@ -208,8 +214,10 @@ def plan_study(
         )
         del asked["initial"]
     screened = asked.get("accuracy") == SCREEN
+    handed_over = screened and isinstance(made, SystemScene) and not made.pays_to_screen
     if screened:
-        asked["accuracy"] = FIRST
+        asked["accuracy"] = AGAIN if handed_over else FIRST
+        screened = not handed_over
     outputs = asked.setdefault("outputs", None)
     arguments = tried(lambda: read_arguments(faults, **asked), None)
     none: dict[str, GroundMotion | None] = {NO_MOTION: None}
@@ -247,8 +255,9 @@ def plan_study(
     if faults:
         raise StudyError(*faults)
     return Study(
-        made, grid, given, arguments, seconds, histories, screened=screened, lazy=bool(too_large)
-    )
+        made, grid, given, arguments, seconds, histories, screened=screened,
+        handed_over=handed_over, lazy=bool(too_large),
+    )  # fmt: skip
 
 
 def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool) -> str:
