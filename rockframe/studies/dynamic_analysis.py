@@ -1,7 +1,7 @@
 """Incremental dynamic analysis: motions that are scaled until limit states are exceeded."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Final, Unpack
+from typing import Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -38,6 +38,7 @@ from rockframe.studies.lines import (
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import named_motions
+from rockframe.system.options import PointsLike
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
@@ -56,6 +57,9 @@ def incremental_dynamic_analysis(
     period: QuantityLike | None = None,
     resolution: RatioLike = 0.02,
     bracket_width: RatioLike = 1e-3,
+    output_step: QuantityLike | None = None,
+    outputs: Sequence[str] | None = None,
+    points: PointsLike | None = None,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Scale motions, and find all scales between which limit states begin or cease to be exceeded.
@@ -71,8 +75,8 @@ def incremental_dynamic_analysis(
         of 0.1 unless given [1].
     limits : iterable, optional
         Limit states beside overturning: ``"uplift"``, and peak rotations over the
-        overturning angle, such as 0.5; or variables that every run has, without `outputs` or
-        `points`, as for :func:`rockframe.fragility` [1].
+        overturning angle, such as 0.5; or variables of runs, as for
+        :func:`rockframe.fragility` [1].
     intensity : str, optional
         An intensity measure that the result has beside the scale, such as ``"PGA"``; see
         :func:`rockframe.fragility`.
@@ -83,6 +87,13 @@ def incremental_dynamic_analysis(
         halved, under all motions at once; 1 leaves the scales as they are [1].
     bracket_width : float, optional
         Width of a bracket, over its upper scale [1].
+    output_step : str or Quantity, optional
+        Spacing of the histories; the time step of the motions unless given [s].
+    outputs : sequence of str, optional
+        Histories of the runs at `scale`, as for :func:`rockframe.sweep`; None keeps none.
+    points : mapping of str to (str or Quantity, str or Quantity), optional
+        Points of the body, whose peaks the result has and limit states may be on, as for
+        :func:`rockframe.sweep` [m].
 
     Returns
     -------
@@ -140,7 +151,9 @@ def incremental_dynamic_analysis(
     if given is None:
         msg = f"{_OWNER}: there is no motion to scale; give one"
         raise StudyError(msg)
-    lines = Lines(system, named_motions(given), {}, run, _OWNER)
+    asked: Any = {**run, "points": points}
+    kept = {"outputs": outputs, "output_step": output_step}
+    lines = Lines(system, named_motions(given), {}, asked, _OWNER, kept)
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)

@@ -5,7 +5,7 @@ exceeds a limit state; then brackets of all changes of a verdict, which are halv
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -228,6 +228,8 @@ class Lines:
     # how all of it is run. The scan and each round have a folder of their own in its store
     run: SweepArguments
     owner: str  # function that asks for it
+    # what only the scan keeps beside: histories, of which the rounds need none
+    kept: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
     def followed(
         self,
@@ -270,7 +272,7 @@ class _Runner:
     def scan(self, scales: Array) -> xr.Dataset:
         """Run all rows and motions at all scales."""
         heads = self._heads(slice(None))
-        return self.rounds.sweep(_SCAN, heads or None, {SCALE: scales})
+        return self.rounds.sweep(_SCAN, heads or None, {SCALE: scales}, **self.lines.kept)
 
     def seen(
         self, scan: xr.Dataset, verdicts: LabelledVerdicts, resolution: float | None

@@ -79,7 +79,10 @@ OF_LINES = {
 ANALYSES = {
     "incremental_dynamic_analysis": (
         {"system": SYSTEM, "motions": MOTIONS, **LINES, "intensity": "PGA"},
-        {**RUN, **OF_LINES, "system": OTHER, "motions": TURNED, "limits": ["uplift", 0.5]},
+        {**RUN, **OF_LINES, "system": OTHER, "motions": TURNED, "limits": ["uplift", 0.5],
+         "points": {"top": ("0 m", "2 m")}, "outputs": ["rotation"],
+         "output_step": ({"outputs": ["rotation"]},
+                         {"outputs": ["rotation"], "output_step": "0.02 s"})},
     ),
     "overturning_map": (
         {"system": SYSTEM, "pulse": rf.GroundMotion.sine_pulse, "amplitude": ([2, 4, 8], "m/s^2"),

@@ -136,8 +136,9 @@ def test_cases_that_fail_are_not_screened():
     assert runs.repeated.squeeze().to_numpy().tolist()[0] == 0.0
     assert runs.repeated.isnull().squeeze().to_numpy().tolist() == [False, True]
     assert "too heavy" in str(runs.message.to_numpy())
-    with pytest.raises(RockframeError, match="screen"):
-        SYSTEM.simulate(shaking(60), accuracy="screen")
+    for alone in (SYSTEM.simulate, lambda motion, **how: rf.critical_scale(SYSTEM, motion, **how)):
+        with pytest.raises(RockframeError, match="got 'screen'; sweeps, and analyses .* screen"):
+            alone(shaking(60), accuracy="screen")
 
 
 def on_rigid_ground():
