@@ -137,7 +137,7 @@ def test_cases_that_fail_are_not_screened():
     assert runs.repeated.isnull().squeeze().to_numpy().tolist() == [False, True]
     assert "too heavy" in str(runs.message.to_numpy())
     for alone in (SYSTEM.simulate, lambda motion, **how: rf.critical_scale(SYSTEM, motion, **how)):
-        with pytest.raises(RockframeError, match="got 'screen'; sweeps, and analyses .* screen"):
+        with pytest.raises(RockframeError, match=r"got 'screen'; sweeps, and analyses .* screen"):
             alone(shaking(60), accuracy="screen")
 
 
