@@ -159,7 +159,7 @@ def subset_simulation(
     >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     >>> found = rf.subset_simulation(
     ...     system,
-    ...     rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz"),
+    ...     rf.GroundMotion.sine_pulse("2.2 m/s^2", "1.5 Hz"),
     ...     spread={"scale": ("lognormal", 1.0, 0.2), "width": ("normal", "0.5 m", "0.02 m")},
     ...     cases=200,
     ...     free_vibration="4 s",
