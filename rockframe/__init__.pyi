@@ -58,6 +58,7 @@ from rockframe.studies import overturning_map as overturning_map
 from rockframe.studies import overturning_spectrum as overturning_spectrum
 from rockframe.studies import probability_of_overturning as probability_of_overturning
 from rockframe.studies import rocking_spectrum as rocking_spectrum
+from rockframe.studies import subset_simulation as subset_simulation
 from rockframe.studies import sweep as sweep
 from rockframe.suites import MotionSuite as MotionSuite
 from rockframe.suites import TargetSpectrum as TargetSpectrum

@@ -24,6 +24,7 @@ from rockframe.results.variables.analyses import (
     PROBABILITY,
     SEQUENCES,
     SPECTRA,
+    SUBSETS,
     FragilityStatus,
 )
 from rockframe.results.variables.requests import (
@@ -146,6 +147,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "overturning-map": lambda: _variables(OVERTURNING_MAP),
     "spectra": lambda: _variables(SPECTRA),
     "probability": lambda: _variables(PROBABILITY),
+    "subset-simulation": lambda: _variables(SUBSETS),
     "sequences": lambda: _variables(SEQUENCES),
     "ensemble": lambda: _variables(ENSEMBLE),
     "outcomes": lambda: _flags(Outcome),

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from rockframe.plot._animation import Animation, animation
 from rockframe.plot._clouds import annual_rate, cloud
 from rockframe.plot._diagrams import energies, moment_rotation, phase
-from rockframe.plot._ensembles import ensemble, fragility, probability
+from rockframe.plot._ensembles import ensemble, fragility, probability, subset_simulation
 from rockframe.plot._motion import motion, velocity_pulse
 from rockframe.plot._overturning import (
     dynamic_analysis,
@@ -51,6 +51,7 @@ __all__ = [
     "selection",
     "spectra",
     "state",
+    "subset_simulation",
     "suite",
     "sweep",
     "tradeoff",

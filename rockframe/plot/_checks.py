@@ -74,6 +74,11 @@ KINDS: Final = {
         "rf.probability_of_overturning(system, motions, ...)",
         ("overturning_probability", "first_order_index"),
     ),
+    "subset_simulation": DatasetKind(
+        "a subset simulation",
+        "rf.subset_simulation(system, motions, ...)",
+        ("demand", "sample_weight", "demand_threshold"),
+    ),
     "ensemble": DatasetKind(
         "an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability")
     ),

@@ -110,6 +110,65 @@ def probability(
     return on.panels
 
 
+@draws("subset_simulation", title="the verdict")
+def subset_simulation(
+    dataset: xr.Dataset,
+    *,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
+    title: str | None = None,
+) -> Axes:
+    """Draw how probable it is that the demand is reached, level by level.
+
+    Dotted, the thresholds of the levels; at the right or at the limit, the probability of the limit
+    state with its bounds.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.subset_simulation`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    given = drawable(dataset, "subset_simulation", units)
+    on = single(ax, "subset_simulation", (6.0, 4.1))
+    axes = on.axes
+    known = given["demand"].notnull().to_numpy()
+    demand = given["demand"].to_numpy()[known]
+    order = np.argsort(-demand, kind="stable")
+    demand, level = demand[order], given["sample_level"].to_numpy()[known][order]
+    reached = np.cumsum(given["sample_weight"].to_numpy()[known][order])
+    finite = np.isfinite(demand)
+    # of samples that demand the same the last one has the weight of all
+    last = np.flatnonzero(finite & np.append(demand[1:] != demand[:-1], True))
+    for number in given["level"].to_numpy():
+        those = last[level[last] == number]
+        # where levels meet, samples of both stand side by side
+        axes.plot(demand[those], reached[those], ".", ms=3.5, color=colour_of(int(number) - 1))
+    for threshold in given["demand_threshold"].to_numpy():
+        if np.isfinite(threshold):
+            axes.axvline(threshold, color="0.3", lw=0.8, ls=":")
+    limit = float(given["demand_threshold"][-1])
+    most = float(demand[finite].max(initial=0.0)) or 1.0
+    place = limit if np.isfinite(limit) else 1.08 * most
+    probability = float(given[_NAME])
+    ends = [float(given[f"{_NAME}_{end}_bound"]) for end in ("lower", "upper")]
+    if probability > 0.0:
+        reach = np.abs(np.array(ends) - probability)[:, None]
+        axes.errorbar(place, probability, yerr=reach, fmt="D", ms=5.0, capsize=3.0, color="0.1")
+    else:
+        axes.plot(place, ends[1], "v", ms=6.0, color="0.1")
+    axes.set(
+        yscale="log", xlabel=label_of(given["demand"]), xlim=(0.0, None),
+        ylabel="probability of reaching it [-]",
+    )  # fmt: skip
+    grid(axes)
+    on.entitle(str(given.attrs["verdict"]), title)
+    return axes
+
+
 _NAME: Final = "exceedance_probability"
 _LEVELS: Final = (0.05, 0.16, 0.5, 0.84, 0.95)
 _MOST_STRUCTURES: Final = 12

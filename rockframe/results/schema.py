@@ -15,6 +15,7 @@ from rockframe.results.variables.analyses import (
     PROBABILITY,
     SEQUENCES,
     SPECTRA,
+    SUBSETS,
 )
 from rockframe.results.variables.bodies import BODIES, RESTRAINER_SCALARS, RESTRAINERS
 from rockframe.results.variables.motions import DIRECTIONS, MEASURES
@@ -88,6 +89,7 @@ _TABLES: Final = (
     OVERTURNING_MAP,
     SPECTRA,
     PROBABILITY,
+    SUBSETS,
     ENSEMBLE,
     SEQUENCES,
     FREE_DECAY,
@@ -133,6 +135,7 @@ COORDINATES: Final = (
     "contributing_intensity",
     "sequence",
     "earthquake",
+    "level",
 )
 """Variables that label a dimension, or a case: arithmetic and means leave them alone."""
 

@@ -12,6 +12,7 @@ from rockframe.studies.overturning_map import overturning_map
 from rockframe.studies.probability import probability_of_overturning
 from rockframe.studies.sequences import earthquake_sequences
 from rockframe.studies.spectra import overturning_spectrum, rocking_spectrum
+from rockframe.studies.subset_simulation import subset_simulation
 from rockframe.studies.sweeps.case import SweepCase, case
 from rockframe.studies.sweeps.sweep import open_study, sweep
 
@@ -32,6 +33,7 @@ __all__ = [
     "overturning_spectrum",
     "probability_of_overturning",
     "rocking_spectrum",
+    "subset_simulation",
     "sweep",
 ]
 

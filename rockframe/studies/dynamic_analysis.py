@@ -41,6 +41,7 @@ from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import MotionsLike, named_motions
 from rockframe.studies.sweeps.scenes import own_motion, scene_of
 from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.system.options import PointsLike
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
@@ -64,6 +65,9 @@ def incremental_dynamic_analysis(
     resolution: RatioLike = 0.02,
     bracket_width: RatioLike = 1e-3,
     axes: Mapping[str, Any] | None = None,
+    output_step: QuantityLike | None = None,
+    outputs: Sequence[str] | None = None,
+    points: PointsLike | None = None,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Scale motions, and find all scales between which limit states begin or cease to be exceeded.
@@ -79,8 +83,8 @@ def incremental_dynamic_analysis(
         of 0.1 unless given [1].
     limits : iterable, optional
         Limit states beside overturning: ``"uplift"``, and peak rotations over the
-        overturning angle, such as 0.5; or variables that every run has, without `outputs` or
-        `points`, as for :func:`rockframe.fragility` [1].
+        overturning angle, such as 0.5; or variables of runs, as for
+        :func:`rockframe.fragility` [1].
     intensity : str, optional
         An intensity measure that the result has beside the scale, such as ``"PGA"``; see
         :func:`rockframe.fragility`.
@@ -96,6 +100,13 @@ def incremental_dynamic_analysis(
         structure, with capacities of its own.
     **more_axes : values
         Axes whose names a keyword can have. A `width` is that of a block.
+    output_step : str or Quantity, optional
+        Spacing of the histories; the time step of the motions unless given [s].
+    outputs : sequence of str, optional
+        Histories of the runs at `scale`, as for :func:`rockframe.sweep`; None keeps none.
+    points : mapping of str to (str or Quantity, str or Quantity), optional
+        Points of the body, whose peaks the result has and limit states may be on, as for
+        :func:`rockframe.sweep` [m].
 
     Returns
     -------
@@ -154,7 +165,9 @@ def incremental_dynamic_analysis(
     if given is None:
         msg = f"{_OWNER}: there is no motion to scale; give one"
         raise StudyError(msg)
-    lines = Lines(system, named_motions(given), line_axes.columns, run, _OWNER)
+    asked: Any = {**run, "points": points}
+    kept = {"outputs": outputs, "output_step": output_step}
+    lines = Lines(system, named_motions(given), line_axes.columns, asked, _OWNER, kept)
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)

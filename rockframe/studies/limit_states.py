@@ -59,36 +59,38 @@ class LimitState:
         return " ".join(filter(None, words))
 
 
-def limit_states(given: Iterable[object], *, owner: str) -> tuple[LimitState, ...]:
-    """Read the argument ``limits``: rotations by size, other limit states, overturning."""
+def limit_states(
+    given: Iterable[object], *, owner: str, name: str = "limits"
+) -> tuple[LimitState, ...]:
+    """Read limit states: rotations by size, other limit states, overturning."""
     rotations, others = set[float](), dict[LimitState, None]()
-    for one in listed_limits(given, owner=owner):
+    for one in listed_limits(given, owner=owner, name=name):
         if isinstance(one, tuple):
             others[_of_variable(cast("tuple[Any, ...]", one), owner)] = None
         elif isinstance(one, str) and one in (UPLIFT, OVERTURNING):
             rotations |= {0.0} if one == UPLIFT else set()
         else:
-            rotations.add(_share(one, owner))
+            rotations.add(_share(one, owner, name))
     return (*map(LimitState, sorted(rotations)), *others, LimitState(1.0))
 
 
-def listed_limits(given: object, *, owner: str) -> list[Any]:
+def listed_limits(given: object, *, owner: str, name: str = "limits") -> list[Any]:
     """Give the several limit states that were given, or the one."""
     if isinstance(given, str | int | float):
         return [given]
-    return several(given, owner=owner, name="limits", of="limit states")
+    return several(given, owner=owner, name=name, of="limit states")
 
 
-def _share(given: Any, owner: str) -> float:
+def _share(given: Any, owner: str, name: str) -> float:
     """Read a rotation over the overturning angle."""
     if isinstance(given, str) and not any(letter.isdigit() for letter in given):
         words = (
-            f"{owner}: limits must be {UPLIFT!r}, {OVERTURNING!r}, a rotation over the overturning "
+            f"{owner}: {name} must be {UPLIFT!r}, {OVERTURNING!r}, a rotation over the overturning "
             "angle such as 0.5, or a variable of runs and a value such as ('peak_slip', '5 cm')"
         )
         msg = f"{words}, got {shown(given)}{nearest(given, (UPLIFT, OVERTURNING))}"
         raise ComponentError(msg)
-    return to_ratio(given, owner=owner, name="limits", condition=_SHARE, example="0.5")
+    return to_ratio(given, owner=owner, name=name, condition=_SHARE, example="0.5")
 
 
 def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
@@ -176,6 +178,20 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     )
     known = runs["peak_relative_rotation"].notnull()
     return (beyond | (runs["overturned"] == 1)).astype(float).where(known)
+
+
+def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
+    """Give the response over its limit, infinite where the block overturned.
+
+    From 1 on it exceeds; overturning, where it is infinite. NaN where `exceeds` tells nothing.
+    """
+    beyond = exceeds(runs, state)
+    fell = beyond if state.rotation == 1.0 else runs["overturned"]
+    if state.variable:
+        size = abs(scalar_of(runs, state.variable, state.label, owner="limits")) / state.value
+    else:
+        size = runs["peak_relative_rotation"] / state.rotation
+    return size.where(fell != 1, np.inf).where(beyond.notnull())
 
 
 def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr.DataArray:

@@ -5,9 +5,7 @@ exceeds a limit state; then brackets of all changes of a verdict, which are halv
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from os import PathLike
-from pathlib import Path
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -17,7 +15,6 @@ from rockframe.errors import (
     ComponentError,
     ModelWarning,
     SolverWarning,
-    StudyError,
     collected_warnings,
     shown,
     warn,
@@ -27,12 +24,10 @@ from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.limit_states import interrupted
-from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
+from rockframe.studies.rounds import Rounds, rounds_of
+from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
-from rockframe.studies.sweeps.execution import ProgressBar, bar_of
 from rockframe.studies.sweeps.motions import TARGETS
-from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.running import run_study
 from rockframe.units import Condition, Unit, to_ratio
 
 if TYPE_CHECKING:
@@ -233,6 +228,8 @@ class Lines:
     # how all of it is run. The scan and each round have a folder of their own in its store
     run: SweepArguments
     owner: str  # function that asks for it
+    # what only the scan keeps beside: histories, of which the rounds need none
+    kept: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
     def followed(
         self,
@@ -248,9 +245,8 @@ class Lines:
         before. One bar counts the cases of the scan and of all rounds. After an interrupt (Ctrl-C)
         the verdict of the scan says so.
         """
-        store = read_store(self.run.get("store"), owner=self.owner)
-        with bar_of(self.run.get("progress"), owner=self.owner) as bar:
-            runner = _Runner(self, store, bar)
+        with rounds_of(self.scene, self.motions, self.run, owner=self.owner) as rounds:
+            runner = _Runner(self, rounds)
             scan = runner.scan(scales)
             with collected_warnings() as said:
                 seen, whole = runner.seen(scan, verdicts, resolution)
@@ -261,7 +257,7 @@ class Lines:
             warn(f"{self.owner}: in further rounds: {said[0]}", ModelWarning)
         if not whole:
             scan.attrs["verdict"] = f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED}"
-            kept = "; the same call goes on, as it has a store" if store is not None else ""
+            kept = "; the same call goes on, as it has a store" if rounds.store is not None else ""
             warn(f"{self.owner}: interrupted; brackets are wider than asked{kept}", SolverWarning)
         return scan, seen, found
 
@@ -271,13 +267,12 @@ class _Runner:
     """Makes the sweeps of an analysis, one after the other."""
 
     lines: Lines
-    store: Path | None
-    bar: ProgressBar
+    rounds: Rounds
 
     def scan(self, scales: Array) -> xr.Dataset:
         """Run all rows and motions at all scales."""
         heads = self._heads(slice(None))
-        return self._sweep(_SCAN, heads or None, {SCALE: scales})
+        return self.rounds.sweep(_SCAN, heads or None, {SCALE: scales}, **self.lines.kept)
 
     def seen(
         self, scan: xr.Dataset, verdicts: LabelledVerdicts, resolution: float | None
@@ -324,20 +319,11 @@ class _Runner:
         names = list(self.lines.motions)
         rows, motions = np.divmod(lines, len(names))
         cases = {**self._heads(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
-        return self._sweep(part, cases, {})
+        return self.rounds.sweep(part, cases, {})
 
     def _heads(self, rows: Any) -> dict[str, Any]:
         columns = self.lines.columns.items()
         return {head(name, unit): values[rows] for name, (values, unit) in columns}
-
-    def _sweep(self, part: str, cases: Any, axes: Mapping[str, Any]) -> xr.Dataset:
-        asked: dict[str, Any] = {**self.lines.run}
-        means: Any = {name: asked.pop(name, None) for name in ExecutionArguments.__annotations__}
-        del means["progress"]
-        means["store"] = None if self.store is None else self.store / part
-        study = plan_study(self.lines.scene, self.lines.motions, axes, cases, **asked)
-        self.bar.name(part)
-        return run_study(study, self.bar, **means)
 
 
 def _moves(runs: xr.Dataset) -> xr.DataArray:
@@ -363,22 +349,6 @@ def read_scales(given: object, *, owner: str, most: int) -> Array:
 def read_width(given: object, *, owner: str) -> float:
     """Read the relative width of brackets."""
     return to_ratio(given, owner=owner, name="bracket_width", condition=_WIDTH, example="0.001")
-
-
-def read_store(given: object, *, owner: str) -> Path | None:
-    """Read the folder of an analysis, and make it."""
-    if given is None:
-        return None
-    if not isinstance(given, str | PathLike):
-        msg = f"{owner}: store must be the path of a folder, got {shown(given)}"
-        raise StudyError(msg)
-    folder = Path(given)  # pyright: ignore[reportUnknownArgumentType]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        msg = f"{owner}: store {str(folder)!r} cannot be made: {problem}"
-        raise StudyError(msg) from problem
-    return folder
 
 
 def head(name: str, unit: str) -> str:

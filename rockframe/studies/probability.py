@@ -21,7 +21,7 @@ from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import head
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis
-from rockframe.studies.sweeps.motions import MotionsLike, named_motions
+from rockframe.studies.sweeps.motions import MotionsLike, full_name, named_motions
 from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import SweptScene, own_motion, scene_of
 from rockframe.studies.sweeps.sweep import sweep
@@ -78,7 +78,8 @@ def read_correlation(given: object, names: Sequence[str], *, owner: str) -> Arra
     if isinstance(given, Mapping):
         matrix = np.eye(size)
         for pair, value in cast("Mapping[Any, Any]", given).items():
-            two = tuple(pair) if isinstance(pair, tuple) else (pair,)
+            two = pair if isinstance(pair, tuple) else (pair,)
+            two = tuple(one if one in names else full_name(one) for one in two)
             if len(two) != 2 or two[0] == two[1] or not set(two) <= set(names):
                 msg = (
                     f"{owner}: correlation needs pairs of two of {', '.join(names)}, "
@@ -155,12 +156,12 @@ def _read(name: str, given: Any, scene: SweptScene, owner: str) -> Spread:
         if start <= 0.0:
             msg = f"{owner}: {name} needs a median above zero, got {shown(first)}"
             raise ComponentError(msg)
-        return Spread(name, str(axis.unit), stats.lognorm(s=log, scale=start))
+        return Spread(axis.name, str(axis.unit), stats.lognorm(s=log, scale=start))
     width = float(_axis(scene, name, second, owner).values[0])
     if kind == "normal" and width > 0.0:
-        return Spread(name, str(axis.unit), stats.norm(loc=start, scale=width))
+        return Spread(axis.name, str(axis.unit), stats.norm(loc=start, scale=width))
     if kind == "uniform" and width > start:
-        return Spread(name, str(axis.unit), stats.uniform(loc=start, scale=width - start))
+        return Spread(axis.name, str(axis.unit), stats.uniform(loc=start, scale=width - start))
     wrong = "standard deviation above zero" if kind == "normal" else "greatest above the least"
     msg = f"{owner}: {name} needs a {wrong}, got {shown(second)}"
     raise ComponentError(msg)
@@ -177,7 +178,7 @@ def _frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> Sprea
         if size != 1.0:
             msg = f"{owner}: {name} needs a distribution in {axis.unit}, got one in {unit}"
             raise ComponentError(msg)
-    return Spread(name, str(axis.unit), distribution)
+    return Spread(axis.name, str(axis.unit), distribution)
 
 
 def _axis(scene: SweptScene, name: str, value: Any, owner: str) -> Axis:

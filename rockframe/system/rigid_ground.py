@@ -26,6 +26,7 @@ class RigidGroundSetting(Setting):
 
     restitution: Restitutions  # eps of its corners [1]
     flies = False
+    steps_cost_most = False
     source: ClassVar[str] = "Housner; Eq. (6) for omega"
     """Of the equation of motion."""
     greatest: ClassVar[str] = "Eq. (4) is the greatest value"

@@ -54,6 +54,9 @@ class Setting(ABC):
     slides: ClassVar[bool] = False
     """Whether in the equations a body slides on its base, so that its friction is that of these."""
 
+    steps_cost_most: ClassVar[bool] = True
+    """Whether a run spends more on steps than on events and labels, so that fixed steps save."""
+
     struck_by_base: ClassVar[bool] = True
     """Whether the impulses of impacts are those of the base alone, so that friction bears them."""
 

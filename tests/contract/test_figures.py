@@ -28,6 +28,11 @@ def _spread():
     return rf.probability_of_overturning(RIGID, PULSE, spread=spread, cases=60, progress=False)
 
 
+def _rare():
+    spread = {"scale": ("lognormal", 1.7, 0.2)}
+    return rf.subset_simulation(RIGID, PULSE, spread=spread, limit=0.5, cases=200, progress=False)
+
+
 def _decay():
     system = rf.System(BLOCK, rf.RigidGround(restitution=0.9))
     run = system.simulate(duration="3 s", initial=rf.InitialState(rotation="0.05 rad"))
@@ -99,6 +104,7 @@ DRAWN = {
     "player": (_run, GRAVITIES),
     "probability": (_spread, METRES),
     "response": (_run, DEGREES),
+    "subset_simulation": (_rare, {}),
     "rocking_spectrum": (lambda: rf.rocking_spectrum(RIGID, MOTIONS, **PERIODS), {}),
     "scene": (lambda: SYSTEM, METRES),
     "selection": (

@@ -252,6 +252,7 @@ DIMENSION_NAMES = {
     "frequency",
     "flip",
     "scale",
+    "level",
     "parameter",
     "unknown",
     "other_unknown",

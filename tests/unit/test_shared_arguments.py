@@ -24,6 +24,7 @@ TAKEN = {
     rf.incremental_dynamic_analysis: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
     rf.overturning_map: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
     rf.probability_of_overturning: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
+    rf.subset_simulation: (SweepArguments, [*LENGTH, *COURSE, *EXECUTION]),
     rf.earthquake_sequences: (SequenceArguments, [*COURSE, *EXECUTION]),
     rf.critical_scale: (ScaleArguments, [*LENGTH, *COURSE]),
     rf.tradeoff: (ComparedArguments, [*LENGTH, "initial", "output_step"]),

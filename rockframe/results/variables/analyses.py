@@ -15,6 +15,7 @@ RANK: Final = ("rank",)
 QUANTILE: Final = ("quantile",)
 RUN: Final = ("run",)
 COVARIATE: Final = ("covariate",)
+LEVEL: Final = ("level",)
 
 
 class FragilityStatus(IntEnum):
@@ -396,6 +397,46 @@ PROBABILITY: Final = (
     ),
 )
 """Of overturning, where parameters are spread."""
+
+SUBSETS: Final = (
+    counting("level", "number of the level"),
+    Variable(
+        "demand_threshold",
+        LEVEL,
+        Unit.ONE,
+        "demand from which on samples count; of the last level that of the limit state",
+    ),
+    Variable(
+        "conditional_probability", LEVEL, Unit.ONE, "share of the samples that reach the threshold"
+    ),
+    Variable(
+        "acceptance_rate",
+        LEVEL,
+        Unit.ONE,
+        "share of the candidates of the chains that were accepted, NaN where there are no chains",
+    ),
+    Variable("chain_count", LEVEL, Unit.ONE, "number of chains, or of samples", dtype="int64"),
+    Variable(
+        "demand",
+        (),
+        Unit.ONE,
+        "response over its limit, infinite where the block overturns",
+    ),
+    Variable("sample_level", (), Unit.ONE, "level that the sample is of", dtype="int64"),
+    Variable("sample_weight", (), Unit.ONE, "probability that the sample stands for"),
+    Variable(
+        "coefficient_of_variation",
+        (),
+        Unit.ONE,
+        "standard deviation of the estimated probability over it, infinite where it is 0",
+    ),
+    count("run_count", "number of runs"),
+    count(
+        "family_count",
+        "number of samples of the first level from which those that exceed descend",
+    ),
+)
+"""Of subset simulation."""
 
 ENSEMBLE: Final = (
     Variable("ordered_value", RANK, Unit.ONE, "value of the ensemble, in order and its own unit"),

@@ -21,7 +21,8 @@ class CourseArguments(TypedDict, total=False):
             AccuracyLevel.STANDARD,
             HOW_ACCURATE.kind.replace('"reference"', '"reference", "screen"'),
             f'{HOW_ACCURATE.words} ``"screen"`` runs all cases at ``"fast"``, and those near a '
-            'flip of their verdict again at ``"standard"``, :eq:`eq-screened`.',
+            'flip of their verdict again at ``"standard"``, :eq:`eq-screened`; on rigid ground all '
+            'at ``"standard"``, which costs less there.',
         ),
     ]
     overturning: CourseLike

@@ -21,12 +21,7 @@ from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
-from rockframe.studies.sweeps.motions import (
-    ABBREVIATIONS,
-    motion_number,
-    motion_of_case,
-    named_motions,
-)
+from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.runs import AGAIN
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
@@ -145,7 +140,8 @@ def case(
         )
         raise SchemaError(msg)
     known = remembered(attributes)
-    place = _place(dataset, labels)
+    full = {name if name in dataset.dims else full_name(name): one for name, one in labels.items()}
+    place = _place(dataset, full)
     values = _values(dataset, attributes, place)
     if motions is not None:
         named_motions(motions)  # also where they are not needed
@@ -184,7 +180,6 @@ def remember(study: Study) -> None:
 def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
     """Find where the case stands along each dimension."""
     dims = [str(dim) for dim in dataset["status"].dims]
-    labels = {ABBREVIATIONS.get(name, name): value for name, value in labels.items()}
     fixed = [str(name) for name in dataset.coords if not dataset[name].dims]
     unknown = [name for name in labels if name not in (*dims, *fixed)]
     lacking = [name for name in dims if name not in labels and dataset.sizes[name] > 1]

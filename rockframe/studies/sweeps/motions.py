@@ -44,14 +44,17 @@ TARGETS: Final = {
     SPECTRAL: MotionAxis("spectral_acceleration", ACCELERATION),
 }
 """Axes that change the motion, by their names."""
-
-
 ABBREVIATIONS: Final = {
     "PGA": "peak_ground_acceleration",
     "PGV": "peak_ground_velocity",
     "SA": SPECTRAL,
 }
-"""Of those that are measures of intensity."""
+"""Of these axes."""
+
+
+def full_name(name: str) -> str:
+    """Give the name of an axis that an abbreviation stands for."""
+    return ABBREVIATIONS.get(name, name)
 
 
 def target_words(name: str) -> str:

@@ -44,7 +44,7 @@ from rockframe.studies.sweeps.motions import (
     motion_number,
     named_motions,
 )
-from rockframe.studies.sweeps.runs import FIRST, SCREEN
+from rockframe.studies.sweeps.runs import AGAIN, FIRST, SCREEN
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,
@@ -215,8 +215,10 @@ def plan_study(
         del asked["initial"]
     level = asked.get("accuracy")
     screened = isinstance(level, str) and level == SCREEN
+    handed_over = screened and isinstance(made, SystemScene) and not made.pays_to_screen
     if screened:
-        asked["accuracy"] = FIRST
+        asked["accuracy"] = AGAIN if handed_over else FIRST
+        screened = not handed_over
     outputs = asked.setdefault("outputs", None)
     arguments = tried(lambda: read_arguments(faults, **asked), None)
     none: dict[str, GroundMotion | None] = {NO_MOTION: None}
@@ -256,8 +258,9 @@ def plan_study(
     if faults:
         raise StudyError(*faults)
     return Study(
-        made, grid, given, arguments, seconds, histories, screened=screened, lazy=bool(too_large)
-    )
+        made, grid, given, arguments, seconds, histories, screened=screened,
+        handed_over=handed_over, lazy=bool(too_large),
+    )  # fmt: skip
 
 
 def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool) -> str:
@@ -346,9 +349,16 @@ def _name_fault(name: object) -> str | None:
 
 def _twice(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
     """Tell what is both a column and an axis, and motions that are scaled in two ways."""
-    columns = {axis.name for axis in rows}
-    both = [axis.name for axis in axes if axis.name in columns]
+    columns = [axis.name for axis in rows]
+    along = [axis.name for axis in axes]
+    both = [name for name in along if name in columns]
     faults = [f"{name!r} is both an axis and a column of cases" for name in both]
+    faults += [
+        f"{name!r} is given twice, once by its abbreviation"
+        for names in (columns, along)
+        for name in dict.fromkeys(names)
+        if names.count(name) > 1
+    ]
     scales = [axis.name for axis in (*rows, *axes) if axis.changes is Changes.MOTION]
     if len(set(scales)) > 1:
         faults.append(f"{' and '.join(map(repr, scales))} all scale the motion; give one of them")

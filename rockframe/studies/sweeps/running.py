@@ -26,7 +26,7 @@ from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
 from rockframe.studies.sweeps.lazily import lazy_dataset
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study
-from rockframe.studies.sweeps.words import cases_verdict, say_what_is_missing
+from rockframe.studies.sweeps.words import cases_verdict, not_screened, say_what_is_missing
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
 
@@ -69,6 +69,7 @@ def run_study(
     if not whole:
         warn(f"{OWNER}: interrupted; {cases_verdict(dataset)}", SolverWarning)
     if not study.lazy:
+        dataset = not_screened(dataset) if study.handed_over else dataset
         say_what_is_missing(dataset)
     return dataset
 

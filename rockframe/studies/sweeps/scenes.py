@@ -26,7 +26,7 @@ from rockframe.studies.sweeps.axes import (
     words_of,
 )
 from rockframe.studies.sweeps.identity import name_of
-from rockframe.studies.sweeps.motions import ABBREVIATIONS, TARGETS, target_words
+from rockframe.studies.sweeps.motions import TARGETS, full_name, target_words
 from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.links import link_labels
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
@@ -88,9 +88,14 @@ class SystemScene:
 
     assembly: Assembly  # its parts and options, as they are where no axis changes them
 
+    @property
+    def pays_to_screen(self) -> bool:
+        """Whether runs by fixed steps, made twice, cost less than one by tolerance."""
+        return self.assembly.setting.steps_cost_most
+
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names the motion's scale, an option, or a parameter of a part."""
-        name = ABBREVIATIONS.get(name, name)
+        name = full_name(name)
         if name in TARGETS:
             return _of_motion(name, given)
         if name in STARTS:
@@ -219,7 +224,7 @@ class FunctionScene:
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names an argument, or else the motion's scale."""
         arguments = self._arguments()
-        name = name if name in arguments else ABBREVIATIONS.get(name, name)
+        name = name if name in arguments else full_name(name)
         if name in TARGETS and name not in arguments:
             return _of_motion(name, given)
         if name in STARTS and name not in arguments:

@@ -88,6 +88,8 @@ class Study:
     histories: Histories | None = None  # what is kept beside scalars
     # whether each case is run twice, and again by tolerance where its verdict is in doubt
     screened: bool = False
+    # whether that was asked for where a run by tolerance costs less, which each then is
+    handed_over: bool = field(default=False, compare=False)
     # whether the result is larger than the memory, which is no part of what it is
     lazy: bool = field(default=False, compare=False)
 

@@ -90,9 +90,9 @@ def sweep(
         Axes, by the name of a parameter of one part (``frequency_ratio``) or of an option of
         the system (``gravity``), by an argument of the function, by where runs start
         (``initial_rotation``), or by what scales the
-        motion: ``scale``, ``peak_ground_acceleration``, ``peak_ground_velocity`` or
-        ``pseudo_spectral_acceleration``. Values with a unit are ``([1, 2], "m")``, a
-        Quantity, or ``["1 m", "2 m"]``.
+        motion: ``scale``, ``peak_ground_acceleration`` (or ``PGA``), ``peak_ground_velocity``
+        (``PGV``) or ``pseudo_spectral_acceleration`` (``SA``). Values with a unit are
+        ``([1, 2], "m")``, a Quantity, or ``["1 m", "2 m"]``.
 
     Returns
     -------

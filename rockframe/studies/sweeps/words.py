@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, SolverWarning, warn
+from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic, overturned_by
 from rockframe.results.variables.runs import RunStatus
@@ -71,6 +72,17 @@ def slips_of_cases(runs: xr.Dataset) -> Generic:
         return np.full(runs["status"].shape, np.nan)
     others = [dim for dim in found.dims if dim not in runs["status"].dims]
     return found.max(others).to_numpy()
+
+
+def not_screened(runs: xr.Dataset) -> xr.Dataset:
+    """Tell of a sweep that was to be screened that it was run by tolerance, which costs less."""
+    lacking = np.isnan(runs["peak_rotation"].to_numpy())
+    none = np.where(lacking, np.nan, 0.0) if lacking.any() else np.zeros(lacking.shape)
+    dims = tuple(map(str, runs["peak_rotation"].dims))
+    columns = build_dataset(dict.fromkeys(SCREENED, none), {}, over=dims)
+    said = str(runs.attrs["verdict"]).removesuffix(".")
+    words = "all ran at 'standard', which costs less here than 'screen'"
+    return runs.assign(columns.data_vars).assign_attrs(verdict=f"{said}; {words}.")
 
 
 def say_what_is_missing(dataset: xr.Dataset) -> None:

@@ -10,7 +10,7 @@ from scipy import stats
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning, StudyError
 from rockframe.results.schema import SCHEMA
-from rockframe.studies import lines
+from rockframe.studies import rounds as of_rounds
 from rockframe.studies.lines import Bracket, bracket_arrays, brackets_of, narrowed
 from rockframe.studies.probability import ranked
 from rockframe.studies.sweeps import execution
@@ -177,7 +177,7 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
     # at a resolution of one brackets are narrowed at once
     some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
     options = {**some, "store": tmp_path / "s"}
-    run_study, rounds = lines.run_study, itertools.count()
+    run_study, rounds = of_rounds.run_study, itertools.count()
 
     def cut(study, bar, **means):
         if next(rounds) <= after:
@@ -193,7 +193,7 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
             return run_study(study, bar, **means)
 
     with monkeypatch.context() as patch:
-        patch.setattr(lines, "run_study", cut)
+        patch.setattr(of_rounds, "run_study", cut)
         with pytest.warns(SolverWarning, match="interrupted; brackets are wider.*goes on"):
             found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
         rounds = itertools.count()

@@ -81,7 +81,10 @@ ANALYSES = {
         {"system": SYSTEM, "motions": MOTIONS, **LINES, "intensity": "PGA"},
         {**RUN, **OF_LINES, "system": OTHER, "motions": TURNED, "limits": ["uplift", 0.5],
          "axes": {"height": ["1 m", "2 m"]},
-         "more_axes": ({"width": ["0.5 m"]}, {"width": ["0.6 m"]})},
+         "more_axes": ({"width": ["0.5 m"]}, {"width": ["0.6 m"]}),
+         "points": {"top": ("0 m", "2 m")}, "outputs": ["rotation"],
+         "output_step": ({"outputs": ["rotation"]},
+                         {"outputs": ["rotation"], "output_step": "0.02 s"})},
     ),
     "overturning_map": (
         {"system": SYSTEM, "pulse": rf.GroundMotion.sine_pulse, "amplitude": ([2, 4, 8], "m/s^2"),
@@ -97,6 +100,13 @@ ANALYSES = {
         {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 1.6, 0.4)},
          "correlation": CORRELATED, "cases": 25, "sampling": "random",
          "seed": 1, "confidence": 0.9},
+    ),
+    "subset_simulation": (
+        {"system": SYSTEM, "motions": MOTIONS, "spread": {"scale": ("lognormal", 0.9, 0.2)},
+         "cases": 60, "levels": 2},
+        {**RUN, "system": OTHER, "motions": TURNED, "spread": {"scale": ("lognormal", 0.8, 0.2)},
+         "correlation": CORRELATED, "limit": 0.5, "cases": 61, "share": 0.2, "levels": 3,
+         "seed": 1, "confidence": 0.9, "points": {"top": ("0 m", "2 m")}},
     ),
     "earthquake_sequences": (
         {"system": SYSTEM, "sequences": {"zwei": [WEAK, STRONG], "1": [STRONG]}, "pause": "1 s"},

@@ -76,3 +76,81 @@ def test_cases_without_a_result_exceed_nothing(runs):
     found = rf.fragility(lacking, limits=[ROOF]).isel(limit_state=0)
     assert int(found.left_out_count) == runs.sizes["scale"]
     assert isinstance(found, xr.Dataset)
+
+
+# from the runs to the report -------------------------------------------------------------------
+
+ON_SOIL = rf.System(
+    rf.Block(width="1 m", height="4 m", mass="10 t"),
+    rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2),
+)
+POINTS = {"base": ("0 m", "0 m"), "top": ("0 m", "4 m")}
+LIMITS = {
+    "residual settlement 0.001 m": ("residual_settlement", "1 mm"),
+    # the drift of 1 % of the height
+    "peak point horizontal displacement top 0.04 m": (
+        "peak_point_horizontal_displacement", "4 cm", "top",
+    ),
+    "peak point vertical displacement base 0.01 m": (
+        "peak_point_vertical_displacement", "1 cm", "base",
+    ),
+    "peak point horizontal acceleration top 6 m s^-2": ROOF,
+}  # fmt: skip
+
+
+def exceeding(runs, limit):
+    """Count runs beyond a limit by hand."""
+    name, value, *label = limit
+    values = runs[name].sel(point=label[0]) if label else runs[name]
+    unit, least = value.split()[1], float(value.split()[0])
+    least *= {"mm": 1e-3, "cm": 1e-2, "m/s^2": 1.0}[unit]
+    return int(((abs(values) >= least) | (runs.overturned == 1)).sum())
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
+def test_settlement_drift_and_acceleration_from_the_sweep_to_the_report(tmp_path):
+    runs = rf.sweep(ON_SOIL, SUITE, scale=[1.0, 2.0, 4.0, 6.0, 8.0], points=POINTS, **HOW)
+    found = rf.fragility(runs, "PGA", limits=LIMITS.values())
+    assert found.limit_state.values.tolist() == [*LIMITS, "overturning"]
+    for name, limit in LIMITS.items():
+        count = exceeding(runs, limit)
+        assert int(found.sel(limit_state=name).stripe_exceedances.sum()) == count, name
+    fitted = found.fragility_status.sel(limit_state=list(LIMITS)) == 0
+    assert int(fitted.sum()) >= 3
+    found.to_netcdf(tmp_path / "fragility.nc")
+    from matplotlib import pyplot as plt
+
+    axes = rf.plot.fragility(found, units={"acceleration": "g"})
+    names = axes.get_legend_handles_labels()[1]
+    assert all(any(text.startswith(name) for text in names) for name in LIMITS)
+    plt.close(axes.figure)
+    rf.report(found, tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    for name, limit in LIMITS.items():
+        assert name.split(" 0.")[0].split(" 6 ")[0] in page, limit
+
+
+def test_a_dynamic_analysis_narrows_limit_states_at_points():
+    system, top = rf.System(BLOCK), {"top": ("0 m", "2 m")}
+    drift = ("peak_point_horizontal_displacement", "4 cm", "top")
+    found = rf.incremental_dynamic_analysis(
+        system, SUITE[:2], scale=[1.0, 2.0, 4.0], limits=[ROOF, drift], points=top,
+        outputs=["rotation"], output_step="0.05 s", **HOW,
+    )  # fmt: skip
+    assert found.peak_point_horizontal_acceleration.dims == ("scale", "motion", "point")
+    assert found.rotation.dims == ("scale", "motion", "time")
+    narrowed = 0
+    for state, (name, least) in enumerate(((ROOF[0], 6.0), (drift[0], 0.04))):
+        for motion in found.motion.values:
+            capacity = found.capacity_scale.isel(limit_state=state).sel(motion=motion).item()
+            if not np.isfinite(capacity):
+                continue
+            around = rf.sweep(
+                system, SUITE[:2], scale=[capacity * (1 - 2e-3), capacity], points=top, **HOW
+            )
+            peaks = around[name].sel(motion=motion, point="top").values
+            assert peaks[0] < least <= peaks[1]
+            narrowed += 1
+    assert narrowed >= 2
+    curves = rf.fragility(found, trials="capacities")
+    assert curves.sizes["limit_state"] == 3

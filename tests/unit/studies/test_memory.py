@@ -22,6 +22,7 @@ MANY = 30_000
             SYSTEM, PULSE, scale=np.arange(1.0, MANY), height=(np.arange(1.0, MANY), "m")
         ),
         lambda: rf.probability_of_overturning(SYSTEM, PULSE, spread=SPREAD, cases=900_000_000),
+        lambda: rf.subset_simulation(SYSTEM, PULSE, spread=SPREAD, cases=9_000_000),
         lambda: rf.rocking_spectrum(
             SYSTEM, PULSE, periods=(np.linspace(2, 3, 200), "s"),
             slenderness=np.linspace(3, 4, 50),

@@ -142,3 +142,14 @@ def test_what_is_no_truth_value_is_refused(monkeypatch):
     assert np.isfinite(
         rf.critical_scale(SYSTEM, PULSE, largest=8.0, scales=5, **FAST).critical_scale
     )
+
+
+def test_one_bar_counts_all_levels(bars):
+    spread = {"scale": ("lognormal", 3.6, 0.1)}
+    found = rf.subset_simulation(SYSTEM, PULSE, spread=spread, cases=200, **FAST, progress=True)
+    (bar,) = bars
+    assert bar.n == bar.total == found.run_count.item() > 200
+    assert bar.totals[0] == 200
+    assert bar.words[0] == "subset_simulation, level 01 (total grows)"
+    assert "subset_simulation, level 02 step 01 (total grows)" in bar.words
+    assert bar.desc == "subset_simulation"

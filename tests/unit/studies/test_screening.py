@@ -136,5 +136,40 @@ def test_cases_that_fail_are_not_screened():
     assert runs.repeated.squeeze().to_numpy().tolist()[0] == 0.0
     assert runs.repeated.isnull().squeeze().to_numpy().tolist() == [False, True]
     assert "too heavy" in str(runs.message.to_numpy())
-    with pytest.raises(RockframeError, match="screen"):
-        SYSTEM.simulate(shaking(60), accuracy="screen")
+    for alone in (SYSTEM.simulate, lambda motion, **how: rf.critical_scale(SYSTEM, motion, **how)):
+        with pytest.raises(RockframeError, match=r"got 'screen'; sweeps, and analyses .* screen"):
+            alone(shaking(60), accuracy="screen")
+
+
+def on_rigid_ground():
+    block = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+    wall = rf.RearWall(side="left", restitution=-0.3)
+    parts = {"held": (), "sliding": (rf.RigidGround(friction=0.4),), "wall": (wall,)}
+    return {name: rf.System(block, *each) for name, each in parts.items()}
+
+
+@pytest.mark.parametrize("name", on_rigid_ground())
+def test_on_rigid_ground_all_run_at_standard_and_it_says_so(name, tmp_path):
+    system = on_rigid_ground()[name]
+    asked = {"scale": np.linspace(0.3, 1.5, 24).tolist(), "gravity": ["9.81 m/s^2", "9.8 m/s^2"]}
+    plain = rf.sweep(system, shaking(), **asked)
+    for store in (None, tmp_path / "study"):
+        found = rf.sweep(system, shaking(), **asked, accuracy="screen", store=store)
+        xr.testing.assert_identical(
+            found.drop_vars(SCREENED).drop_attrs(deep=False), plain.drop_attrs(deep=False)
+        )
+        for one in SCREENED:
+            assert found[one].dims == plain.overturned.dims
+            assert found[one].dtype == bool
+            assert not found[one].any()
+        assert found.attrs["accuracy"] == "standard"
+        words = "all ran at 'standard', which costs less here than 'screen'."
+        assert found.attrs["verdict"].endswith(words)
+    alone = rf.case(found, scale=asked["scale"][9], gravity="9.8 m/s^2").simulate(outputs=None)
+    assert alone.peak_rotation.item() == plain.peak_rotation.isel(scale=9, gravity=1).item()
+
+
+def test_screened_studies_without_a_result_have_gaps_on_rigid_ground_too():
+    system = on_rigid_ground()["held"]
+    runs = rf.sweep(system, shaking(60), height=(np.array([-1.0, 2.0]), "m"), accuracy="screen")
+    assert runs.repeated.isnull().squeeze().to_numpy().tolist() == [True, False]

@@ -89,6 +89,11 @@ ANALYSES = {
             SYSTEM, MOTIONS, spread=SPREAD, cases=24, **run
         )
     ],
+    "subset_simulation": [
+        lambda **run: rf.subset_simulation(
+            SYSTEM, MOTIONS, spread=SPREAD, limit=0.9, cases=60, levels=2, **run
+        )
+    ],
     "earthquake_sequences": [
         lambda **run: rf.earthquake_sequences(
             SYSTEM,

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pint
 import pytest
+import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, StudyError
@@ -342,3 +343,40 @@ def test_unusual_values_are_warned_of_once():
     with pytest.warns(ModelWarning, match="damping_ratio = 5 is 500 %") as said:
         rf.sweep(ON_PADS, PULSE, damping_ratio=[0.1, 5.0, 10.0], **FAST)
     assert len(said) == 1
+
+
+# abbreviations ----------------------------------------------------------------------------------
+
+
+def test_abbreviations_of_measures_are_the_axes_of_their_full_names():
+    system, sizes = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg")), [2.0, 4.0]
+    for short, full, unit, more in (
+        ("PGA", "peak_ground_acceleration", "m/s^2", {}),
+        ("PGV", "peak_ground_velocity", "m/s", {}),
+        ("SA", "pseudo_spectral_acceleration", "m/s^2", {"period": "0.5 s"}),
+    ):
+        one, other = (
+            rf.sweep(system, PULSE, **{name: (sizes, unit)}, **more, **FAST)
+            for name in (short, full)
+        )
+        xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
+        assert one.sizes[full] == 2
+        alone = rf.case(one, **{short: 4.0}).simulate(outputs=None)
+        assert alone.peak_rotation.item() == one.peak_rotation.sel({full: 4.0}).item()
+    peaks = rf.sweep(system, PULSE, cases={"PGA [m/s^2]": sizes}, **FAST)
+    assert peaks.peak_ground_acceleration.values.tolist() == sizes
+    spread = {"PGA": ("lognormal", "3 m/s^2", 0.2), "width": ("normal", "0.5 m", "2 cm")}
+    drawn = rf.probability_of_overturning(
+        system, PULSE, spread=spread, correlation={("PGA", "width"): 0.4}, cases=20, **FAST
+    )
+    assert "peak_ground_acceleration" in drawn.parameter
+    with pytest.raises(StudyError, match="'peak_ground_acceleration' is given twice"):
+        rf.sweep(system, PULSE, PGA=["1 m/s^2"], peak_ground_acceleration=["2 m/s^2"])
+
+
+def test_a_function_keeps_an_argument_of_that_name():
+    def scene(PGA):  # noqa: N803
+        return rf.System(rf.Block(width="0.5 m", height=f"{PGA} m", mass="400 kg"))
+
+    runs = rf.sweep(scene, PULSE, PGA=[1.0, 2.0], **FAST)
+    assert runs.sizes["PGA"] == 2

@@ -1,0 +1,209 @@
+"""Subset simulation: a small probability as a product of probabilities that are not small.
+
+Samples are standard normal numbers; whoever calls makes parameters of them.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from rockframe.results.outcome import Generic
+from rockframe.signals.arrays import Array
+from rockframe.studies.confidence import clopper_pearson
+
+Demand = Callable[[str, Array], Array]
+"""Runs samples, a row each, of a part of the whole that has a name; gives what each demands, NaN of
+one without an answer."""
+
+_FIRST_STEP: Final = 0.6
+"""Step of the first chains (Papaioannou et al., 2015)."""
+_ACCEPTED: Final = 0.44
+"""Share of accepted candidates at which chains mix best (Papaioannou et al., 2015)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """A sample given that the threshold before is exceeded."""
+
+    scores: Array  # standard normal numbers, a row for each sample
+    demands: Array  # NaN where a run told none, which is so at the first level alone
+    origins: Generic  # which run each is, counted from the first one of all
+    families: Generic  # from which sample of the first level each descends
+    threshold: float  # demand from which on a sample exceeds
+    chains: int  # how many there are
+    acceptance: float  # share of candidates that were taken; NaN at the first level [1]
+    runs: int
+    left_out: int  # runs without an answer
+
+    @property
+    def exceeds(self) -> Generic:
+        """Which samples exceed the threshold."""
+        return self.demands >= self.threshold
+
+    @property
+    def known(self) -> int:
+        """How many samples have a demand."""
+        return int((~np.isnan(self.demands)).sum())
+
+    @property
+    def share(self) -> float:
+        """Share of the samples that exceed the threshold [1]."""
+        return int(self.exceeds.sum()) / self.known if self.known else math.nan
+
+
+def subset_levels(
+    demand: Demand,
+    size: int,
+    limit: float,
+    *,
+    count: int,
+    share: float,
+    most: int,
+    rng: np.random.Generator,
+) -> Iterator[Level]:
+    """Sample level by level, until the limit is exceeded by a share that can be counted.
+
+    The last level has the limit for its threshold, whether or not it is exceeded: it is that at
+    which the share is reached, the one of greatest number, or one whose samples all demand the
+    same.
+    """
+    scores = rng.standard_normal((count, size))
+    demands = demand("level 01", scores)
+    origins: Generic = np.arange(count)
+    families, ran = origins, count
+    chains, acceptance, runs, step = count, math.nan, count, _FIRST_STEP
+    left_out = int(np.isnan(demands).sum())
+    for number in range(1, most + 1):
+        threshold = _threshold(demands, share, limit)
+        threshold = limit if number == most else threshold
+        level = Level(
+            scores, demands, origins, families, threshold, chains, acceptance, runs, left_out
+        )
+        yield level
+        if threshold >= limit:
+            return
+        (seeds,) = np.nonzero(level.exceeds)
+        chains, length = len(seeds), max(2, round(count / len(seeds)))
+        one = _Chains(scores[seeds], demands[seeds], origins[seeds], threshold, step)
+        one.grow(demand, f"level {number + 1:02d}", length, ran, rng)
+        scores, demands, origins = map(np.concatenate, (one.scores, one.demands, one.origins))
+        families = np.tile(families[seeds], length)
+        step, left_out, acceptance = one.step, one.left_out, one.acceptance
+        runs = chains * (length - 1)
+        ran += runs
+
+
+def _threshold(demands: Array, share: float, limit: float) -> float:
+    """Give the demand that a share of the samples reaches, halfway between two of them.
+
+    Demands that are the same stay together, so that the share is that which is nearest by its
+    logarithm. Where nothing parts the samples it is the limit.
+    """
+    values, counts = np.unique(demands[~np.isnan(demands)], return_counts=True)
+    if len(values) < 2:
+        return limit
+    above = counts[::-1].cumsum()[::-1][1:]  # samples from the second value on, the third, ...
+    place = int(np.argmin(np.abs(np.log(above / (share * counts.sum())))))
+    below, upper = float(values[place]), float(values[place + 1])
+    return min(limit, 0.5 * (below + upper) if math.isfinite(upper) else upper)
+
+
+class _Chains:
+    """Chains that all make a step at once, so that their runs go side by side."""
+
+    def __init__(
+        self, scores: Array, demands: Array, origins: Generic, threshold: float, step: float
+    ) -> None:
+        # after each step
+        self.scores, self.demands, self.origins = [scores], [demands], [origins]
+        self.step = step
+        self.left_out = 0
+        self._threshold = threshold
+        self._taken = list[float]()
+
+    def grow(
+        self, demand: Demand, name: str, length: int, ran: int, rng: np.random.Generator
+    ) -> None:
+        """Make all steps, :eq:`eq-conditional-candidate`; so many runs have been made before."""
+        for number in range(1, length):
+            scores, demands, origins = self.scores[-1], self.demands[-1], self.origins[-1]
+            noise = rng.standard_normal(scores.shape)
+            candidates = math.sqrt(1.0 - self.step**2) * scores + self.step * noise
+            found = demand(f"{name} step {number:02d}", candidates)
+            taken = found >= self._threshold
+            self.left_out += int(np.isnan(found).sum())
+            self.scores.append(np.where(taken[:, None], candidates, scores))
+            self.demands.append(np.where(taken, found, demands))
+            self.origins.append(np.where(taken, ran + np.arange(len(found)), origins))
+            ran += len(found)
+            self._taken.append(float(taken.mean()))
+            off = (self._taken[-1] - _ACCEPTED) / math.sqrt(number)
+            self.step = min(1.0, self.step * math.exp(off))
+
+    @property
+    def acceptance(self) -> float:
+        """Share of the candidates that were taken [1]."""
+        return float(np.mean(self._taken))
+
+
+def probability_of(levels: Sequence[Level]) -> float:
+    """Give the probability that the last threshold is exceeded, :eq:`eq-subset-product` [1]."""
+    return math.prod(level.share for level in levels)
+
+
+def family_shares(levels: Sequence[Level]) -> Array:
+    """Give the share that each first sample has in those that exceed the last threshold [1]."""
+    last = levels[-1]
+    count = np.bincount(last.families[last.exceeds], minlength=len(levels[0].demands))
+    return count[~np.isnan(levels[0].demands)] / max(int(count.sum()), 1)
+
+
+def variation_of(levels: Sequence[Level]) -> float:
+    """Give the coefficient of variation of the probability, :eq:`eq-subset-variation` [1]."""
+    if not probability_of(levels) > 0.0:
+        return math.inf
+    shares = family_shares(levels)
+    count = len(shares)
+    return math.sqrt(max(count * float((shares**2).sum()) - 1.0, 0.0) / (count - 1))
+
+
+def bounds_of(levels: Sequence[Level], confidence: float) -> tuple[float, float]:
+    """Give bounds of the probability, :eq:`eq-subset-bounds` [1].
+
+    Of a single level they are those of independent cases. Where nothing exceeds the last threshold
+    the probability is below that of the threshold before.
+    """
+    from scipy.stats import t
+
+    if len(levels) == 1:
+        first = levels[0]
+        exceeding = np.array(first.exceeds.sum())
+        lower, upper = clopper_pearson(exceeding, np.array(first.known), confidence)
+        return float(lower), float(upper)
+    if not probability_of(levels) > 0.0:
+        return 0.0, bounds_of(levels[:-1], confidence)[1]
+    variation = variation_of(levels)
+    freedom = max(1.0 / variation**2 - 1.0, 1.0) if variation > 0.0 else math.inf
+    reach = float(t.ppf(0.5 * (1.0 + confidence), freedom))
+    factor = math.exp(reach * math.sqrt(math.log1p(variation**2)))
+    probability = probability_of(levels)
+    return probability / factor, min(1.0, probability * factor)
+
+
+def weights_of(levels: Sequence[Level]) -> list[Array]:
+    """Give each sample the probability that it stands for, :eq:`eq-subset-weights` [1].
+
+    Samples that exceed a threshold are those in whose place the next level stands.
+    """
+    found: list[Array] = []
+    before = 1.0
+    for number, level in enumerate(levels, start=1):
+        stands = ~np.isnan(level.demands)
+        if number < len(levels):
+            stands &= ~level.exceeds
+        found.append(np.where(stands, before / max(level.known, 1), 0.0))
+        before *= level.share
+    return found

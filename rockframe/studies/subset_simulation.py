@@ -1,0 +1,410 @@
+"""How probable a rare limit state is where parameters and motions are spread."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Final, Unpack
+
+import numpy as np
+import xarray as xr
+
+from rockframe.arguments import whole_number
+from rockframe.errors import (
+    ComponentError,
+    ModelWarning,
+    SolverWarning,
+    StudyError,
+    collected_warnings,
+    shown,
+    warn,
+)
+from rockframe.motion import GroundMotion
+from rockframe.results.dataset import build_dataset
+from rockframe.results.joining import concat
+from rockframe.results.variables.studies import CASE, MOTION
+from rockframe.shared_arguments import takes
+from rockframe.signals.arrays import Array
+from rockframe.simulation.system import System
+from rockframe.studies.conditional_sampling import (
+    Level,
+    bounds_of,
+    family_shares,
+    probability_of,
+    subset_levels,
+    variation_of,
+    weights_of,
+)
+from rockframe.studies.confidence import read_level
+from rockframe.studies.limit_states import (
+    OVERTURNING,
+    STATES,
+    LimitState,
+    demands,
+    interrupted,
+    limit_states,
+    states_json,
+)
+from rockframe.studies.lines import INTERRUPTED, head
+from rockframe.studies.probability import SAMPLED, Spread, read_correlation, read_spread
+from rockframe.studies.rounds import Rounds, rounds_of
+from rockframe.studies.sweeps.arguments import SweepArguments
+from rockframe.studies.sweeps.case import remember, remembered
+from rockframe.studies.sweeps.motions import named_motions
+from rockframe.studies.sweeps.planning import check_memory
+from rockframe.studies.sweeps.scenes import own_motion, scene_of
+from rockframe.system.options import PointsLike
+from rockframe.units import Condition, RatioLike, to_ratio
+
+_OWNER: Final = "subset_simulation"
+_SHARE: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
+_FEWEST: Final = 5
+"""Chains of a level."""
+_MOST_CASES: Final = 10_000_000
+_MOST_LEVELS: Final = 50
+_FEW_FAMILIES: Final = 5
+"""Of so few the coefficient of variation is itself hardly known."""
+_TOLD: Final = ("axes_json", "study_sha256")
+"""Attributes that tell of the columns of a table, and under which name this process knows it."""
+
+
+@takes(SweepArguments)
+def subset_simulation(
+    system: System | Callable[..., System],
+    motions: GroundMotion | Mapping[str, GroundMotion] | Sequence[GroundMotion] | None = None,
+    *,
+    spread: Mapping[str, Any],
+    correlation: Mapping[tuple[str, str], RatioLike] | Array | None = None,
+    limit: object = OVERTURNING,
+    cases: int = 1000,
+    share: RatioLike = 0.1,
+    levels: int = 10,
+    seed: int = 0,
+    confidence: RatioLike = 0.95,
+    points: PointsLike | None = None,
+    **run: Unpack[SweepArguments],
+) -> xr.Dataset:
+    """Estimate a small probability that a limit state is exceeded, by subset simulation.
+
+    Parameters
+    ----------
+    system : System or callable
+        The scene, as for :func:`rockframe.sweep`.
+    motions : GroundMotion, or sequence or mapping of them, optional
+        Each case has one of them, all equally probable; the one among the parts of the system
+        unless given.
+    spread : mapping of str to distribution
+        What is random, as for :func:`rockframe.probability_of_overturning`.
+    correlation : mapping of (str, str) to float, or array, optional
+        Of the normal scores of parameters, as there [1].
+    limit : str, float or tuple, optional
+        The limit state: ``"overturning"``, a peak rotation over the overturning angle, or a
+        variable of runs and its limit, ``("peak_slip", "5 cm")``, as for
+        :func:`rockframe.fragility`.
+    cases : int, optional
+        Samples of each level.
+    share : float, optional
+        Of the samples of a level that are the beginnings of the next [1].
+    levels : int, optional
+        How many there are at most.
+    seed : int, optional
+        Of the random numbers: the same one draws the same cases.
+    confidence : float, optional
+        Of the bounds [1].
+    points : mapping of str to (str or Quantity, str or Quantity), optional
+        Points of the body, for a limit state at one of them, as for :func:`rockframe.sweep` [m].
+
+    Returns
+    -------
+    xarray.Dataset
+        ``exceedance_probability``, its bounds and ``coefficient_of_variation``; ``run_count``,
+        ``left_out_count`` of runs without a verdict, and ``family_count``. Over ``level``:
+        ``demand_threshold``, ``conditional_probability``, ``acceptance_rate`` and
+        ``chain_count``. Over ``case``, of all samples: the sweep that they are of,
+        ``demand``, ``sample_level``, and ``sample_weight``, with which they stand for the whole
+        distribution [1].
+
+    Raises
+    ------
+    UnitsError, ComponentError
+        An argument is out of range, or has a wrong unit or none; or the limit state is one to
+        which responses come neither nearer nor farther, such as uplift.
+    StudyError
+        No such parameter, with every fault found; or as for :func:`rockframe.sweep`.
+
+    Warns
+    -----
+    SolverWarning, ModelWarning
+        As :func:`rockframe.sweep` does.
+    ModelWarning
+        No sample exceeds the limit state, so that there is a bound from above alone; or
+        those that do descend from fewer than five samples of the first level.
+
+    Notes
+    -----
+    Au and Beck (2001), with the conditional sampling of Papaioannou et al. (2015),
+    :eq:`eq-conditional-candidate`. A level's samples are those of chains that begin at the samples
+    of the level before with the greatest demand; all chains make a step at once, in one sweep.
+    The demand is the response over its limit, infinite where the block has overturned. Where many
+    samples demand the same, as blocks that stay at rest do, a threshold lies above or
+    below all of them, and the share of the level is another than asked for.
+
+    The coefficient of variation counts how unequally the samples of the first level are
+    represented at the end, :eq:`eq-subset-variation`: so it holds what samples of one chain, chains
+    of one origin, and levels have in common. It cannot tell of a region of failure that no sample
+    of the first levels has come near; rocking may have several, and the way to overturning may
+    lead over motions of lesser rotation. Another `seed` or more `cases` show whether that is so.
+    Cases without a verdict are left out, and never accepted.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    >>> found = rf.subset_simulation(
+    ...     system,
+    ...     rf.GroundMotion.sine_pulse("2.2 m/s^2", "1.5 Hz"),
+    ...     spread={"scale": ("lognormal", 1.0, 0.2), "width": ("normal", "0.5 m", "0.02 m")},
+    ...     cases=200,
+    ...     free_vibration="4 s",
+    ... )
+    >>> 1e-5 < found.exceedance_probability.item() < 1e-2
+    True
+    """
+    scene = scene_of(system)
+    spreads = read_spread(spread, scene, owner=_OWNER)
+    matrix = read_correlation(correlation, [one.name for one in spreads], owner=_OWNER)
+    state = _read_limit(limit)
+    count = whole_number(cases, owner=_OWNER, name="cases", lowest=10, highest=_MOST_CASES)
+    part = to_ratio(share, owner=_OWNER, name="share", condition=_SHARE, example="0.1")
+    if round(part * count) < _FEWEST:
+        msg = (
+            f"{_OWNER}: share {part:g} of {count} cases are {round(part * count)} chains; expected "
+            f"{_FEWEST} at least: draw more cases"
+        )
+        raise ComponentError(msg)
+    most = whole_number(levels, owner=_OWNER, name="levels", lowest=1, highest=_MOST_LEVELS)
+    first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
+    trust = read_level(confidence, owner=_OWNER)
+    own = own_motion(scene) if motions is None else motions
+    named = None if own is None else named_motions(own)
+    wrong = check_memory(
+        {"samples": 2.0 + len(spreads)}, count * most, "draw fewer cases", owner=_OWNER
+    )
+    if wrong:
+        raise StudyError(*wrong)
+    asked = {**run, "points": points}
+    with rounds_of(system, named, asked, owner=_OWNER) as rounds:
+        sampler = _Sampler(rounds, spreads, matrix, list(named or ()), state)
+        every = subset_levels(
+            sampler.demand,
+            sampler.size,
+            np.inf if state.rotation == 1.0 else 1.0,
+            count=count,
+            share=part,
+            most=most,
+            rng=np.random.default_rng(first),
+        )
+        found, whole = _collected(every, kept=rounds.store is not None)
+    if sampler.said and whole:
+        warn(f"{_OWNER}: in further rounds: {sampler.said[0]}", ModelWarning)
+    dataset = _labelled(sampler, found, trust, whole=whole)
+    if whole:
+        _say_what_is_lacking(dataset)
+    return dataset.assign_attrs({
+        "title": "Subset simulation of a rocking system",
+        "limit_state": state.name,
+        STATES: states_json([state]),
+        SAMPLED: "subset simulation",
+        "seed": first,
+        "share": part,
+        "confidence": trust,
+        "verdict": _sentence(dataset, state, trust, len(named or ()), whole=whole),
+    })  # fmt: skip
+
+
+def _read_limit(given: object) -> LimitState:
+    """Read the limit state, which must be one that responses come near to."""
+    if isinstance(given, str | int | float | tuple):
+        state = limit_states([given], owner=_OWNER, name="limit")[0]
+        if state.rotation > 0.0 or state.value > 0.0:
+            return state
+        msg = (
+            f"{_OWNER}: limit {state.name!r} is met or not, and no response tells how near it is; "
+            "give 'overturning', a peak rotation over the overturning angle such as 0.1, or a "
+            "variable of runs and a value above zero"
+        )
+        raise ComponentError(msg)
+    msg = (
+        f"{_OWNER}: limit must be one limit state: 'overturning', a peak rotation over the "
+        f"overturning angle, or ('peak_slip', '5 cm') and the like, got {shown(given)}"
+    )
+    raise ComponentError(msg)
+
+
+class _Sampler:
+    """Makes parameters of normal scores, runs them, and keeps what the runs gave."""
+
+    def __init__(
+        self, rounds: Rounds, spreads: Sequence[Spread], matrix: Array | None,
+        names: Sequence[str], state: LimitState,
+    ) -> None:  # fmt: skip
+        self.said: list[str] = []  # what was warned of beyond the first level
+        self.runs: list[xr.Dataset] = []
+        self._rounds, self._spreads, self._names, self._state = rounds, spreads, names, state
+        self._root = np.eye(len(spreads)) if matrix is None else np.linalg.cholesky(matrix)
+
+    @property
+    def size(self) -> int:
+        """How many numbers a sample is of: one for the motion too, if there are several."""
+        return len(self._spreads) + (len(self._names) > 1)
+
+    def demand(self, part: str, scores: Array) -> Array:
+        """Run samples, a row of normal scores each."""
+        table = self._table(scores)
+        if self.runs:
+            with collected_warnings() as said:
+                runs = self._rounds.sweep(part, table, {})
+            self.said += said
+        else:
+            runs = self._rounds.sweep(part, table, {})
+        if interrupted(runs):
+            raise KeyboardInterrupt
+        # of a function that makes the motion the sweep has a dimension for it
+        self.runs.append(runs.isel({MOTION: 0}) if MOTION in runs.dims else runs)
+        return demands(self.runs[-1], self._state).to_numpy()
+
+    def _table(self, scores: Array) -> dict[str, Any]:
+        """Give the cases of samples, :eq:`eq-gaussian-copula`."""
+        from scipy.special import ndtr
+
+        count = len(self._spreads)
+        normal = scores[:, :count] @ self._root.T
+        # of either tail the share beyond, which is not rounded off
+        beyond = ndtr(-np.abs(normal))
+        table: dict[str, Any] = {
+            head(one.name, one.unit): np.where(
+                score > 0.0, one.distribution.isf(tail), one.distribution.ppf(tail)
+            )
+            for one, score, tail in zip(self._spreads, normal.T, beyond.T, strict=True)
+        }
+        if self._names:
+            several = len(self._names)
+            place = ndtr(scores[:, count]) * several if several > 1 else np.zeros(len(scores))
+            number = np.minimum(place.astype(int), several - 1)
+            table[MOTION] = np.array(self._names, dtype=object)[number]
+        return table
+
+
+def _collected(every: Iterator[Level], *, kept: bool) -> tuple[list[Level], bool]:
+    """Give the levels, and whether they are all."""
+    found: list[Level] = []
+    try:
+        found.extend(every)
+    except KeyboardInterrupt:
+        goes_on = "; the same call goes on, as it has a store" if kept else ""
+        words = f"{_OWNER}: interrupted at level {len(found) + 1}{goes_on}"
+        if not found:
+            raise StudyError(words) from None
+        warn(words, SolverWarning)
+        return found, False
+    return found, True
+
+
+def _labelled(
+    sampler: _Sampler, found: Sequence[Level], confidence: float, *, whole: bool
+) -> xr.Dataset:
+    """Give the samples of all levels, each with its run, and what follows from them."""
+    first = sampler.runs[0]
+    study = remembered(first.attrs)
+    if study is not None:  # by which `rockframe.case` finds motions and functions
+        remember(study)
+    samples = concat(sampler.runs, CASE).isel(
+        {CASE: np.concatenate([one.origins for one in found])}
+    )
+    samples = samples.assign_coords(
+        {CASE: (CASE, np.arange(samples.sizes[CASE]), first[CASE].attrs)}
+    )
+    lower, upper = bounds_of(found, confidence)
+    of_levels = build_dataset(
+        {
+            "level": np.arange(1, len(found) + 1),
+            "demand_threshold": np.array([one.threshold for one in found]),
+            "conditional_probability": np.array([one.share for one in found]),
+            "acceptance_rate": np.array([one.acceptance for one in found]),
+            "chain_count": np.array([one.chains for one in found]),
+            "exceedance_probability": probability_of(found) if whole else np.nan,
+            "exceedance_probability_lower_bound": lower if whole else 0.0,
+            "exceedance_probability_upper_bound": upper,
+            "coefficient_of_variation": variation_of(found) if whole else np.nan,
+            "run_count": sum(one.runs for one in found),
+            "left_out_count": sum(one.left_out for one in found),
+            "family_count": int((family_shares(found) > 0.0).sum()),
+        },
+        {},
+        source="subset simulation by event-driven runs",
+    )
+    of_samples = build_dataset(
+        {
+            "demand": np.concatenate([one.demands for one in found]),
+            "sample_level": np.repeat(of_levels["level"], [len(one.demands) for one in found]),
+            "sample_weight": np.concatenate(weights_of(found)),
+        },
+        {},
+        over=(CASE,),
+    )
+    known = {name: first.attrs[name] for name in _TOLD}
+    return (
+        samples.assign(of_levels.data_vars)
+        .assign_coords(of_levels.coords)
+        .assign(of_samples.data_vars)
+        .assign_attrs({**known, "source": of_levels.attrs["source"]})
+    )
+
+
+def _say_what_is_lacking(found: xr.Dataset) -> None:
+    """Warn of a probability that is not known, or hardly."""
+    families = int(found["family_count"])
+    if families == 0:
+        warn(
+            f"{_OWNER}: no sample exceeds the limit state, after {found.sizes['level']} levels: "
+            f"{_stuck(found)}",
+            ModelWarning,
+        )
+    elif families < _FEW_FAMILIES:
+        warn(
+            f"{_OWNER}: all samples that exceed descend from {families} of the first level, so "
+            "that the coefficient of variation is hardly known; draw more cases",
+            ModelWarning,
+        )
+
+
+def _stuck(found: xr.Dataset) -> str:
+    """Say why the limit state was not reached."""
+    last = found["demand"].where(found["sample_level"] == found.sizes["level"], drop=True)
+    if float(last.min()) == float(last.max()):
+        return f"all samples of the last demand {float(last.max()):.3g}, so that none leads on"
+    return f"the greatest demand is {float(last.max()):.3g}; allow more levels"
+
+
+def _sentence(
+    found: xr.Dataset, state: LimitState, confidence: float, motions: int, *, whole: bool
+) -> str:
+    """Tell the probability, and by how many runs."""
+    does = "Overturns" if state.rotation == 1.0 else f"Exceeds {state.name}"
+    lower, upper = (
+        float(found[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")
+    )
+    probability = float(found["exceedance_probability"])
+    if probability > 0.0:
+        text = (
+            f"{does} with probability {probability:.2e}, from {lower:.2e} to {upper:.2e} with "
+            f"confidence {confidence:g}, coefficient of variation "
+            f"{float(found['coefficient_of_variation']):.2g}"
+        )
+    else:
+        text = f"{does} with a probability below {upper:.2e} with confidence {confidence:g}"
+    levels = found.sizes["level"]
+    text += f", by {int(found['run_count'])} runs in {levels} level{'s' * (levels > 1)}"
+    if motions > 1:
+        text += f" under these {motions} motions"
+    lacking = int(found["left_out_count"])
+    if lacking:
+        text += f"; {lacking} without a verdict are left out"
+    return f"{text}." if whole else f"{text}{INTERRUPTED}"

@@ -1,0 +1,156 @@
+"""Subset simulation against probabilities in closed form, and how often its bounds hold them."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.stats import binom, norm
+
+import rockframe as rf
+from rockframe.studies.conditional_sampling import (
+    bounds_of,
+    probability_of,
+    subset_levels,
+    variation_of,
+    weights_of,
+)
+
+SEEDS = 200
+
+
+def one_side(scores):
+    """Give a sum that is standard normal."""
+    return scores.sum(axis=1) / math.sqrt(scores.shape[1])
+
+
+def two_sides(scores):
+    return np.abs(one_side(scores))
+
+
+def estimates(demand, size, limit, count, seeds=SEEDS):
+    """Probability, coefficient of variation and bounds, a row for each seed."""
+    rows = []
+    for seed in range(seeds):
+        levels = list(
+            subset_levels(
+                lambda _, scores: demand(scores), size, limit, count=count, share=0.1, most=12,
+                rng=np.random.default_rng(seed),
+            )
+        )  # fmt: skip
+        rows.append((probability_of(levels), variation_of(levels), *bounds_of(levels, 0.95)))
+    return np.array(rows).T
+
+
+@pytest.mark.parametrize("size", [1, 20])
+@pytest.mark.parametrize("probability", [1e-3, 1e-6])
+@pytest.mark.parametrize("demand", [one_side, two_sides])
+def test_probabilities_and_their_variation_are_those_of_normal_numbers(demand, size, probability):
+    limit = norm.isf(probability if demand is one_side else 0.5 * probability)
+    found, stated, lower, upper = estimates(demand, size, limit, 1000)
+    scatter = found.std() / found.mean()
+    # the mean of so many, within three of its standard errors and what levels found by the
+    # samples themselves add, of the order of one over the chains
+    assert found.mean() == pytest.approx(
+        probability, rel=3.0 * scatter / math.sqrt(SEEDS) + 5.0 / 100.0
+    )
+    # nearly what scatters; the standard error of a scatter of 200 is 5 % of it for normal numbers
+    assert math.sqrt(np.mean(stated**2)) == pytest.approx(scatter, rel=0.25)
+    held = int(((lower <= probability) & (probability <= upper)).sum())
+    assert held >= binom.ppf(0.001, SEEDS, 0.95)
+
+
+def test_more_samples_vary_less():
+    limit = norm.isf(1e-4)
+    scatter, stated = [], []
+    for count in (250, 1000, 4000):
+        found, variation, _, _ = estimates(one_side, 3, limit, count, seeds=100)
+        scatter.append(found.std() / 1e-4)
+        stated.append(float(np.median(variation)))
+    assert stated[0] / stated[1] == pytest.approx(2.0, rel=0.2)
+    assert stated[1] / stated[2] == pytest.approx(2.0, rel=0.2)
+    assert scatter[0] > scatter[1] > scatter[2]
+
+
+def test_weights_make_the_whole_distribution():
+    levels = list(
+        subset_levels(
+            lambda _, scores: one_side(scores), 2, norm.isf(1e-5), count=20_000, share=0.1, most=9,
+            rng=np.random.default_rng(4),
+        )
+    )  # fmt: skip
+    demands = np.concatenate([one.demands for one in levels])
+    weights = np.concatenate(weights_of(levels))
+    assert weights.sum() == pytest.approx(1.0, abs=1e-12)
+    assert weights[demands >= levels[-1].threshold].sum() == pytest.approx(
+        probability_of(levels), rel=1e-12
+    )
+    for value in (-1.0, 0.5, 2.0, 3.0, 4.0):
+        assert weights[demands >= value].sum() == pytest.approx(norm.sf(value), rel=0.12)
+    mean = float((weights * demands).sum())
+    assert mean == pytest.approx(0.0, abs=0.03)
+
+
+def test_the_first_level_alone_counts_independent_samples():
+    (level,) = subset_levels(
+        lambda _, scores: one_side(scores), 4, norm.isf(0.3), count=2000, share=0.1, most=5,
+        rng=np.random.default_rng(2),
+    )  # fmt: skip
+    exceeding = int(level.exceeds.sum())
+    assert probability_of([level]) == exceeding / 2000
+    # that of a binomial share
+    share = exceeding / 2000
+    assert variation_of([level]) == pytest.approx(math.sqrt((1 - share) / share / 1999), rel=1e-9)
+
+
+# a block under a pulse of random size ------------------------------------------------------------
+
+GRAVITY = 9.80665
+DURATION = 0.4
+BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+SYSTEM = rf.System(BLOCK, rotation="small")
+PULSE = rf.GroundMotion.half_sine_pulse("4 m/s^2", f"{DURATION} s")
+
+
+def critical_amplitude():
+    """Half-sine pulse that leaves a block of small rotation at its unstable equilibrium.
+
+    The part of the motion that grows, theta - alpha + theta'/p, has the rate p times itself and
+    p a/g; it starts at -alpha when the block lifts off, and must reach zero by the end of the
+    pulse.
+    """
+    slope = math.atan(0.25)
+    rate = math.sqrt(0.75 * GRAVITY / math.hypot(0.25, 1.0))
+    circular = math.pi / DURATION
+
+    def growing(amplitude):
+        start = math.asin(slope * GRAVITY / amplitude) / circular
+        moved, _ = quad(
+            lambda t: rate * amplitude / GRAVITY * math.sin(circular * t) * math.exp(-rate * t),
+            start, DURATION, epsabs=1e-13,
+        )  # fmt: skip
+        return moved - slope * math.exp(-rate * start)
+
+    return brentq(growing, slope * GRAVITY * 1.0001, 40.0, xtol=1e-12)
+
+
+@pytest.mark.parametrize(("dispersion", "seeds"), [(0.1, 12), (0.065, 6)])  # 1e-3, 1e-6
+def test_a_block_under_a_pulse_of_random_size(dispersion, seeds):
+    probability = norm.sf(math.log(critical_amplitude() / 4.0) / dispersion)
+    rows = []
+    for seed in range(seeds):
+        one = rf.subset_simulation(
+            SYSTEM, PULSE, spread={"scale": ("lognormal", 1.0, dispersion)}, cases=500, seed=seed,
+            free_vibration="6 s", progress=False, confidence=0.99,
+        )  # fmt: skip
+        ends = (float(one[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper"))
+        rows.append((float(one.exceedance_probability), *ends))
+        # whatever overturns is beyond the amplitude of the closed form
+        falls = np.isinf(one.demand)
+        assert float(one.scale.where(falls).min()) * 4.0 > critical_amplitude() * (1 - 1e-6)
+        assert float(one.scale.where(~falls).max()) * 4.0 < critical_amplitude() * (1 + 1e-6)
+    found, lower, upper = np.array(rows).T
+    assert ((lower <= probability) & (probability <= upper)).sum() >= seeds - 1
+    scatter = found.std(ddof=1)
+    assert found.mean() == pytest.approx(probability, abs=4.0 * scatter / math.sqrt(seeds))
