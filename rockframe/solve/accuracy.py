@@ -119,7 +119,7 @@ def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
         known = f"one of {names}, a tolerance such as 1e-6 or an Accuracy(...)"
         near = nearest(choice, map(str, AccuracyLevel))
         msg = f"accuracy must be {known}, got {shown(choice)}{near}"
-        msg += "; sweeps, and analyses made of them, screen" if choice == "screen" else ""
+        msg += "; sweeps, and analyses made of them, screen" if str(choice) == "screen" else ""
         raise SolverError(msg) from None
 
 

@@ -19,7 +19,7 @@ found = rf.subset_simulation(
         "scale": ("lognormal", 1.0, 0.2),
     },
     free_vibration="5 s",
-    cases=500,
+    cases=400,
     accuracy="fast",
     progress=False,
 )
