@@ -4,7 +4,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from rockframe.components import Component
+from rockframe.components import Component, RigidGround, Stack, TwoSpringSupport, WinklerSoil
 from rockframe.components.block_numbers import squat
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.proposals import hinted
@@ -27,6 +27,7 @@ _UPON: Final = (
     ("stack on {two pads}", ("stack", "pads"), Coupling.COUPLED),
     ("stack on {soil}", ("stack", "soil"), Coupling.COUPLED),
 )
+_ON_RIGID: Final = (("stack on rigid ground", ("stack",), Coupling.COUPLED),)
 _FRAME: Final = (("rigid ground", ("frame",), Coupling.COUPLED),)
 _WALL: Final = (
     *_STACK[:1],
@@ -83,18 +84,22 @@ def model_ladder(system: System) -> dict[str, System]:
     given = system.parts.components()
     present = system.parts.signature
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
-    rows = _UPON if "stack" in present else rows
+    if "stack" in present:
+        rows = _UPON if present & {"pads", "soil"} else _ON_RIGID
     rows = _FRAME if "frame" in present else rows
     rows = _WALL if "wall" in present else rows
     if system.parts.own():
         rows = _STACK[:1]
     slides = system.setting.slides and not system.parts.own()
-    if slides and squat(system.parts.the_block, ""):
+    if slides and "stack" not in present and squat(system.parts.the_block, ""):
         rows = ()  # held it would not rock
+    whole, held = given, Sliding.CHECKED if slides else system.sliding
+    if slides and "stack" in present:  # whose bases hold where they have no friction
+        given, held = {slot: _holding(part) for slot, part in given.items()}, system.sliding
     options: dict[str, Any] = {
         "restraint": system.restraint, "gravity": system.gravity,
         "inclination": system.inclination,
-        "sliding": Sliding.CHECKED if slides else system.sliding,
+        "sliding": held,
     }  # fmt: skip
     models: dict[str, System] = {}
     with warnings.catch_warnings():
@@ -117,11 +122,22 @@ def model_ladder(system: System) -> dict[str, System]:
                     )
     if slides:
         computed: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
-        held = list(models)[-1] if models else "rigid ground"
-        models[f"{held}, sliding"] = System(*given.values(), **computed)
+        last = list(models)[-1] if models else "rigid ground"
+        models[f"{last}, sliding"] = System(*whole.values(), **computed)
     if system.parts.own():
         models[system.setting.model] = System(*given.values(), rotation=system.rotation, **options)
     return models
+
+
+def _holding(part: Component) -> Component:
+    """Give a part whose base, or those between bodies, hold what stands on them."""
+    if isinstance(part, Stack):
+        return part.replace(interfaces=[_holding(one) for one in part.interfaces])
+    if isinstance(part, RigidGround):
+        return RigidGround(restitution=part.si.restitution)
+    if isinstance(part, TwoSpringSupport | WinklerSoil):
+        return part.replace(friction=None, kinetic_friction=None)
+    return part
 
 
 def _bases(given: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dict[str, Component]]:

@@ -185,6 +185,17 @@ def test_models_of_a_stack():
     assert list(ladder) == ["stack on soil, small rotations", "stack on soil"]
 
 
+@pytest.mark.parametrize("base", [rf.RigidGround(friction=0.5), GROUND])
+def test_models_of_a_stack_that_slides(base):
+    stone = rf.RigidGround(friction=0.4, impact="stick")
+    ladder = rf.model_ladder(rf.System(rf.Stack(STATUE, PLINTH, interfaces=[stone]), base))
+    where = "stack on two pads" if base is GROUND else "stack on rigid ground"
+    assert list(ladder) == [f"{where}, small rotations", where, f"{where}, sliding"]
+    assert [one.describe().split("\n")[0] for one in ladder.values()] == [
+        "Model: stack", "Model: stack", "Model: stack-sliding",
+    ]  # fmt: skip
+
+
 def test_contact_states_of_a_run_in_flight():
     hop = rf.GroundMotion.sine_pulse(amplitude="2 m/s^2", frequency="4 Hz").with_vertical(
         rf.GroundMotion.sine_pulse(amplitude="-25 m/s^2", frequency="4 Hz")
