@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rockframe.reports import page
 from rockframe.reports.values import column_head, number_in, value_of
 from rockframe.results.outcome import overturned_by
+from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits
@@ -89,6 +90,17 @@ def _sheets(columns: Iterable[_Column]) -> list[list[_Column]]:
     return [several[k : k + size] for k in range(0, len(several), max(1, size))]
 
 
+def _verdict(dataset: xr.Dataset, place: int) -> str:
+    """Tell whether the body of a case overturned; of a run that did not end, how it stopped."""
+    status = dataset["status"]
+    one = status.isel(dict.fromkeys(status.dims, 0)).copy()
+    one.values = status.to_numpy().ravel()[place]
+    if one.item() != RunStatus.COMPLETED:
+        return value_of(one)
+    passed = dataset["overturned"].to_numpy().ravel()[place] == 1
+    return "overturned" if passed else "did not overturn"
+
+
 def _table(
     dataset: xr.Dataset,
     order: NDArray[np.intp],
@@ -103,9 +115,7 @@ def _table(
     for place in order.tolist():
         labels = [written(value) for value in labels_at(dataset, place).values()]
         if with_verdict:
-            one = status.isel(dict.fromkeys(status.dims, 0)).copy()
-            one.values = status.to_numpy().ravel()[place]
-            labels.append(value_of(one))
+            labels.append(_verdict(dataset, place))
         numbers = [number_in(float(one.values[place]), one.unit, units) for one in columns]
         rows.append([*labels, *numbers])
     between = [""] * (len(status.dims) - 1 + with_verdict)
