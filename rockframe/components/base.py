@@ -324,7 +324,7 @@ class Component(metaclass=Proposing):
             Names of parameters; none, unless a class tells of such.
         """
         for name in several(changed, owner=type(self).__name__, name="changed", of="names"):
-            self._check_name(name, self._declared or self.parameters())
+            self._check_name(name, self.varied() or self.parameters())
         return ()
 
     def with_si(self, values: Mapping[str, Any]) -> Self:

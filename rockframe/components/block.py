@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping
 from typing import Any, ClassVar, Final, Self, cast
 
+from rockframe.arguments import by_names
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.block_numbers import (
@@ -249,6 +250,8 @@ class Block(Component):
         ComponentError
             A value is out of range, or does not fit the others.
         """
+        example = "{'width': 0.8}"
+        values = by_names(values, owner="Block.with_si", name="values", example=example)
         sizes = {name: values[name] for name in _BY_SIZE if name in values}
         if not sizes:
             return super().with_si(values)

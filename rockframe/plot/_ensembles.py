@@ -143,7 +143,7 @@ def subset_simulation(
     finite = np.isfinite(demand)
     # of samples that demand the same the last one has the weight of all
     last = np.flatnonzero(finite & np.append(demand[1:] != demand[:-1], True))
-    for number in given["level"].to_numpy():
+    for number in given["sampling_level"].to_numpy():
         those = last[level[last] == number]
         # where levels meet, samples of both stand side by side
         axes.plot(demand[those], reached[those], ".", ms=3.5, color=colour_of(int(number) - 1))

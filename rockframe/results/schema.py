@@ -135,7 +135,7 @@ COORDINATES: Final = (
     "contributing_intensity",
     "sequence",
     "earthquake",
-    "level",
+    "sampling_level",
 )
 """Variables that label a dimension, or a case: arithmetic and means leave them alone."""
 

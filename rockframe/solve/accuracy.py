@@ -119,7 +119,8 @@ def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
         known = f"one of {names}, a tolerance such as 1e-6 or an Accuracy(...)"
         near = nearest(choice, map(str, AccuracyLevel))
         msg = f"accuracy must be {known}, got {shown(choice)}{near}"
-        msg += "; sweeps, and analyses made of them, screen" if str(choice) == "screen" else ""
+        if isinstance(choice, str) and choice == "screen":
+            msg += "; sweeps, and analyses made of them, screen"
         raise SolverError(msg) from None
 
 

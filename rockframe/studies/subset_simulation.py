@@ -115,7 +115,7 @@ def subset_simulation(
     -------
     xarray.Dataset
         ``exceedance_probability``, its bounds and ``coefficient_of_variation``; ``run_count``,
-        ``left_out_count`` of runs without a verdict, and ``family_count``. Over ``level``:
+        ``left_out_count`` of runs without a verdict, and ``family_count``. Over ``sampling_level``:
         ``demand_threshold``, ``conditional_probability``, ``acceptance_rate`` and
         ``chain_count``. Over ``case``, of all samples: the sweep that they are of,
         ``demand``, ``sample_level``, and ``sample_weight``, with which they stand for the whole
@@ -324,7 +324,7 @@ def _labelled(
     lower, upper = bounds_of(found, confidence)
     of_levels = build_dataset(
         {
-            "level": np.arange(1, len(found) + 1),
+            "sampling_level": np.arange(1, len(found) + 1),
             "demand_threshold": np.array([one.threshold for one in found]),
             "conditional_probability": np.array([one.share for one in found]),
             "acceptance_rate": np.array([one.acceptance for one in found]),
@@ -343,7 +343,9 @@ def _labelled(
     of_samples = build_dataset(
         {
             "demand": np.concatenate([one.demands for one in found]),
-            "sample_level": np.repeat(of_levels["level"], [len(one.demands) for one in found]),
+            "sample_level": np.repeat(
+                of_levels["sampling_level"], [len(one.demands) for one in found]
+            ),
             "sample_weight": np.concatenate(weights_of(found)),
         },
         {},
@@ -363,8 +365,8 @@ def _say_what_is_lacking(found: xr.Dataset) -> None:
     families = int(found["family_count"])
     if families == 0:
         warn(
-            f"{_OWNER}: no sample exceeds the limit state, after {found.sizes['level']} levels: "
-            f"{_stuck(found)}",
+            f"{_OWNER}: no sample exceeds the limit state, after "
+            f"{found.sizes['sampling_level']} levels: {_stuck(found)}",
             ModelWarning,
         )
     elif families < _FEW_FAMILIES:
@@ -377,7 +379,7 @@ def _say_what_is_lacking(found: xr.Dataset) -> None:
 
 def _stuck(found: xr.Dataset) -> str:
     """Say why the limit state was not reached."""
-    last = found["demand"].where(found["sample_level"] == found.sizes["level"], drop=True)
+    last = found["demand"].where(found["sample_level"] == found.sizes["sampling_level"], drop=True)
     if float(last.min()) == float(last.max()):
         return f"all samples of the last demand {float(last.max()):.3g}, so that none leads on"
     return f"the greatest demand is {float(last.max()):.3g}; allow more levels"
@@ -400,7 +402,7 @@ def _sentence(
         )
     else:
         text = f"{does} with a probability below {upper:.2e} with confidence {confidence:g}"
-    levels = found.sizes["level"]
+    levels = found.sizes["sampling_level"]
     text += f", by {int(found['run_count'])} runs in {levels} level{'s' * (levels > 1)}"
     if motions > 1:
         text += f" under these {motions} motions"

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 MOST_THAT_SLIDE: Final = 7
 """Bodies of a stack that may slide; more have more modes than can be numbered."""
-ROUNDING: Final = 1e-9
-"""Share of a slip by which it is not known."""
+LEAST_OVERHANG: Final = 1e-3
+"""Share of half the width of its base by which a body is beyond an edge when that is told."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ class SlidingStackSetting(StackSetting):
         for k, (upper, lower, offset, slips) in enumerate(pairs, 1):
             room = lower.half_width - upper.half_width
             over = max(slips.right + offset, slips.left - offset) - room
-            if over > slips.peak * ROUNDING and slips.peak > 0.0:
+            if over > LEAST_OVERHANG * upper.half_width:
                 found.append(
                     f"body {k} slides {over:.3g} m beyond the edge of body {k + 1}, whose top goes "
                     "on without end in the model: what follows is not what would happen"

@@ -252,7 +252,7 @@ DIMENSION_NAMES = {
     "frequency",
     "flip",
     "scale",
-    "level",
+    "sampling_level",
     "parameter",
     "unknown",
     "other_unknown",

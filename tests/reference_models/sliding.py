@@ -188,8 +188,9 @@ def model_on_base(system, motion):
         fast = math.sqrt(width * base.stiffness)
     given = system.setting
     return slipping_block.Block(
-        body.half_width, body.centre_height, body.inertia / mass, given.static, given.kinetic,
-        gravity, str(system.restraint), base, times, along, normal,
+        body.half_width, body.centre_height, body.inertia / mass,
+        given.friction.static, given.friction.kinetic, gravity,
+        str(system.restraint), base, times, along, normal,
         tuple(system.setting.overturning_angles),
         longest=0.05 / fast,
     )  # fmt: skip

@@ -15,7 +15,7 @@ RANK: Final = ("rank",)
 QUANTILE: Final = ("quantile",)
 RUN: Final = ("run",)
 COVARIATE: Final = ("covariate",)
-LEVEL: Final = ("level",)
+LEVEL: Final = ("sampling_level",)
 
 
 class FragilityStatus(IntEnum):
@@ -399,7 +399,7 @@ PROBABILITY: Final = (
 """Of overturning, where parameters are spread."""
 
 SUBSETS: Final = (
-    counting("level", "number of the level"),
+    counting("sampling_level", "number of the level"),
     Variable(
         "demand_threshold",
         LEVEL,

@@ -60,7 +60,11 @@ def test_what_is_missing_is_named(runs):
     for wrong, kind, match in (
         (("peak_slip", "5 cm"), SchemaError, "the runs have no 'peak_slip"),
         (("peak_slip", "5 kg"), UnitsError, "peak_slip"),
-        (("girth", 1), ComponentError, "no variable 'girth'; give one such as in \\('peak_slip'"),
+        (
+            ("girth", 1),
+            ComponentError,
+            "is called 'girth'; a limit state is for example \\('peak_slip'",
+        ),
         (ROOF[:2], ComponentError, "is of point; give one of 'foot', 'top'"),
         ((*ROOF[:2], "roof"), ComponentError, "got 'roof'"),
     ):

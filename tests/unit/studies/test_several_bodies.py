@@ -130,6 +130,7 @@ def test_unlike_numbers_of_bodies_stand_side_by_side(tmp_path, outputs):
     np.testing.assert_array_equal(in_memory.peak_body_slip, slips)
 
 
+@pytest.mark.filterwarnings("ignore:.*beyond the edge")
 def test_slips_of_a_body_are_a_limit_state():
     runs = rf.sweep(column(2), PULSE, friction=[0.2, 0.3], scale=[0.5, 1.0, 2.0], **FOUR)
     found = rf.fragility(runs, limits=[("peak_body_slip", "1 cm", 2)], pooled=["friction"])
@@ -143,7 +144,7 @@ def test_what_is_missing_is_told_with_its_remedy():
         (("peak_settlement", "1 cm"), SchemaError, r"a sweep has it with points=\{...\}"),
         (("peak_setlement", "1 cm"), ComponentError, "'peak_settlement' or"),
         (("peak_point_vertical_displacement", "1 cm"), SchemaError, "has it with points"),
-        (("peak_body_slip", "1 cm", 1), SchemaError, "the runs have no peak_body_slip"),
+        (("peak_body_slip", "1 cm", 1), SchemaError, "the runs have no 'peak_body_slip"),
     ):
         with pytest.raises(kind, match=match):
             rf.fragility(runs, limits=[wrong])

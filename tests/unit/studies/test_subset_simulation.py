@@ -43,10 +43,12 @@ def test_its_numbers_are_labelled_and_told(found, tmp_path):
     found.to_netcdf(tmp_path / "found.nc")
     with xr.open_dataset(tmp_path / "found.nc") as again:
         xr.testing.assert_identical(again.load().drop_attrs(), found.drop_attrs())
-    assert found.sizes["level"] > 2
+    assert found.sizes["sampling_level"] > 2
     assert found.attrs["limit_state"] == "overturning"
     assert f"{found.exceedance_probability.item():.2e}" in found.verdict
-    assert f"{found.run_count.item()} runs in {found.sizes['level']} levels" in found.verdict
+    assert (
+        f"{found.run_count.item()} runs in {found.sizes['sampling_level']} levels" in found.verdict
+    )
     assert "under these 2 motions" in found.verdict
     assert found.left_out_count.item() == 0
 
@@ -64,7 +66,7 @@ def test_levels_and_samples_hang_together(found):
     assert weight == pytest.approx(product, rel=1e-12)
     assert float(found.sample_weight.sum()) == pytest.approx(1.0, rel=1e-12)
     # a level's samples have all reached the threshold before, and its weights stand below its own
-    for level in found.level.values[1:]:
+    for level in found.sampling_level.values[1:]:
         inside = found.demand.values[found.sample_level.values == level]
         assert inside.min() >= found.demand_threshold.values[level - 2]
     # runs are those of the first sample, and a candidate for each sample that begins no chain
@@ -243,7 +245,7 @@ def test_an_interrupted_simulation_says_so_and_goes_on(tmp_path, monkeypatch):
             part = simulated(cases=200, store=tmp_path / "study")
         assert part.verdict.endswith("; interrupted.")
         assert np.isnan(part.exceedance_probability)
-        assert part.sizes["level"] == 2
+        assert part.sizes["sampling_level"] == 2
         bound = part.exceedance_probability_upper_bound.item()
         assert whole.exceedance_probability.item() < bound < 1.0
         with pytest.raises(StudyError, match=r"interrupted at level 1$"):
@@ -279,7 +281,7 @@ def test_what_is_no_such_thing_is_refused(asked, words):
 
 
 def test_variables_that_runs_do_not_have_are_named():
-    with pytest.raises(rf.errors.SchemaError, match="have no peak_point_horizontal_acceleration"):
+    with pytest.raises(rf.errors.SchemaError, match="have no 'peak_point_horizontal_acceleration"):
         simulated(limit=("peak_point_horizontal_acceleration", "1 m/s^2"), cases=50)
     with pytest.raises(ComponentError, match=r"was 'peak_slip' or .* meant"):
         simulated(limit=("peak_slips", "1 m"))
