@@ -138,8 +138,6 @@ def critical_amplitude():
 # of few families too the bounds must hold
 @pytest.mark.filterwarnings("ignore:.*hardly known:rockframe.errors.ModelWarning")
 @pytest.mark.parametrize(("dispersion", "seeds"), [(0.1, 12), (0.065, 6)])  # 1e-3, 1e-6
-# of so few samples some families are few, which is told, and is not what is tested
-@pytest.mark.filterwarnings("ignore:.*descend from")
 def test_a_block_under_a_pulse_of_random_size(dispersion, seeds):
     probability = norm.sf(math.log(critical_amplitude() / 4.0) / dispersion)
     rows = []
