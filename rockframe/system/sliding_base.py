@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 
 MOST_THAT_SLIDE: Final = 7
 """Bodies of a stack that may slide; more have more modes than can be numbered."""
-LEAST_OVERHANG: Final = 1e-3
-"""Share of half the width of its base by which a body is beyond an edge when that is told."""
+LEAST_OVERHANG: Final = 0.1
+"""Share of half the width of its base by which a body is beyond an edge when that is told.
+
+By as much the lever of the edge, which bears in its place, is shorter than that of its corner."""
 
 
 @dataclass(frozen=True)
@@ -137,7 +139,7 @@ class SlidingStackSetting(StackSetting):
             if over > LEAST_OVERHANG * upper.half_width:
                 found.append(
                     f"body {k} slides {over:.3g} m beyond the edge of body {k + 1}, whose top goes "
-                    "on without end in the model: what follows is not what would happen"
+                    "on without end in the model: it would tip about that edge sooner"
                 )
         return found
 
