@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 import rockframe as rf
+from rockframe.dynamics.chain.motion import load_bodies
 from rockframe.dynamics.events import EventKind
 from rockframe.errors import AssemblyError, ModelWarning
+from rockframe.system.assembly import assemble
 
 pytestmark = pytest.mark.analytical
 
@@ -163,3 +165,19 @@ def test_the_friction_of_each_base_is_told():
     assert "0.3, 0.2, held in impacts" in told
     assert "base 2: friction at rest, and of slip" in told
     assert EventKind.SLIP in set(system.simulate(noise(5, 6.0)).event_kind.values.tolist())
+
+
+@pytest.mark.parametrize("corners", [0b1101, 0b1110, 0b1111])
+@pytest.mark.parametrize("slip", [2.0, -2.0])
+def test_the_energy_that_chooses_among_impacts_is_what_they_lose(corners, slip):
+    stack = rf.Stack(STATUE, PLINTH, interfaces=[ground(0.3)])
+    system = assemble((stack, ground(0.4))).setting.contact_model().system
+    state, flying = np.zeros(12), system.with_bearing(0, 0, 0)
+    # the upper body comes down turning, and both slip
+    state[6:] = 0.7, -0.4, 0.0, 0.0, slip, -0.5 * slip
+    had = system.energies(flying, state).kinetic
+    load_bodies(system, 0.0, 0.0, system.places())
+    found = system.try_corners(flying, corners, 0b1111, True, 0.0, state)
+    assert [system.slip_sense(k) for k in range(2)] == [np.sign(slip), -np.sign(slip)]
+    system.change_velocities(state)
+    assert found.loss == pytest.approx(had - system.energies(flying, state).kinetic, rel=1e-12)

@@ -19,6 +19,7 @@ from rockframe.dynamics.chain.impact import (
     LEFT_ONLY,
     NEARLY_ZERO,
     NOISE,
+    RIGHT_ONLY,
     Attempt,
     attempt,
     bearing_corners,
@@ -149,8 +150,9 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
         first, ratio = which * CONSTRAINT, room[k * PLACES + at.RUBS]
         if ratio == 0.0:
             return 0.0
-        both = room[k * PLACES + at.LEFT_CORNER] != NONE
-        slip, _ = self.slip_on(k, LEFT_ONLY if both else BOTH, state)
+        # the same at both corners, where both bear
+        left = room[k * PLACES + at.LEFT_CORNER] != NONE
+        slip, _ = self.slip_on(k, LEFT_ONLY if left else RIGHT_ONLY, state)
         leaned = of_both(self, k, first + at.HOLDS, room, rows) - rows[first + at.VALUE]
         return float(-rows[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
 
