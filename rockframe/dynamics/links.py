@@ -470,3 +470,20 @@ class Tie(NamedTuple):
     def shown(self, state: int) -> int:
         """Give the state that users see."""
         return SHOWN_PRESSED if state == SLACK and self.pushes != 0.0 else state
+
+
+SHIPPED: Final = (Tie(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Bumper(0.0, 0.0, 0.0), SteadyForce(0.0))
+"""A law of each class that restrainers, tendons, walls and loads follow."""
+
+
+def kinds_of(laws: Sequence[Any]) -> list[Any]:
+    """Give a law of each class that links of these laws may follow.
+
+    All that parts follow are there as soon as one of them is, so that links of any of them run by
+    the same machine code.
+    """
+    found = {type(law): law for law in laws}
+    if any(type(law) in found for law in SHIPPED):
+        own = [law for kind, law in found.items() if kind not in map(type, SHIPPED)]
+        return [*SHIPPED, *own]
+    return list(found.values())

@@ -235,11 +235,15 @@ class LinkRows(Linkable):
 
 
 def numbers_of_link(link: ChainLink, law: Any, value: int) -> Vector:
-    """Give the row of a link, its state worth `value` in the mode of the system."""
+    """Give the row of a link, its state worth `value` in the mode of the system.
+
+    `law` is that of all links, with the numbers of this one's own.
+    """
     apart, reach = math.hypot(*link.apart), math.hypot(*link.on_point) + math.hypot(*link.to_point)
     geometry = (
         link.on, *link.on_point, link.to, *link.to_point, *link.apart, apart,
-        ROUNDING * (apart + reach), 0.0, value, room_of_states(law.states()), *link.along,
+        ROUNDING * (apart + reach), 0.0, value, room_of_states(link.numbers.law.states()),
+        *link.along,
     )  # fmt: skip
     return np.array([*geometry, *numbers_in(law)], dtype=np.float64)
 

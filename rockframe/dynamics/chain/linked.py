@@ -30,7 +30,7 @@ from rockframe.dynamics.chain.link_rows import (
     room_of_states,
 )
 from rockframe.dynamics.chain.rows import PLACES
-from rockframe.dynamics.links import GUARDS, one_of
+from rockframe.dynamics.links import GUARDS, kinds_of, one_of
 from rockframe.dynamics.protocol import (
     LAST_EVENT,
     LINK_LOSS,
@@ -202,12 +202,12 @@ def rows_of_links(links: Sequence[ChainLink], modes: int, bodies: int) -> tuple[
     Behind the modes of the bodies by themselves, of which there are so many.
     """
     laws = [one.numbers.law for one in links]
-    kinds = list({type(law): law for law in laws}.values())
+    kinds = kinds_of(laws)
     own = [one_of(kinds, law) for law in laws]
     rows, value = list[Vector](), modes
     for one, each in zip(links, own, strict=True):
         rows.append(numbers_of_link(one, each, value))
-        value *= room_of_states(each.states())
+        value *= room_of_states(one.numbers.law.states())
     if value > MOST_MODES:
         msg = f"{len(links)} links are more than {bodies} bodies can have"
         raise AssemblyError([msg])
