@@ -385,7 +385,7 @@ def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
     found: dict[str, str] = {}
     lower = () if parts.stack is None else parts.stack.bodies
     named = {
-        slot: parts.components().get(slot) for slot in ("block", "wall", "pads", "cap", "soil")
+        slot: parts.components.get(slot) for slot in ("block", "wall", "pads", "cap", "soil")
     }
     if parts.frame is not None:
         named["block"] = parts.frame

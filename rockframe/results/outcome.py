@@ -236,7 +236,7 @@ def scalars(
         "flight_count": run.flight_count,
         "energy_residual": run.energy_residual,
         "status": int(run.status),
-        "overturning_angle": angles.least,
+        "overturning_angle": min(angles),
         "uplift_angle": uplift_angle,
     }
 

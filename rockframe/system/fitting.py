@@ -34,7 +34,7 @@ def misfits(parts: Parts) -> list[str]:
         faults += _misfits_of_frame(parts)
     elif block is None:
         faults.append("no Block is given")
-    given = parts.components()
+    given = parts.components
     if parts.ground is not None:
         others = [type(part).__name__ for part in (pads, cap, soil) if part is not None]
         if others:
@@ -115,7 +115,7 @@ def _misfits_of_frame(parts: Parts) -> list[str]:
     ]
     others = [
         type(part).__name__
-        for slot, part in parts.components().items()
+        for slot, part in parts.components.items()
         if slot not in ("frame", "ground") and not isinstance(part, Tendon)
     ]
     if others:

@@ -81,7 +81,7 @@ class PadSupport(Support):
         )  # fmt: skip
 
     def _numbers(self) -> list[tuple[str, str]]:
-        omega = self.load.body.frequency_at(self.load.gravity)
+        omega = self.load.body.frequency_at(self.load.options.gravity)
         return [
             ("rocking frequency omega, Eq. (6)", f"{omega:.6g} rad/s"),
             ("frequency ratio beta, Eq. (8)", f"{self.vertical_frequency / omega:.6g}"),
@@ -111,7 +111,7 @@ def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
         stiffness = given.stiffness
         vertical = sqrt(2.0 * stiffness / body.mass)
     else:
-        vertical = given.frequency_ratio * body.frequency_at(load.gravity)
+        vertical = given.frequency_ratio * body.frequency_at(load.options.gravity)
         stiffness = 0.5 * body.mass * vertical**2
     damping = given.damping
     if damping is None:

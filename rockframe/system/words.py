@@ -64,7 +64,7 @@ _WIDTH = 100
 
 def describe(setting: "Setting", parts: "Parts") -> str:
     """Tell the model, its equations, its numbers and its limits."""
-    words = setting.words()
+    words, body, height = setting.words(), setting.body, setting.body.centre_height
     lines = [f"Model: {setting.model}"]
     lines += _section("Parts", [("", repr(part)) for part in parts.given()])
     lines += _section("Contact states and their equations", words.equations)
@@ -74,7 +74,8 @@ def describe(setting: "Setting", parts: "Parts") -> str:
         [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
             *_overturning(setting),
-            ("friction to rock, at least b/h", f"{setting.body.least_friction:.6g}"),
+            # with less, the base slides before an end of it lifts, on the lesser side
+            ("friction to rock, at least b/h", f"{min(body.left, body.right) / height:.6g}"),
             *words.numbers,
         ],
     )
