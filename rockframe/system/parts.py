@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from inspect import getattr_static
-from typing import Any, Final, cast
+from typing import Any, Final
 
 from rockframe.components import (
     Block,
