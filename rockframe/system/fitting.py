@@ -9,7 +9,7 @@ from rockframe.components.ground import Impact
 from rockframe.many import isfinite
 from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
-from rockframe.system.parts import Parts, slot_of
+from rockframe.system.parts import Parts, slot_of_kind
 from rockframe.system.rear_wall import IMPACT_TIME, yielding_wall
 
 SMALL_SLIDING: Final = (
@@ -142,7 +142,7 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
         "the bodies of a Stack stand on TwoSpringSupport, WinklerSoil or RigidGround, not on "
         f"{type(one).__name__}"
         for one in standing
-        if slot_of(one) not in BASES or isinstance(one, OwnBase)
+        if slot_of_kind(type(one)) not in BASES or isinstance(one, OwnBase)
     ]
     if any(isinstance(one, RigidGround) and one.si.restitution is not None for one in standing):
         faults.append(
@@ -158,7 +158,8 @@ def contradictions(parts: Parts) -> list[str]:
     depths = {
         type(part).__name__: float(depth.m_as("m"))
         for part in (parts.cap or parts.block, parts.soil)
-        if (depth := getattr(part, "depth", None)) is not None
+        # of its class, since a component that lacks it proposes others
+        if hasattr(type(part), "depth") and (depth := getattr(part, "depth")) is not None  # noqa: B009
     }
     if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_ROUNDING_OF_DEPTHS):
         return []
@@ -198,20 +199,14 @@ def friction_under(part: Component, options: Options) -> BaseFriction | None:
     return BaseFriction(static, kinetic, math.inf if sticks else kinetic)
 
 
-def is_sliding(parts: Parts, options: Options) -> bool:
-    """Whether a block stands on rigid ground on which it slides."""
-    behind_wall = parts.wall is not None and not parts.wall.elastic
-    if parts.block is None or behind_wall or parts.ground is None:
-        return False
-    return friction_under(parts.ground, options) is not None
-
-
 def missizes(parts: Parts, options: Options) -> list[str]:
     """Give the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
     faults: list[str] = []
-    # impacts in a stack let a squat body land flat
-    if block is not None and not parts.own() and not is_sliding(parts, options):
+    behind_wall = parts.wall is not None and not parts.wall.elastic
+    held = behind_wall or parts.ground is None or friction_under(parts.ground, options) is None
+    # impacts of bodies that slide, and of those in a stack, let a squat one land flat
+    if block is not None and not parts.own() and held:
         faults += squat(block.si, type(block).__name__)
     if block is not None and cap is not None:
         body = parts.the_cap

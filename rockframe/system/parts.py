@@ -101,11 +101,6 @@ def known_kind(of: type) -> type | None:
     return next((kind for kind in of.__mro__ if kind in _KINDS), None)
 
 
-def slot_of(part: object) -> str | None:
-    """Give the slot that a part fills; None if it is no part."""
-    return slot_of_kind(type(part))
-
-
 def slot_of_kind(of: type) -> str | None:
     """Give the slot that parts of a class fill; None if they are no parts."""
     kind = known_kind(of)
@@ -132,9 +127,16 @@ def beyond_models(part: object) -> list[str]:
     if known is None or not isinstance(part, Component):
         return []
     own = type(part)
-    added = sorted(
-        name for name in vars(part.given) if _declares(own, name) and not _declares(known, name)
+    # parameters; a property of the same name is none
+    declared, expected = (
+        {
+            name
+            for name in vars(part.given)
+            if isinstance(getattr_static(kind, name, None), Declared)
+        }
+        for kind in (own, known)
     )
+    added = sorted(declared - expected)
     if added:
         return [
             f"{own.__name__} adds {' and '.join(added)} to {known.__name__}, of which no model "
@@ -144,11 +146,6 @@ def beyond_models(part: object) -> list[str]:
     if any("support" in vars(kind) for kind in between):
         return [f"{own.__name__} carries a body in its own way, but {_to_register(own)}"]
     return []
-
-
-def _declares(kind: type, name: str) -> bool:
-    """Whether a class has a parameter of a name; a property of that name is none."""
-    return isinstance(getattr_static(kind, name, None), Declared)
 
 
 def hint_for(part: object) -> str:
@@ -288,7 +285,7 @@ def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
     """Put each part in its slot; note doubled parts and things that are no parts."""
     found: dict[str, Any] = {}
     for part in given:
-        slot = slot_of(part)
+        slot = slot_of_kind(type(part))
         if slot is None:
             faults.append(f"{shown(part)} is not a part of a system{hint_for(part)}")
         elif slot == RESTRAINER:

@@ -107,23 +107,20 @@ def _overturning(setting: "Setting") -> list[tuple[str, str]]:
 
 
 def _section(title: str, rows: list[tuple[str, str]]) -> list[str]:
-    """Set names and words in two columns, the second as far right as the longest name needs."""
+    """Set names and words in two columns, the second as far right as the longest name needs.
+
+    Lines are broken behind commas and semicolons, so that numbers keep their names and units.
+    """
     longest = max(len(name) for name, _ in rows)
     lines = [f"{title}:"]
     for name, words in rows:
         first = f"  {name:<{longest}}  " if name else "  "
         following = " " * (len(first) if name else 4)
-        broken = _broken(words, _WIDTH - len(following))
+        width, broken = _WIDTH - len(following), list[str]()
+        for piece in re.split(r"(?<=[,;]) ", words):
+            if broken and len(broken[-1]) + 1 + len(piece) <= width:
+                broken[-1] += f" {piece}"
+            else:
+                broken += wrap(piece, width, break_long_words=False, break_on_hyphens=False) or [""]
         lines += [first + broken[0], *(following + line for line in broken[1:])]
-    return lines
-
-
-def _broken(words: str, width: int) -> list[str]:
-    """Break behind commas and semicolons, so that numbers keep their names and units."""
-    lines: list[str] = []
-    for piece in re.split(r"(?<=[,;]) ", words):
-        if lines and len(lines[-1]) + 1 + len(piece) <= width:
-            lines[-1] += f" {piece}"
-        else:
-            lines += wrap(piece, width, break_long_words=False, break_on_hyphens=False) or [""]
     return lines
