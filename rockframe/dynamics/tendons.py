@@ -42,7 +42,7 @@ LINK_PLACE: Final = len(MEMORY)
 """Index into the memory: the tendon of the last event, counted from 1; 0 for none."""
 
 
-class TiedNumbers(NamedTuple):
+class FrameNumbers(NamedTuple):
     """The numbers of columns under a beam with tendons."""
 
     rocking: bare.BlockOnRigidGround
@@ -53,7 +53,7 @@ class TiedNumbers(NamedTuple):
     rows: Vector  # of the tendons, then room to work in
 
 
-class TiedFrame(TiedNumbers, OnRigidGround):
+class TiedFrame(FrameNumbers, OnRigidGround):
     """Columns under a beam with tendons: a system."""
 
     __slots__ = ()
