@@ -91,19 +91,7 @@ class PadSupport(Support):
 
 
 def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
-    """Give pads under a block: stiffness and damping of one pad by Eqs. (7) and (8).
-
-    Parameters
-    ----------
-    pads : TwoSpringSupport
-        As given by the user.
-    load : BaseLoad
-        The block on them.
-
-    Returns
-    -------
-    PadSupport
-    """
+    """Give pads under a block: stiffness and damping of one pad by Eqs. (7) and (8)."""
     given, body = pads.si, load.body
     if given.stiffness is not None:
         stiffness = given.stiffness
