@@ -183,6 +183,11 @@ class OnRigidGround:
         """Give 1, the number of bodies."""
         return 1
 
+    @kernel
+    def variables(self) -> int:
+        """Give 0: what has none of its own."""
+        return 0
+
     @inlined
     def relaxation_in(self, mode: int) -> float:
         """Give 0: no constraint decays."""

@@ -94,11 +94,6 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
         return 1
 
     @kernel
-    def variables(self) -> int:
-        """Give 0."""
-        return 0
-
-    @kernel
     def guards(self) -> int:
         """Give the number of guards."""
         return GUARDS

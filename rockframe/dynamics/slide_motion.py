@@ -103,11 +103,6 @@ class SlideMotion(OnRigidGround):
         return SIZE
 
     @kernel
-    def variables(self) -> int:
-        """Give 0."""
-        return 0
-
-    @kernel
     def guards(self) -> int:
         """Give the number of guards."""
         return GUARDS

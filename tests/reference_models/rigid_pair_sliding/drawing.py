@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from reference_models.rigid_pair import drawing
-from reference_models.rigid_pair.drawing import log_between
+from reference_models.rigid_pair.drawing import draw_pair, log_between
 from reference_models.rigid_pair.ground import Piece, pieces_of, still
-from reference_models.rigid_pair.pair import GRAVITY, Body, Pair
+from reference_models.rigid_pair.pair import GRAVITY, Pair
 
 from .choices import Frictions
 from .contacts import INTERFACES, Friction
@@ -44,34 +44,21 @@ def draw(seed) -> Scene:
     impacts.
     """
     rng = np.random.default_rng(seed)
-    pair = None
-    while pair is None:
-        pair = _pair(rng)
+    while True:
+        pair = draw_pair(rng, (0.6, 2.0), (0.6, 4.0), (0.3, 0.9), 0.6)
+        if _stands(pair):
+            break
     sides = zip(INTERFACES, pair.limits, strict=True)
     frictions = {key: _friction(rng, math.tan(min(-one, two))) for key, (one, two) in sides}
     return Scene(pair, frictions, _motion(rng, pair, frictions))
 
 
-def _pair(rng: np.random.Generator) -> Pair | None:
-    bodies, width = [], float(rng.uniform(0.6, 2.0))
-    for _ in range(2):
-        height = width * log_between(rng, 0.6, 4.0)
-        mass = 2000.0 * width * height * log_between(rng, 0.5, 2.0)
-        body = Body.uniform(width, height, mass)
-        if rng.random() < 1.0 / 3.0:
-            level = height * float(rng.uniform(0.4, 0.55))
-            beside = width * float(rng.uniform(-0.08, 0.08))
-            heavier = float(rng.uniform(0.7, 1.1))
-            body = Body(mass, body.inertia * heavier, 0.5 * width, level, height - level, beside)
-        bodies.append(body)
-        width *= float(rng.uniform(0.3, 0.9))
-    lower, upper = bodies
-    spare = lower.half_width - upper.half_width
-    offset = spare * float(rng.uniform(-0.6, 0.6)) if rng.random() < 0.6 else 0.0
+def _stands(pair: Pair) -> bool:
+    """Tell whether the weight of both bodies is well within the lowest base."""
+    lower, upper = pair.lower, pair.upper
     total = lower.mass + upper.mass
-    foot = (lower.mass * lower.beside + upper.mass * (offset + upper.beside)) / total
-    stands = abs(foot) < 0.9 * lower.half_width
-    return Pair(lower, upper, offset) if stands else None
+    foot = (lower.mass * lower.beside + upper.mass * (pair.offset + upper.beside)) / total
+    return abs(foot) < 0.9 * lower.half_width
 
 
 def _friction(rng: np.random.Generator, slender: float) -> Friction:
