@@ -9,7 +9,7 @@ from rockframe.components.ground import Impact
 from rockframe.many import isfinite
 from rockframe.system.options import Options, Sliding
 from rockframe.system.own_base import OwnBase
-from rockframe.system.parts import Parts, slot_of_kind
+from rockframe.system.parts import Parts, slot_of
 from rockframe.system.rear_wall import IMPACT_TIME, yielding_wall
 
 SMALL_SLIDING: Final = (
@@ -142,7 +142,7 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
         "the bodies of a Stack stand on TwoSpringSupport, WinklerSoil or RigidGround, not on "
         f"{type(one).__name__}"
         for one in standing
-        if slot_of_kind(type(one)) not in BASES or isinstance(one, OwnBase)
+        if slot_of(one) not in BASES or isinstance(one, OwnBase)
     ]
     if any(isinstance(one, RigidGround) and one.si.restitution is not None for one in standing):
         faults.append(

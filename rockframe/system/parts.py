@@ -101,6 +101,11 @@ def known_kind(of: type) -> type | None:
     return next((kind for kind in of.__mro__ if kind in _KINDS), None)
 
 
+def slot_of(part: object) -> str | None:
+    """Give the slot that a part fills; None if it is no part."""
+    return slot_of_kind(type(part))
+
+
 def slot_of_kind(of: type) -> str | None:
     """Give the slot that parts of a class fill; None if they are no parts."""
     kind = known_kind(of)
@@ -285,7 +290,7 @@ def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
     """Put each part in its slot; note doubled parts and things that are no parts."""
     found: dict[str, Any] = {}
     for part in given:
-        slot = slot_of_kind(type(part))
+        slot = slot_of(part)
         if slot is None:
             faults.append(f"{shown(part)} is not a part of a system{hint_for(part)}")
         elif slot == RESTRAINER:

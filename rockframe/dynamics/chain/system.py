@@ -21,7 +21,15 @@ from rockframe.dynamics.chain.motion import (
     write_direction,
     write_relative,
 )
-from rockframe.dynamics.chain.rows import COLUMNS, CONSTRAINT, GUARDS, MODES, OBSERVED, PLACES, Rows
+from rockframe.dynamics.chain.rows import (
+    COLUMNS,
+    CONSTRAINT,
+    GUARDS,
+    MODES,
+    OBSERVED,
+    PLACES,
+    Rows,
+)
 from rockframe.dynamics.on_base import IDLE, Mode, VelocityChange
 from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
 from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part

@@ -19,22 +19,21 @@ LEVEL = 1e-9
 """A base that lands at less than this angle, and hardly turning, lands with both ends [rad]."""
 LOOKS = 4
 """How often guards are looked at within a step."""
-GONE = 1e-13
-"""From which value a guard counts."""
 MOST_EVENTS = 20000
 
 
-def first_event(guards, solver, dense, armed, slowness):
+def first_event(guards, solver, dense, armed, slowness, gone=1e-13):
     """Give time and name of the first guard that fires in a step; or tell to step again.
 
-    `guards` gives values by names, at a time and in a state; `armed` keeps which were positive.
+    `guards` gives values by names, at a time and in a state; `armed` keeps which were positive,
+    beyond `gone`.
     """
     looks = np.linspace(solver.t_old, solver.t, LOOKS + 1)
     for i in range(LOOKS + 1):
         values = guards(looks[i], solver.y if i == LOOKS else dense(looks[i]))
         fired = []
         for name, value in values.items():
-            if value > GONE:
+            if value > gone:
                 armed[name] = True
             elif value < 0.0 and armed.get(name):
                 fired.append(name)

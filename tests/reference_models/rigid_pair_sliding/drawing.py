@@ -44,21 +44,21 @@ def draw(seed) -> Scene:
     impacts.
     """
     rng = np.random.default_rng(seed)
-    while True:
-        pair = draw_pair(rng, (0.6, 2.0), (0.6, 4.0), (0.3, 0.9), 0.6)
-        if _stands(pair):
-            break
+    pair = None
+    while pair is None:
+        pair = _pair(rng)
     sides = zip(INTERFACES, pair.limits, strict=True)
     frictions = {key: _friction(rng, math.tan(min(-one, two))) for key, (one, two) in sides}
     return Scene(pair, frictions, _motion(rng, pair, frictions))
 
 
-def _stands(pair: Pair) -> bool:
-    """Tell whether the weight of both bodies is well within the lowest base."""
+def _pair(rng: np.random.Generator) -> Pair | None:
+    pair = draw_pair(rng, (0.6, 2.0), (0.6, 4.0), (0.3, 0.9), 0.6)
     lower, upper = pair.lower, pair.upper
     total = lower.mass + upper.mass
     foot = (lower.mass * lower.beside + upper.mass * (pair.offset + upper.beside)) / total
-    return abs(foot) < 0.9 * lower.half_width
+    stands = abs(foot) < 0.9 * lower.half_width
+    return pair if stands else None
 
 
 def _friction(rng: np.random.Generator, slender: float) -> Friction:

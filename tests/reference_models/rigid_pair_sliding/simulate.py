@@ -14,7 +14,7 @@ from .choices import Frictions
 from .contacts import STANDING, middle_slips
 from .drawing import Scene, pieces_for
 from .events import Run
-from .moving import Moving
+from .moving import GONE, Moving
 
 
 class _Running(Moving):
@@ -99,7 +99,9 @@ class _Running(Moving):
                     self.step = solver.step_size
                 dense = solver.dense_output()
                 kept = dict(armed)
-                hit, again = first_event(self.guards, solver, dense, armed, self.pair.slowness)
+                hit, again = first_event(
+                    self.guards, solver, dense, armed, self.pair.slowness, GONE
+                )
                 if again:
                     # a guard that began at zero is negative: look more closely
                     armed = kept
