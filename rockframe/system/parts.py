@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from inspect import getattr_static
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from rockframe.components import (
     Block,
@@ -205,7 +205,7 @@ class Parts:
 
     def __getitem__(self, slot: str) -> Component:
         """Give the part in a slot, in a scene that has it."""
-        return self.components[slot]
+        return cast("Component", dict(self.filled)[slot])
 
     def changed(self, **by_slot: Component | GroundMotion | None) -> "Parts":
         """Give the parts with others in some slots."""
