@@ -81,7 +81,7 @@ def model_ladder(system: System) -> dict[str, System]:
     two pads
     """
     check_system(system, "model_ladder")
-    given = system.parts.components()
+    given = system.parts.components
     present = system.parts.signature
     rows = _STACK if {"pads", "cap"} <= present or "soil" not in present else _BED
     if "stack" in present:

@@ -16,7 +16,7 @@ from typing import Final, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
-from rockframe.compiled import Integers, Vector
+from rockframe.compiled import Integers, Vector, inlined, kernel
 from rockframe.errors import AssemblyError
 from rockframe.many import plain
 
@@ -171,6 +171,37 @@ class EquationsWithPowers(Equations, Protocol):
         `slope` is what :meth:`accelerate` has just given for the same place at other rates.
         """
         ...
+
+
+class OnRigidGround:
+    """What systems of one body on rigid ground answer alike. A mixin of named tuples."""
+
+    __slots__ = ()
+
+    @inlined
+    def bodies(self) -> int:
+        """Give 1, the number of bodies."""
+        return 1
+
+    @kernel
+    def variables(self) -> int:
+        """Give 0: what has none of its own."""
+        return 0
+
+    @inlined
+    def relaxation_in(self, mode: int) -> float:
+        """Give 0: no constraint decays."""
+        return 0.0
+
+    @kernel
+    def some_end_slides(self, mode: int) -> bool:
+        """Give False: of ends on springs, of which there are none."""
+        return False
+
+    @inlined
+    def without_sliding(self, mode: int) -> int:
+        """Give the mode itself."""
+        return mode
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from rockframe.dynamics.protocol import (
     ContactModel,
     Energies,
     Ground,
+    OnRigidGround,
     Slope,
     Start,
 )
@@ -70,8 +71,8 @@ class RockingCorner(NamedTuple):
     restitution: float  # eps, of the angular velocity in an impact on it
 
 
-class BlockOnRigidGround(NamedTuple):
-    """A block on rigid ground, per unit mass: a system."""
+class RockingNumbers(NamedTuple):
+    """The numbers of a block on rigid ground, per unit mass."""
 
     left: RockingCorner
     right: RockingCorner
@@ -81,20 +82,16 @@ class BlockOnRigidGround(NamedTuple):
     rebound: float = 0.0  # ratio of the angular velocities at an impact on base and wall
     wall_share: float = 0.0  # h over the height at which the block at rest leans on the wall
 
-    @inlined
-    def bodies(self) -> int:
-        """Give 1, the number of bodies."""
-        return 1
+
+class BlockOnRigidGround(RockingNumbers, OnRigidGround):
+    """A block on rigid ground, per unit mass: a system."""
+
+    __slots__ = ()
 
     @kernel
     def coordinates(self) -> int:
         """Give 1, the rotation."""
         return 1
-
-    @kernel
-    def variables(self) -> int:
-        """Give 0."""
-        return 0
 
     @kernel
     def guards(self) -> int:
@@ -117,11 +114,6 @@ class BlockOnRigidGround(NamedTuple):
         if mode == RESTING:
             return FULL
         return RIGHT if mode == ON_RIGHT else LEFT
-
-    @inlined
-    def relaxation_in(self, mode: int) -> float:
-        """Give 0: nothing slides."""
-        return 0.0
 
     @inlined
     def corner(self, mode: int) -> RockingCorner:
@@ -165,16 +157,6 @@ class BlockOnRigidGround(NamedTuple):
         """Give the powers of :meth:`accelerate` alone."""
         found = self.accelerate(mode, state, ground)
         return found[1], found[2]
-
-    @kernel
-    def some_end_slides(self, mode: int) -> bool:
-        """Give False: the ground holds the corner that bears."""
-        return False
-
-    @inlined
-    def without_sliding(self, mode: int) -> int:
-        """Give the mode itself."""
-        return mode
 
     @inlined
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:

@@ -17,6 +17,7 @@ from rockframe.dynamics.protocol import (
     Energies,
     Ground,
     Numbers,
+    OnRigidGround,
     Slope,
 )
 from rockframe.dynamics.trigonometry import sine_cosine
@@ -84,7 +85,7 @@ class Loads(NamedTuple):
     turning: float  # moment about the centre of mass, over the mass
 
 
-class SlideMotion:
+class SlideMotion(OnRigidGround):
     """Motion, guards, energies and columns of a block. A mixin of named tuples."""
 
     __slots__ = ()
@@ -96,20 +97,10 @@ class SlideMotion:
     kinetic: float
     gravity: float
 
-    @inlined
-    def bodies(self) -> int:
-        """Give 1, the number of bodies."""
-        return 1
-
     @kernel
     def coordinates(self) -> int:
         """Give 3: slip, rotation, rise."""
         return SIZE
-
-    @kernel
-    def variables(self) -> int:
-        """Give 0."""
-        return 0
 
     @kernel
     def guards(self) -> int:
@@ -138,21 +129,6 @@ class SlideMotion:
         if bears >= FLIES_RIGHT:
             return events.FLIGHT
         return events.RIGHT if bears == ON_RIGHT else events.LEFT
-
-    @inlined
-    def relaxation_in(self, mode: int) -> float:
-        """Give 0: no constraint decays."""
-        return 0.0
-
-    @kernel
-    def some_end_slides(self, mode: int) -> bool:
-        """Give False: of ends on springs, of which there are none."""
-        return False
-
-    @inlined
-    def without_sliding(self, mode: int) -> int:
-        """Give the mode itself."""
-        return mode
 
     @inlined
     def bears_in(self, mode: int) -> int:

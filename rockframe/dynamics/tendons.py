@@ -25,6 +25,7 @@ from rockframe.dynamics.protocol import (
     Energies,
     Ground,
     Guards,
+    OnRigidGround,
     Slope,
     Start,
     column_of,
@@ -41,8 +42,8 @@ LINK_PLACE: Final = len(MEMORY)
 """Index into the memory: the tendon of the last event, counted from 1; 0 for none."""
 
 
-class TiedFrame(NamedTuple):
-    """Columns under a beam with tendons: a system."""
+class FrameNumbers(NamedTuple):
+    """The numbers of columns under a beam with tendons."""
 
     rocking: bare.BlockOnRigidGround
     half_width: float  # of a column
@@ -51,10 +52,11 @@ class TiedFrame(NamedTuple):
     link_count: int
     rows: Vector  # of the tendons, then room to work in
 
-    @inlined
-    def bodies(self) -> int:
-        """Give 1: all columns move alike."""
-        return 1
+
+class TiedFrame(FrameNumbers, OnRigidGround):
+    """Columns under a beam with tendons: a system."""
+
+    __slots__ = ()
 
     @kernel
     def coordinates(self) -> int:
@@ -85,21 +87,6 @@ class TiedFrame(NamedTuple):
     def contact_state_of(self, mode: int, k: int) -> int:
         """Give which corner bears, or that both do."""
         return self.rocking.contact_state_of(mode % bare.MODES, k)
-
-    @inlined
-    def relaxation_in(self, mode: int) -> float:
-        """Give 0: nothing slides."""
-        return 0.0
-
-    @kernel
-    def some_end_slides(self, mode: int) -> bool:
-        """Give False: the ground holds the corners that bear."""
-        return False
-
-    @inlined
-    def without_sliding(self, mode: int) -> int:
-        """Give the mode itself."""
-        return mode
 
     @inlined
     def row_of_link(self, i: int) -> Vector:

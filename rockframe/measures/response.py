@@ -111,24 +111,7 @@ def spectra_of(
     ratios: Array,
     between: Interpolation = Interpolation.LINEAR,
 ) -> xr.Dataset:
-    """Compute the response spectra of what is looked at, at checked periods.
-
-    Parameters
-    ----------
-    looked : Inputs
-        One component of a motion, or of several.
-    seconds : ndarray, shape (k,)
-        Periods [s].
-    ratios : ndarray, shape (r,)
-        Damping ratios [1].
-    between : Interpolation
-        What a record is between its samples.
-
-    Returns
-    -------
-    xarray.Dataset
-        As of :func:`response_spectrum`.
-    """
+    """Give spectra of what is looked at, at checked periods, as :func:`response_spectrum` does."""
     if between is Interpolation.BAND_LIMITED:
         looked = replace(looked, things=[_refined(one, seconds) for one in looked.things])
     for signal in looked.things:
@@ -186,27 +169,7 @@ def _spectra(signal: Signal, seconds: Array, ratios: Array) -> dict[str, Array]:
 
 
 def checked_periods(given: object, *, owner: str) -> Array:
-    """Read the argument `periods`.
-
-    Parameters
-    ----------
-    given : (sequence, unit), Quantity or sequence of str, or None
-        What the user gave; 100 per decade from 0.01 s to 10 s unless given.
-    owner : str
-        Function, for the message.
-
-    Returns
-    -------
-    ndarray, shape (k,)
-        [s]
-
-    Raises
-    ------
-    UnitsError
-        Without a unit, or with one of another kind.
-    ComponentError
-        None, negative, or not increasing.
-    """
+    """Read the argument `periods`; 100 per decade from 0.01 s to 10 s unless given [s]."""
     if given is None:
         decades = np.arange(-2 * _PERIODS_PER_DECADE, _PERIODS_PER_DECADE + 1)
         return 10.0 ** (decades / _PERIODS_PER_DECADE)
@@ -220,24 +183,7 @@ def checked_periods(given: object, *, owner: str) -> Array:
 
 
 def checked_ratios(given: Any, *, owner: str) -> Array:
-    """Read the argument `damping_ratios`.
-
-    Parameters
-    ----------
-    given : float or sequence of float
-        What the user gave [1].
-    owner : str
-        Function, for the message.
-
-    Returns
-    -------
-    ndarray, shape (r,)
-
-    Raises
-    ------
-    ComponentError
-        None, one out of range, or one given twice.
-    """
+    """Read the argument `damping_ratios`: one or several, of which none is given twice [1]."""
     if isinstance(given, np.ndarray):
         given = np.atleast_1d(given)
     values: list[Any] = list(given) if isinstance(given, list | tuple | np.ndarray) else [given]

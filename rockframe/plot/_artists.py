@@ -384,9 +384,7 @@ def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
     """Give what the parts of a scene are called, with their numbers, by their slots."""
     found: dict[str, str] = {}
     lower = () if parts.stack is None else parts.stack.bodies
-    named = {
-        slot: parts.components().get(slot) for slot in ("block", "wall", "pads", "cap", "soil")
-    }
+    named = {slot: parts.components.get(slot) for slot in ("block", "wall", "pads", "cap", "soil")}
     if parts.frame is not None:
         named["block"] = parts.frame
     named |= {f"stack {k - 1}" if k else "block": body for k, body in enumerate(lower)}

@@ -210,13 +210,14 @@ def scalars(
 ) -> dict[str, Generic | float | int | bool]:
     """Give the scalars of a run by their names in the schema, also those of each body."""
     angles = setting.overturning_angles
+    # peaks of a body that did not move go without the sign that zero may have
     sides: dict[str, Generic | float] = {}
     if setting.leans:
         sides = {
             "left_overturning_angle": angles.left,
             "right_overturning_angle": angles.right,
-            "left_peak_rotation": _unsigned(run.peak_left),
-            "right_peak_rotation": _unsigned(run.peak_right),
+            "left_peak_rotation": run.peak_left + 0.0,
+            "right_peak_rotation": run.peak_right + 0.0,
             "rest_rotation": setting.rest_rotation,
         }
     every = setting.slips_of(run.ending)
@@ -228,15 +229,15 @@ def scalars(
         "overturned": run.passed,
         "overturning_time": run.overturning_time,
         "overturning_direction": run.overturning_direction,
-        "peak_rotation": _unsigned(run.peak_rotation),
-        "peak_relative_rotation": _unsigned(peak_share(run, angles)),
+        "peak_rotation": run.peak_rotation + 0.0,
+        "peak_relative_rotation": peak_share(run, angles) + 0.0,
         "first_uplift_time": run.first_uplift_time,
         "impact_count": run.impact_count,
         "flight_time": run.flight_time,
         "flight_count": run.flight_count,
         "energy_residual": run.energy_residual,
         "status": int(run.status),
-        "overturning_angle": angles.least,
+        "overturning_angle": min(angles),
         "uplift_angle": uplift_angle,
     }
 
@@ -260,11 +261,6 @@ def overturned_by(status: Generic) -> Array:
     for one, verdict in zip(Status, shown, strict=True):
         found[status == one] = verdict
     return found
-
-
-def _unsigned(peak: float) -> float:
-    """Give a peak without the sign that zero may have, of a body that did not move."""
-    return peak + 0.0
 
 
 _ENDINGS = {

@@ -39,25 +39,7 @@ class _Steps:
 
 
 def filter_all(pieces: Array, time_step: float, damping: float, periods: Array) -> Array:
-    """Find the peaks of all oscillators, like :func:`oscillator.march_all`.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Acceleration of the ground in every interval [m s^-2].
-    time_step : float
-        Length of an interval [s].
-    damping : float
-        Damping ratio [1].
-    periods : ndarray, shape (k,)
-        Periods, greater than zero [s].
-
-    Returns
-    -------
-    ndarray, shape (k, 3)
-        Greatest relative displacement [m], relative velocity [m s^-1] and absolute
-        acceleration [m s^-2].
-    """
+    """Find the peaks of all oscillators, as `oscillator.march_all` does."""
     found = np.zeros((periods.size, QUANTITIES))
     state = np.zeros((periods.size, 2))
     parts = np.ceil(STEPS_PER_PERIOD * time_step / periods).astype(int)
@@ -82,26 +64,7 @@ def filter_pairs(
     periods: Array,
     directions: Array,
 ) -> Array:
-    """Find the peaks of all oscillators in all directions, like `march_pairs`.
-
-    Parameters
-    ----------
-    pieces : tuple of two ndarray, shape (n, m)
-        Accelerations of the ground in every interval, of both components [m s^-2].
-    time_step : float
-        Length of an interval [s].
-    damping : float
-        Damping ratio [1].
-    periods : ndarray, shape (k,)
-        Periods, greater than zero [s].
-    directions : ndarray, shape (d, 2)
-        Cosines and sines.
-
-    Returns
-    -------
-    ndarray, shape (k, d)
-        Greatest relative displacement [m].
-    """
+    """Find the peaks of all oscillators in all directions, as `oscillator.march_pairs` does."""
     found = np.zeros((periods.size, len(directions)))
     still = np.zeros((STEPS_PER_PERIOD, pieces[0].shape[1]))
     for k, period in enumerate(periods.tolist()):

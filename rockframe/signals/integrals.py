@@ -17,39 +17,13 @@ from rockframe.signals.spectra import spectral_peaks
 
 
 def ground_path(signal: Signal) -> tuple[Array, Array]:
-    """Integrate the acceleration of ground that starts from rest.
-
-    Parameters
-    ----------
-    signal : Signal
-        The acceleration.
-
-    Returns
-    -------
-    velocity : ndarray, shape (n, m + 1)
-        Polynomials from sample to sample [m s^-1].
-    displacement : ndarray, shape (n, m + 2)
-        Polynomials from sample to sample [m].
-    """
+    """Give velocity and displacement of ground that starts from rest, polynomials [m s^-1], [m]."""
     velocity = integral_of(signal.pieces, signal.time_step)
     return velocity, integral_of(velocity, signal.time_step)
 
 
 def arias_history(signal: Signal, gravity: float) -> Array:
-    """Compute the Arias intensity up to every sample, :eq:`eq-arias`.
-
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-    gravity : float
-        [m s^-2]
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Starts at zero [m s^-1].
-    """
+    """Give the Arias intensity up to every sample, :eq:`eq-arias`; starts at zero [m s^-1]."""
     if signal.analytic:
         exponents = np.arange(signal.pieces.shape[1])
         weights = 1.0 / (exponents[:, None] + exponents + 1.0)  # integral of x^j x^k
@@ -60,18 +34,7 @@ def arias_history(signal: Signal, gravity: float) -> Array:
 
 
 def absolute_velocity_history(signal: Signal) -> Array:
-    """Compute the cumulative absolute velocity up to every sample, :eq:`eq-cav`.
-
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Starts at zero [m s^-1].
-    """
+    """Give the cumulative absolute velocity up to every sample, :eq:`eq-cav` [m s^-1]."""
     if not signal.analytic:
         return _summed(_trapezoids(np.abs(signal.samples))) * signal.time_step
     # the way that the velocity goes up and down, turning included
@@ -84,19 +47,9 @@ def absolute_velocity_history(signal: Signal) -> Array:
 
 
 def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
-    """Sum the absolute velocity of the seconds whose peak reaches a threshold, :eq:`eq-cav`.
+    """Sum the absolute velocity of the seconds whose peak reaches a threshold [m s^-1].
 
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-    threshold : float
-        [m s^-2]
-
-    Returns
-    -------
-    float
-        [m s^-1]
+    By :eq:`eq-cav`.
     """
     times = signal.times
     seconds = np.arange(0.0, math.ceil(times[-1]) + 1.0)
@@ -122,21 +75,9 @@ def _summed(steps: Array) -> Array:
 
 
 def time_between_shares(history: Array, time_step: float, start: float, end: float) -> float:
-    """Give the time in which a growing quantity goes from one share of its total to another.
+    """Give the time from one share of the last value of a growing history to another [s].
 
-    Parameters
-    ----------
-    history : ndarray, shape (n,)
-        The quantity at every sample; starts at zero and never falls.
-    time_step : float
-        Between samples [s].
-    start, end : float
-        Shares of the last value, between 0 and 1 [1].
-
-    Returns
-    -------
-    float
-        Zero if nothing grows [s].
+    Zero if nothing grows.
     """
     if history[-1] <= 0.0:
         return 0.0
@@ -151,22 +92,7 @@ def time_between_shares(history: Array, time_step: float, start: float, end: flo
 
 
 def exceedance(signal: Signal, level: float) -> tuple[float, float]:
-    """Measure how long the absolute acceleration exceeds a level.
-
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-    level : float
-        [m s^-2]
-
-    Returns
-    -------
-    bracketed : float
-        From the first to the last exceedance; zero if there is none [s].
-    total : float
-        Sum of the times of exceedance [s].
-    """
+    """Tell how long a level is exceeded [m s^-2]: from first to last time, and in all [s]."""
     first, last, total = np.inf, -np.inf, 0.0
     for side in (1.0, -1.0):
         above = side * signal.pieces
@@ -255,18 +181,7 @@ PREDOMINANT_PERIODS: Final = 10.0 ** (np.arange(-100, 131) / 100.0)
 
 
 def mean_period(signal: Signal) -> float:
-    """Compute the mean period, :eq:`eq-mean-period`.
-
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-
-    Returns
-    -------
-    float
-        NaN for ground that stands still in this band [s].
-    """
+    """Give the mean period, :eq:`eq-mean-period`; NaN for ground still in its band [s]."""
     frequency, transform = transform_of(signal, MEAN_PERIOD_RESOLUTION)
     low, high = MEAN_PERIOD_BAND
     inside = (frequency >= low) & (frequency <= high)
@@ -276,20 +191,7 @@ def mean_period(signal: Signal) -> float:
 
 
 def housner_intensity(signal: Signal, damping_ratio: float) -> float:
-    """Integrate the pseudo-velocity spectrum, :eq:`eq-housner-intensity`.
-
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-    damping_ratio : float
-        Damping ratio [1].
-
-    Returns
-    -------
-    float
-        [m]
-    """
+    """Integrate the pseudo-velocity spectrum, :eq:`eq-housner-intensity` [m]."""
     from scipy.integrate import trapezoid
 
     velocity = _pseudo_velocity(signal, HOUSNER_PERIODS, damping_ratio)
@@ -297,20 +199,7 @@ def housner_intensity(signal: Signal, damping_ratio: float) -> float:
 
 
 def predominant_period(signal: Signal, damping_ratio: float) -> float:
-    """Find the period where the pseudo-velocity spectrum has its peak.
-
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-    damping_ratio : float
-        Damping ratio [1].
-
-    Returns
-    -------
-    float
-        Between 0.1 s and 20 s; NaN for ground that stands still [s].
-    """
+    """Give the period of the peak of pseudo-velocity, 0.1 s to 20 s; NaN for still ground [s]."""
     velocity = _pseudo_velocity(signal, PREDOMINANT_PERIODS, damping_ratio)
     if not velocity.max() > 0.0:
         return math.nan

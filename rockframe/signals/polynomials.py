@@ -16,19 +16,7 @@ _HALVINGS: Final = 54  # to the last bit of x
 
 
 def values_at(pieces: Array, place: Array | float) -> Array:
-    """Evaluate every row, each at its own place.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (..., m)
-        Coefficients.
-    place : ndarray, shape (...), or float
-        x [1].
-
-    Returns
-    -------
-    ndarray, shape (...)
-    """
+    """Evaluate every row of coefficients, shape (..., m), each at its own place x [1]."""
     values = np.zeros(pieces.shape[:-1])
     for power in reversed(range(pieces.shape[-1])):
         values = values * place + pieces[..., power]
@@ -41,20 +29,7 @@ def slopes_of(pieces: Array) -> Array:
 
 
 def integral_of(pieces: Array, time_step: float) -> Array:
-    """Integrate over time, from zero on, :eq:`eq-ground-velocity`.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Coefficients.
-    time_step : float
-        Length of an interval [s].
-
-    Returns
-    -------
-    ndarray, shape (n, m + 1)
-        Continuous from row to row.
-    """
+    """Integrate rows over time, from zero on and continuous, :eq:`eq-ground-velocity`."""
     rising = pieces * (time_step / np.arange(1.0, pieces.shape[1] + 1.0))
     start = np.concatenate([[0.0], np.cumsum(rising.sum(axis=1))[:-1]])
     return np.column_stack([start, rising])
@@ -80,18 +55,7 @@ def knots_of(pieces: Array) -> Array:
 
 
 def roots_of(pieces: Array) -> Array:
-    """Find where every row crosses zero; its ends have different signs.
-
-    Parameters
-    ----------
-    pieces : ndarray, shape (n, m)
-        Coefficients.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        x [1].
-    """
+    """Find the x at which every row crosses zero; its ends have different signs [1]."""
     low, high = np.zeros(len(pieces)), np.ones(len(pieces))
     if pieces.shape[1] == 2:
         return -pieces[:, 0] / pieces[:, 1]

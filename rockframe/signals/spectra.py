@@ -23,22 +23,7 @@ MAXIMUM_PARTS: Final = 1_000_000
 
 
 def check_cost(signal: Signal, periods: Array, *, owner: str) -> None:
-    """Refuse a spectrum that would take minutes.
-
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-    periods : ndarray, shape (k,)
-        Periods, zero or more [s].
-    owner : str
-        Function, for the message.
-
-    Raises
-    ------
-    ComponentError
-        Too many steps.
-    """
+    """Refuse a spectrum that would take minutes."""
     moving = periods[periods > 0.0]
     if moving.size == 0:
         return
@@ -86,24 +71,7 @@ def spectral_peaks(signal: Signal, periods: Array, damping_ratio: float) -> Arra
 def pseudo_spectra(
     signal: Signal, periods: Array, spectral_displacement: Array
 ) -> tuple[Array, Array]:
-    """Compute the pseudo spectra, :eq:`eq-pseudo-spectra`.
-
-    Parameters
-    ----------
-    signal : Signal
-        Acceleration of the ground.
-    periods : ndarray, shape (k,)
-        Periods, zero or more [s].
-    spectral_displacement : ndarray, shape (..., k)
-        Greatest relative displacement [m].
-
-    Returns
-    -------
-    velocity : ndarray, shape (..., k)
-        [m s^-1]
-    acceleration : ndarray, shape (..., k)
-        [m s^-2]
-    """
+    """Give pseudo-velocity [m s^-1] and pseudo-acceleration [m s^-2], :eq:`eq-pseudo-spectra`."""
     rigid = periods == 0.0
     frequency = 2.0 * np.pi / np.where(rigid, 1.0, periods)
     velocity = np.where(rigid, 0.0, frequency * spectral_displacement)
@@ -148,23 +116,9 @@ def unit_vectors(count: int) -> Array:
 def rotated_displacements(
     first: Signal, second: Signal, periods: Array, damping_ratio: float, directions: Array
 ) -> Array:
-    """Find the greatest displacement of oscillators in every direction.
+    """Find the greatest displacement of oscillators in each direction: shape (k, d) [m].
 
-    Parameters
-    ----------
-    first, second : Signal
-        Accelerations of the ground at a right angle, of the same time step and length.
-    periods : ndarray, shape (k,)
-        Periods, greater than zero [s].
-    damping_ratio : float
-        Damping ratio [1].
-    directions : ndarray, shape (d, 2)
-        Cosines and sines.
-
-    Returns
-    -------
-    ndarray, shape (k, d)
-        Greatest relative displacement [m].
+    `directions` are cosines and sines, shape (d, 2); the signals are alike in time step and length.
     """
     one, other = (np.ascontiguousarray(pieces) for pieces in _of_one_degree(first, second))
     powers = one.shape[1]
@@ -195,20 +149,7 @@ def rotated_displacements(
 
 
 def rotated_peaks(first: Signal, second: Signal, directions: Array) -> Array:
-    """Find the greatest acceleration of the ground in every direction.
-
-    Parameters
-    ----------
-    first, second : Signal
-        Accelerations of the ground at a right angle, of the same time step and length.
-    directions : ndarray, shape (d, 2)
-        Cosines and sines.
-
-    Returns
-    -------
-    ndarray, shape (d,)
-        [m s^-2]
-    """
+    """Find the greatest acceleration of the ground in each direction: shape (d,) [m s^-2]."""
     one, other = _of_one_degree(first, second)
     return np.array([greatest(along * one + across * other) for along, across in directions])
 

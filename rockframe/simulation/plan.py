@@ -44,9 +44,15 @@ def listed(outputs: object) -> list[object]:
     return [outputs]
 
 
-def names_of(outputs: object, points: object, faults: list[str]) -> tuple[str, ...]:
-    """Read the argument ``outputs``: names of variables and of groups; note what is unknown."""
+def outputs_of(
+    outputs: object, points: object, faults: list[str]
+) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
+    """Read the argument ``outputs``: names of variables and of groups, and diagnostics.
+
+    Both in the order in which they are known; what is unknown is noted.
+    """
     wanted: set[str] = set()
+    diagnostics: set[str] = set()
     for name in listed(outputs):
         if isinstance(name, str) and _has_dimensions(name, POINT_TIME):
             if not points:
@@ -54,7 +60,7 @@ def names_of(outputs: object, points: object, faults: list[str]) -> tuple[str, .
         elif isinstance(name, str) and name in GROUPS:
             wanted.update(GROUPS[name])
         elif isinstance(name, str) and name in DIAGNOSTICS:
-            continue  # see diagnostics_of
+            diagnostics.add(name)
         elif isinstance(name, str) and (name in ON_REQUEST or _has_dimensions(name, OVER_TIME)):
             wanted.add(name)
         else:
@@ -64,13 +70,8 @@ def names_of(outputs: object, points: object, faults: list[str]) -> tuple[str, .
                 f"outputs has no {shown(name)}; every run has its response, and on request "
                 f"{words}{nearest(name, known)}"
             )
-    return tuple(name for name in ON_REQUEST if name in wanted)
-
-
-def diagnostics_of(outputs: object) -> tuple[Diagnostic, ...]:
-    """Give the diagnostics that the argument ``outputs`` names, in the order of registration."""
-    named = [name for name in listed(outputs) if isinstance(name, str)]
-    return tuple(one for name, one in DIAGNOSTICS.items() if name in named)
+    requested = tuple(name for name in ON_REQUEST if name in wanted)
+    return requested, tuple(one for name, one in DIAGNOSTICS.items() if name in diagnostics)
 
 
 def _has_dimensions(name: str, dims: tuple[str, ...]) -> bool:
@@ -286,9 +287,7 @@ def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunA
     """Check the arguments of a run against the system and one another."""
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
-    _check_motion(motion, faults)
-    if faults:
-        raise AssemblyError(faults)
+    _check_motion(motion)
     arguments = read_arguments(faults, **asked)
     plan = fit_plan(arguments, system, motion, faults)
     if faults:
@@ -307,16 +306,18 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> RunReque
     accuracy = asked.get("accuracy", AccuracyLevel.STANDARD)
     verdict = asked.get("overturning", Overturning.STOP)
     course = read_option(Overturning, verdict, "overturning", faults)
+    initial = _initial(asked.get("initial"), faults)
+    requested, diagnostics = outputs_of(outputs, points, faults)
     return RunRequest(
         duration=duration,
         free_vibration=free_vibration,
-        initial=_initial(asked.get("initial"), faults),
+        initial=initial,
         accuracy=accuracy_of(accuracy),
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=output_step,
         histories=outputs is not None,
-        requested=names_of(outputs, points, faults),
-        diagnostics=diagnostics_of(outputs),
+        requested=requested,
+        diagnostics=diagnostics,
         points=points_of(points, faults),
         stop_at_overturning=course is Overturning.STOP,
     )
@@ -365,9 +366,10 @@ def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
     return _REST
 
 
-def _check_motion(given: object, faults: list[str]) -> None:
+def _check_motion(given: object) -> None:
     if given is not None and not isinstance(given, GroundMotion):
-        faults.append(f"motion must be a GroundMotion, got {shown(given)}{_motion_hint(given)}")
+        fault = f"motion must be a GroundMotion, got {shown(given)}{_motion_hint(given)}"
+        raise AssemblyError([fault])
 
 
 def _motion_hint(given: object) -> str:

@@ -18,7 +18,8 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import Arrangement, Means, with_stripes
-from rockframe.studies.fragility.likelihood import Bands, motion_numbers
+from rockframe.studies.fragility.likelihood import Bands
+from rockframe.studies.fragility.trials import motion_numbers
 from rockframe.studies.intensities import (
     PERIOD_OF,
     PeriodLike,

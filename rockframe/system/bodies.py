@@ -65,11 +65,6 @@ class SupportedBody(BodyGeometry):
             atan2(self.left, self.centre_height), atan2(self.right, self.centre_height)
         )
 
-    @property
-    def least_friction(self) -> float:
-        """b/h: with less, the base slides before an end of it lifts, on the lesser side [1]."""
-        return min(self.left, self.right) / self.centre_height
-
     @cached_property
     def maximum_restitution(self) -> Restitutions:
         """eps_max of impacts on either end, Eq. (4) or :eq:`eq-eccentric-impact`."""
@@ -99,15 +94,13 @@ class SupportedBody(BodyGeometry):
 
 
 class OverturningAngles(NamedTuple):
-    """Rotations at which a body stands on edge, to either side, both positive [rad]."""
+    """Rotations at which a body stands on edge, to either side, both positive [rad].
+
+    The lesser of both is theta.
+    """
 
     left: float
     right: float
-
-    @property
-    def least(self) -> float:
-        """Theta, the lesser of both."""
-        return min(self)
 
     def on_side_of(self, rotation: float) -> float:
         """Give that of the side to which a body is rotated."""
@@ -193,29 +186,19 @@ class BaseLoad:
     options: Options
 
     @property
-    def gravity(self) -> float:
-        """Acceleration of gravity [m s^-2]."""
-        return self.options.gravity
-
-    @cached_property
-    def slope(self) -> Slope:
-        """The base line in its gravity."""
-        return self.options.slope
-
-    @property
     def weight(self) -> float:
         """Weight of the body, as far as it presses on the base [N]."""
-        return self.body.mass * self.slope.normal_gravity
+        return self.body.mass * self.options.slope.normal_gravity
 
     @property
     def thrust(self) -> float:
         """Force along the base that keeps the body at rest from sliding [N]."""
-        return self.body.mass * self.slope.along_gravity
+        return self.body.mass * self.options.slope.along_gravity
 
     @cached_property
     def overturning_angles(self) -> OverturningAngles:
         """Rotations at which the centre of mass stands above an end of the base."""
-        return self.body.overturning_angles.on_slope(self.slope, small=self.options.small)
+        return self.body.overturning_angles.on_slope(self.options.slope, small=self.options.small)
 
     @cached_property
     def rigid_body(self) -> Body:
@@ -233,7 +216,7 @@ class BaseLoad:
             inertia=self.body.inertia / mass,
             restraint=restraint_code(self.options.restraint),
             small_rotation=self.options.small,
-            gravity=self.slope.normal_gravity,
+            gravity=self.options.slope.normal_gravity,
         )
 
 

@@ -34,7 +34,7 @@ def misfits(parts: Parts) -> list[str]:
         faults += _misfits_of_frame(parts)
     elif block is None:
         faults.append("no Block is given")
-    given = parts.components()
+    given = parts.components
     if parts.ground is not None:
         others = [type(part).__name__ for part in (pads, cap, soil) if part is not None]
         if others:
@@ -115,7 +115,7 @@ def _misfits_of_frame(parts: Parts) -> list[str]:
     ]
     others = [
         type(part).__name__
-        for slot, part in parts.components().items()
+        for slot, part in parts.components.items()
         if slot not in ("frame", "ground") and not isinstance(part, Tendon)
     ]
     if others:
@@ -158,7 +158,8 @@ def contradictions(parts: Parts) -> list[str]:
     depths = {
         type(part).__name__: float(depth.m_as("m"))
         for part in (parts.cap or parts.block, parts.soil)
-        if (depth := getattr(part, "depth", None)) is not None
+        # of its class, since a component that lacks it proposes others
+        if hasattr(type(part), "depth") and (depth := getattr(part, "depth")) is not None  # noqa: B009
     }
     if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_ROUNDING_OF_DEPTHS):
         return []
@@ -198,20 +199,14 @@ def friction_under(part: Component, options: Options) -> BaseFriction | None:
     return BaseFriction(static, kinetic, math.inf if sticks else kinetic)
 
 
-def is_sliding(parts: Parts, options: Options) -> bool:
-    """Whether a block stands on rigid ground on which it slides."""
-    behind_wall = parts.wall is not None and not parts.wall.elastic
-    if parts.block is None or behind_wall or parts.ground is None:
-        return False
-    return friction_under(parts.ground, options) is not None
-
-
 def missizes(parts: Parts, options: Options) -> list[str]:
     """Give the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
     faults: list[str] = []
-    # impacts in a stack let a squat body land flat
-    if block is not None and not parts.own() and not is_sliding(parts, options):
+    behind_wall = parts.wall is not None and not parts.wall.elastic
+    held = behind_wall or parts.ground is None or friction_under(parts.ground, options) is None
+    # impacts of bodies that slide, and of those in a stack, let a squat one land flat
+    if block is not None and not parts.own() and held:
         faults += squat(block.si, type(block).__name__)
     if block is not None and cap is not None:
         body = parts.the_cap

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final, Literal, TypeAlias, TypeVar
 
@@ -94,16 +94,13 @@ class Options:
     gravity: float
     inclination: float = 0.0
     sliding: Sliding = Sliding.COMPUTED
+    # the base line in its gravity, and whether the kinematics are expanded to second order
+    slope: Slope = field(init=False, repr=False, compare=False)
+    small: bool = field(init=False, repr=False, compare=False)
 
-    @property
-    def slope(self) -> Slope:
-        """The base line in its gravity."""
-        return Slope(self.inclination, self.gravity)
-
-    @property
-    def small(self) -> bool:
-        """Whether the kinematics are expanded to second order."""
-        return self.rotation is Rotation.SMALL
+    def __post_init__(self) -> None:
+        slope = Slope(self.inclination, self.gravity)
+        vars(self).update(slope=slope, small=self.rotation is Rotation.SMALL)
 
     def to_dict(self) -> dict[str, str]:
         """Give the options as texts from which a system reads the same.

@@ -63,6 +63,7 @@ class PadSupport(Support):
 
     def words(self) -> BaseWords:
         """Tell the pads in words."""
+        omega = self.load.body.frequency_at(self.load.options.gravity)
         return BaseWords(
             law="pad forces as in Eqs. (12) and (15)",
             equations=[
@@ -76,42 +77,27 @@ class PadSupport(Support):
                  "Eqs. (2)-(4) with the corner inertia for the printed I_O"),
             ],
             uplift=("uplift angle, Eq. (16)", uplift_words(self.uplift_angle)),
-            numbers=self._numbers(),
+            numbers=[
+                ("rocking frequency omega, Eq. (6)", f"{omega:.6g} rad/s"),
+                ("frequency ratio beta, Eq. (8)", f"{self.vertical_frequency / omega:.6g}"),
+                ("pad stiffness k, damping c",
+                 f"{self.stiffness:.6g} N/m, {self.damping:.6g} N s/m"),
+                ("settlement delta", f"{self.settlement:.6g} m"),
+                *self.vibrations("vertical vibration", "rocking vibration in full contact"),
+                ("restitution eps", self.restitution.words()),
+            ],
             left_out=["tension in the pads"],
         )  # fmt: skip
 
-    def _numbers(self) -> list[tuple[str, str]]:
-        omega = self.load.body.frequency_at(self.load.gravity)
-        return [
-            ("rocking frequency omega, Eq. (6)", f"{omega:.6g} rad/s"),
-            ("frequency ratio beta, Eq. (8)", f"{self.vertical_frequency / omega:.6g}"),
-            ("pad stiffness k, damping c", f"{self.stiffness:.6g} N/m, {self.damping:.6g} N s/m"),
-            ("settlement delta", f"{self.settlement:.6g} m"),
-            *self.vibrations("vertical vibration", "rocking vibration in full contact"),
-            ("restitution eps", self.restitution.words()),
-        ]
-
 
 def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
-    """Give pads under a block: stiffness and damping of one pad by Eqs. (7) and (8).
-
-    Parameters
-    ----------
-    pads : TwoSpringSupport
-        As given by the user.
-    load : BaseLoad
-        The block on them.
-
-    Returns
-    -------
-    PadSupport
-    """
+    """Give pads under a block: stiffness and damping of one pad by Eqs. (7) and (8)."""
     given, body = pads.si, load.body
     if given.stiffness is not None:
         stiffness = given.stiffness
         vertical = sqrt(2.0 * stiffness / body.mass)
     else:
-        vertical = given.frequency_ratio * body.frequency_at(load.gravity)
+        vertical = given.frequency_ratio * body.frequency_at(load.options.gravity)
         stiffness = 0.5 * body.mass * vertical**2
     damping = given.damping
     if damping is None:

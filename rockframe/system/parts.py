@@ -1,7 +1,7 @@
 """The parts of a scene: which slot each fills, and what stands in which slot."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from inspect import getattr_static
 from typing import Any, Final, cast
 
@@ -132,9 +132,16 @@ def beyond_models(part: object) -> list[str]:
     if known is None or not isinstance(part, Component):
         return []
     own = type(part)
-    added = sorted(
-        name for name in vars(part.given) if _declares(own, name) and not _declares(known, name)
+    # parameters; a property of the same name is none
+    declared, expected = (
+        {
+            name
+            for name in vars(part.given)
+            if isinstance(getattr_static(kind, name, None), Declared)
+        }
+        for kind in (own, known)
     )
+    added = sorted(declared - expected)
     if added:
         return [
             f"{own.__name__} adds {' and '.join(added)} to {known.__name__}, of which no model "
@@ -144,11 +151,6 @@ def beyond_models(part: object) -> list[str]:
     if any("support" in vars(kind) for kind in between):
         return [f"{own.__name__} carries a body in its own way, but {_to_register(own)}"]
     return []
-
-
-def _declares(kind: type, name: str) -> bool:
-    """Whether a class has a parameter of a name; a property of that name is none."""
-    return isinstance(getattr_static(kind, name, None), Declared)
 
 
 def hint_for(part: object) -> str:
@@ -170,10 +172,27 @@ def _to_register(kind: type) -> str:
 
 @dataclass(frozen=True)
 class Parts:
-    """The parts of a scene, by what they are."""
+    """The parts of a scene, by what they are; None where there is none of a kind."""
 
     # slots and what fills them, in the order of all slots
     filled: tuple[tuple[str, Component | GroundMotion], ...] = ()
+    # the same apart: parts that are no motion by their slots, and those of the package's own kinds
+    components: dict[str, Component] = field(init=False, repr=False, compare=False)
+    block: Block | None = field(init=False, repr=False, compare=False)
+    stack: Stack | None = field(init=False, repr=False, compare=False)
+    frame: RockingFrame | None = field(init=False, repr=False, compare=False)
+    pads: Component | None = field(init=False, repr=False, compare=False)
+    cap: CushionCap | None = field(init=False, repr=False, compare=False)
+    soil: Component | None = field(init=False, repr=False, compare=False)
+    ground: RigidGround | None = field(init=False, repr=False, compare=False)
+    wall: RearWall | None = field(init=False, repr=False, compare=False)
+    motion: GroundMotion | None = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        found = dict(self.filled)
+        vars(self).update({slot: found.get(slot) for slot in SHIPPED if slot != RESTRAINER})
+        components = {slot: part for slot, part in found.items() if slot != "motion"}
+        vars(self)["components"] = components
 
     @classmethod
     def of(cls, by_slot: Mapping[str, Component | GroundMotion | None]) -> "Parts":
@@ -192,76 +211,24 @@ class Parts:
         """Give the parts with others in some slots."""
         return Parts.of({**dict(self.filled), **by_slot})
 
-    def _in(self, slot: str) -> Any:
-        return dict(self.filled).get(slot)
-
-    @property
-    def block(self) -> Block | None:
-        """The block."""
-        return self._in("block")
-
-    @property
-    def stack(self) -> Stack | None:
-        """Blocks upon one another."""
-        return self._in("stack")
-
-    @property
-    def frame(self) -> RockingFrame | None:
-        """Columns under a beam."""
-        return self._in("frame")
-
-    @property
-    def pads(self) -> Component | None:
-        """The pads under it."""
-        return self._in("pads")
-
-    @property
-    def cap(self) -> CushionCap | None:
-        """The cap under block or pads."""
-        return self._in("cap")
-
-    @property
-    def soil(self) -> Component | None:
-        """The soil under block or cap."""
-        return self._in("soil")
-
-    @property
-    def ground(self) -> RigidGround | None:
-        """The rigid ground under a block."""
-        return self._in("ground")
-
-    @property
-    def wall(self) -> RearWall | None:
-        """The wall behind a block."""
-        return self._in("wall")
-
-    @property
-    def motion(self) -> GroundMotion | None:
-        """The motion of the ground."""
-        return self._in("motion")
-
     def given(self) -> list[Component | GroundMotion]:
         """Give the parts that are there, in a fixed order."""
         return [part for _, part in self.filled]
 
     def structural(self) -> list[Component]:
         """Give the parts that are no motion, in a fixed order."""
-        return list(self.components().values())
-
-    def components(self) -> dict[str, Component]:
-        """Give the same by their slots."""
-        return {slot: part for slot, part in self.filled if isinstance(part, Component)}
+        return list(self.components.values())
 
     def standing(self) -> "Parts":
         """Give the parts with the rigid ground on which bodies stand when no base is given."""
-        bases = {"pads", "soil", "ground"}.intersection(self.components())
+        bases = {"pads", "soil", "ground"}.intersection(self.components)
         return self if bases or self.own() else self.changed(ground=RigidGround())
 
     def own(self) -> dict[str, Component]:
         """Give the parts in slots that scenes of users' own have, by these."""
         return {
             slot: part
-            for slot, part in self.components().items()
+            for slot, part in self.components.items()
             if kind_of_slot(slot) not in SHIPPED
         }
 
@@ -313,7 +280,7 @@ class Parts:
 
         An elastic wall is a link.
         """
-        found = frozenset(kind_of_slot(slot) for slot in self.components()) - {"ground"}
+        found = frozenset(kind_of_slot(slot) for slot in self.components) - {"ground"}
         if self.wall is not None and self.wall.elastic:
             found = found - {"wall"} | {RESTRAINER}
         return found

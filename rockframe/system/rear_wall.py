@@ -137,7 +137,7 @@ def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
     load, wall = load_of(parts.the_block, options), parts.the_wall
     given = None if parts.ground is None else parts.ground.si.restitution
     restitution = resolve_restitution(given, load.body.maximum_restitution)
-    if not load.slope.level:
+    if not load.options.slope.level:
         raise AssemblyError(["RearWall: a wall stands on level ground, without inclination"])
     height = parts.the_block.height
     rebound = _rebound(wall, load.body, restitution, height)

@@ -59,7 +59,7 @@ class RigidBase(Support):
         """
         body = self.load.body
         left, right = body.left / body.centre_height, body.right / body.centre_height
-        return self.load.gravity * left, self.load.gravity * right
+        return self.load.options.gravity * left, self.load.options.gravity * right
 
     def words(self) -> BaseWords:
         """Tell the base in words."""

@@ -39,7 +39,7 @@ class Scene:
         """Whether the scene is that of the parts."""
         if self.made_of is None:
             return self.signature == parts.signature and self.coupling in (None, coupling)
-        given, kinds = parts.components(), self.made_of
+        given, kinds = parts.components, self.made_of
         return given.keys() == kinds.keys() and all(
             isinstance(part, kinds[slot]) for slot, part in given.items()
         )
@@ -91,7 +91,7 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
 
 def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
     """Put a stack, or a block with restrainers, on the base in a slot."""
-    base = parts.components().get(slot, RigidGround())
+    base = parts.components.get(slot, RigidGround())
     if parts.stack is not None:
         held = stack_setting(parts.stack, base, options, parts.links)
         return stack_on((*parts.stack.interfaces, base), held)

@@ -47,6 +47,12 @@ class Setting(ABC):
 
     load: BaseLoad
     cap_offset: float | None = field(default=None, kw_only=True)
+    # the body that the response is of, and its system's options; gravity [m s^-2], and the base
+    # line in it
+    body: SupportedBody = field(init=False, repr=False, compare=False)
+    options: Options = field(init=False, repr=False, compare=False)
+    gravity: float = field(init=False, repr=False, compare=False)
+    slope: Slope = field(init=False, repr=False, compare=False)
     stacked: ClassVar[bool] = False
     """Whether the body stands on pads on a cap on soil."""
     flies: ClassVar[bool] = True
@@ -60,25 +66,11 @@ class Setting(ABC):
     struck_by_base: ClassVar[bool] = True
     """Whether the impulses of impacts are those of the base alone, so that friction bears them."""
 
-    @property
-    def body(self) -> SupportedBody:
-        """The body that the response is of."""
-        return self.load.body
-
-    @property
-    def options(self) -> Options:
-        """Of the system."""
-        return self.load.options
-
-    @property
-    def gravity(self) -> float:
-        """Acceleration of gravity [m s^-2]."""
-        return self.options.gravity
-
-    @property
-    def slope(self) -> Slope:
-        """The base line in its gravity."""
-        return self.load.slope
+    def __post_init__(self) -> None:
+        options = self.load.options
+        vars(self).update(
+            body=self.load.body, options=options, gravity=options.gravity, slope=options.slope
+        )
 
     @property
     def leans(self) -> bool:
@@ -93,7 +85,7 @@ class Setting(ABC):
     @property
     def overturning_angle(self) -> float:
         """Theta, the lesser of both [rad]."""
-        return self.overturning_angles.least
+        return min(self.overturning_angles)
 
     @property
     def overturning_rotations(self) -> tuple[float, ...]:

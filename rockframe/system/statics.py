@@ -146,19 +146,7 @@ _PLACES: Final[list[tuple[float, float]]] = [
 
 
 def stored_energy(setting: "Setting", rotation: float) -> float:
-    """Give the work that slowly brings a body from upright to a rotation [J].
-
-    Parameters
-    ----------
-    setting : Setting
-        The scene.
-    rotation : float
-        [rad].
-
-    Returns
-    -------
-    float
-    """
+    """Give the work that slowly brings a body from upright to a rotation [rad] [J]."""
     found = _restoring(setting, [at * rotation for at, _ in _PLACES])
     return rotation * sum(of * one for (_, of), one in zip(_PLACES, found, strict=True))
 

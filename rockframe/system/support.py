@@ -75,7 +75,7 @@ class Support(ABC):
         """Rotation at which contact is first lost; NaN if it never is [rad]."""
         from rockframe.dynamics.statics import uplift_rotation
 
-        return uplift_rotation(self.standing.chain.links[0], self.load.slope.normal_gravity)
+        return uplift_rotation(self.standing.chain.links[0], self.load.options.slope.normal_gravity)
 
     @abstractmethod
     def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
@@ -132,7 +132,7 @@ class Support(ABC):
 
         body, numbers = self.load.rigid_body, self.base_numbers
         link = link_of(OnBase(body, numbers.law), beside=eccentricity_of(body))
-        chain = StandingChain((link,), self.load.slope.along_gravity)
+        chain = StandingChain((link,), self.load.options.slope.along_gravity)
         return StandingBodies(chain, self.load.body.mass, (numbers,))
 
     @cached_property

@@ -64,7 +64,7 @@ _WIDTH = 100
 
 def describe(setting: "Setting", parts: "Parts") -> str:
     """Tell the model, its equations, its numbers and its limits."""
-    words = setting.words()
+    words, body, height = setting.words(), setting.body, setting.body.centre_height
     lines = [f"Model: {setting.model}"]
     lines += _section("Parts", [("", repr(part)) for part in parts.given()])
     lines += _section("Contact states and their equations", words.equations)
@@ -74,7 +74,8 @@ def describe(setting: "Setting", parts: "Parts") -> str:
         [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
             *_overturning(setting),
-            ("friction to rock, at least b/h", f"{setting.body.least_friction:.6g}"),
+            # with less, the base slides before an end of it lifts, on the lesser side
+            ("friction to rock, at least b/h", f"{min(body.left, body.right) / height:.6g}"),
             *words.numbers,
         ],
     )
@@ -106,23 +107,20 @@ def _overturning(setting: "Setting") -> list[tuple[str, str]]:
 
 
 def _section(title: str, rows: list[tuple[str, str]]) -> list[str]:
-    """Set names and words in two columns, the second as far right as the longest name needs."""
+    """Set names and words in two columns, the second as far right as the longest name needs.
+
+    Lines are broken behind commas and semicolons, so that numbers keep their names and units.
+    """
     longest = max(len(name) for name, _ in rows)
     lines = [f"{title}:"]
     for name, words in rows:
         first = f"  {name:<{longest}}  " if name else "  "
         following = " " * (len(first) if name else 4)
-        broken = _broken(words, _WIDTH - len(following))
+        width, broken = _WIDTH - len(following), list[str]()
+        for piece in re.split(r"(?<=[,;]) ", words):
+            if broken and len(broken[-1]) + 1 + len(piece) <= width:
+                broken[-1] += f" {piece}"
+            else:
+                broken += wrap(piece, width, break_long_words=False, break_on_hyphens=False) or [""]
         lines += [first + broken[0], *(following + line for line in broken[1:])]
-    return lines
-
-
-def _broken(words: str, width: int) -> list[str]:
-    """Break behind commas and semicolons, so that numbers keep their names and units."""
-    lines: list[str] = []
-    for piece in re.split(r"(?<=[,;]) ", words):
-        if lines and len(lines[-1]) + 1 + len(piece) <= width:
-            lines[-1] += f" {piece}"
-        else:
-            lines += wrap(piece, width, break_long_words=False, break_on_hyphens=False) or [""]
     return lines

@@ -110,7 +110,7 @@ def test_slopes_of_the_forces_are_the_stiffnesses_that_bases_declare(block, base
     numbers, standing = support.base_numbers, support.standing
     link, stand = standing.chain.links[0], standing.upright[0]
     slopes = np.array([of_base(link, stand, name) for name in (*PLACES, *RATES)])
-    h, g = support.load.body.centre_height, support.load.slope.normal_gravity
+    h, g = support.load.body.centre_height, support.load.options.slope.normal_gravity
     vertical, turning = numbers.vertical_stiffness, numbers.rotational_stiffness
     damping = numbers.damping_time
     assert link.settlement == pytest.approx(numbers.settlement, rel=1e-14)

@@ -62,4 +62,6 @@ def test_an_equation_of_the_theory_is_cited_elsewhere():
         elsewhere = any(
             label in CITATION.findall(text) for other, text in PAGES.items() if other != page
         )
-        assert label in CITED_BY_CODE or elsewhere, label
+        assert label in CITED_BY_CODE or elsewhere, (
+            f"cite {label} of {page.relative_to(ROOT)} where it is computed, or on another page"
+        )

@@ -38,11 +38,19 @@ FOLDERS = [name for name in contents(PACKAGE) if name.endswith("/")]
 
 @pytest.mark.parametrize("folder", ["", *sorted(FOLDERS)])
 def test_all_modules_are_on_the_map(folder):
-    assert MAP[folder] == contents(PACKAGE / folder)
+    missing, gone = (
+        contents(PACKAGE / folder) - MAP[folder],
+        MAP[folder] - contents(PACKAGE / folder),
+    )
+    words = "in the entry of {} in the module map of docs/development/architecture.md"
+    assert not missing, f"name {missing} {words.format(folder or 'the package')}"
+    assert not gone, f"no longer name {gone} {words.format(folder or 'the package')}"
 
 
 def test_the_layers_name_all_folders():
     text = read("development/architecture.md")
     layers = text.split("## Layers")[1].split("\n## ")[0]
     for name in contents(PACKAGE):
-        assert re.search(rf"\b{re.sub(r'/|[.]py', '', name)}\b", layers), name
+        assert re.search(rf"\b{re.sub(r'/|[.]py', '', name)}\b", layers), (
+            f"{name} is in no line under Layers of docs/development/architecture.md"
+        )

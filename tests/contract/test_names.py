@@ -36,5 +36,6 @@ def test_names_of_classes_and_functions_stand_once():
         (ast.ClassDef, SHARED_CLASSES), (ast.FunctionDef, SHARED_FUNCTIONS | figures)
     ):  # fmt: skip
         several = {name: files for name, files in places[kind].items() if len(files) > 1}
-        assert not {name: files for name, files in several.items() if name not in shared}
+        doubled = {name: files for name, files in several.items() if name not in shared}
+        assert not doubled, f"give one of each another name: {doubled}"
         assert shared - figures <= set(several), "names that stand once, or not at all"

@@ -149,7 +149,7 @@ def undamaged(folder):
     return held
 
 
-BINARY = ["netcdf", "miniseed", "sac", "asdf"]
+BINARY = [entry.name for entry in formats() if entry.binary]
 
 
 @pytest.mark.long

@@ -99,27 +99,7 @@ MASS_WAYS: Final = OneOf("mass", ("density", "depth"))
 
 
 def read_points(given: object, *, owner: str, name: str) -> Array:
-    """Read points: pairs of lengths, or an array with a unit.
-
-    Parameters
-    ----------
-    given : sequence of pairs of str or Quantity, Quantity of shape (n, 2), or (array, unit)
-        What the user gave.
-    owner, name : str
-        For the message.
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        [m]
-
-    Raises
-    ------
-    UnitsError
-        A coordinate has no unit, or that of something else.
-    ComponentError
-        No pairs, or a coordinate is not finite.
-    """
+    """Read points, pairs of lengths or an array with a unit: shape (n, 2) [m]."""
     wanted = (
         f"{owner}: {name} needs pairs of lengths, such as [('0 m', '0 m'), ('1 m', '0 m'), ...], "
         "or an array of shape (n, 2) with a unit"
@@ -142,27 +122,7 @@ def read_points(given: object, *, owner: str, name: str) -> Array:
 
 
 def read_place(given: object, *, owner: str, name: str) -> tuple[float, float]:
-    """Read a pair of lengths.
-
-    Parameters
-    ----------
-    given : pair of str or Quantity, or Quantity of shape (2,)
-        What the user gave.
-    owner, name : str
-        For the message.
-
-    Returns
-    -------
-    tuple of float
-        [m]
-
-    Raises
-    ------
-    UnitsError
-        A length has no unit, or that of something else.
-    ComponentError
-        No pair, or a length is not finite.
-    """
+    """Read a pair of lengths, or a Quantity of shape (2,) [m]."""
     iterable = isinstance(given, Iterable) and not isinstance(given, str | Mapping)
     if isinstance(given, pint.Quantity):
         iterable = getattr(given.magnitude, "ndim", 0) == 1
@@ -175,29 +135,7 @@ def read_place(given: object, *, owner: str, name: str) -> tuple[float, float]:
 
 
 def read_mass(given: Mapping[str, object], area: float, *, owner: str) -> float:
-    """Read a mass, or what it follows from: density, depth and the area that is seen.
-
-    Parameters
-    ----------
-    given : mapping
-        Arguments ``mass``, ``density`` and ``depth``; None or nothing for those not given.
-    area : float
-        In the plane of rocking [m^2].
-    owner : str
-        For the message.
-
-    Returns
-    -------
-    float
-        [kg]
-
-    Raises
-    ------
-    UnitsError
-        A value has no unit, or that of something else.
-    ComponentError
-        Not exactly one of mass and density, density without depth, or out of range.
-    """
+    """Read a mass, or what it follows from: density, depth and the area that is seen [kg]."""
     MASS_WAYS.check(given, owner)
 
     def positive(name: str, measure: Any) -> float:

@@ -80,29 +80,9 @@ class ShapedBody:
 def shaped_body(
     whole: PlaneMass, stance: Stance, top: float, corners: Iterable[OutlineCorner], owner: str
 ) -> ShapedBody:
-    """Put mass and base together.
+    """Put mass and base together; refuse a centre of mass that is not above the base.
 
-    Parameters
-    ----------
-    whole : PlaneMass
-        All mass.
-    stance : Stance
-        Where it stands.
-    top : float
-        Height of the highest point, in the same coordinates [m].
-    corners : iterable of OutlineCorner
-        What may touch the ground beside the base.
-    owner : str
-        For messages.
-
-    Returns
-    -------
-    ShapedBody
-
-    Raises
-    ------
-    ComponentError
-        The centre of mass is not above the base.
+    `top` is the height of the highest point [m]; `corners` may touch the ground beside the base.
     """
     if not stance.left < whole.x < stance.right:
         msg = (

@@ -13,15 +13,8 @@ from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
-from rockframe.studies.fragility.likelihood import (
-    Bands,
-    Fit,
-    Trials,
-    boundary,
-    fit,
-    gap,
-    jackknife,
-)
+from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, gap, jackknife
+from rockframe.studies.fragility.trials import Trials
 from rockframe.studies.fragility.words import bounded
 
 _POINTS: Final = 101

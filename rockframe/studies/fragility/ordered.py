@@ -26,31 +26,7 @@ from rockframe.studies.fragility.likelihood import (
 def ordered_fits(
     logs: Array, verdicts: Array, motions: Generic, names: Sequence[str], bands: Bands
 ) -> list[Fit]:
-    """Fit all limit states at once.
-
-    Parameters
-    ----------
-    logs : ndarray, shape (runs,)
-        Logarithms of the intensity.
-    verdicts : ndarray, shape (states, runs)
-        Whether each was exceeded; the lightest limit state first.
-    motions : ndarray, shape (runs,)
-        The motion of each run: runs of one depend on one another.
-    names : sequence of str
-        Of the limit states.
-    bands : Bands
-        Where the covariance comes from.
-
-    Returns
-    -------
-    list of Fit
-        One for each limit state.
-
-    Raises
-    ------
-    StudyError
-        A run exceeds a limit state without exceeding one before it.
-    """
+    """Fit all limit states at once; each run must exceed them from the lightest on."""
     for k in range(1, len(names)):
         count = int(((verdicts[k] == 1.0) & (verdicts[k - 1] == 0.0)).sum())
         if count:

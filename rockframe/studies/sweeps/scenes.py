@@ -103,7 +103,7 @@ class SystemScene:
         kind, _, parameter = name.rpartition(".")
         if parameter in _OPTIONS and kind in ("", _SYSTEM):
             return _of_option(name, parameter, given)
-        found = self._having(parameter, kind, self.assembly.parts.components())
+        found = self._having(parameter, kind, self.assembly.parts.components)
         found = found or self._having(parameter, kind, self._parts())
         if len(found) != 1:
             raise StudyError(self._not_one(name, parameter, [part for _, part, _ in found]))
@@ -150,13 +150,13 @@ class SystemScene:
     def with_parts_of(self, axes: Iterable[Axis]) -> "SystemScene":
         """Give the scene with the rigid ground as a part, where axes name its parameters."""
         parts = self.assembly.parts
-        if all(axis.slot in ("", *parts.components()) for axis in axes):
+        if all(axis.slot in ("", *parts.components) for axis in axes):
             return self
         return SystemScene(assembly_of(parts.standing(), self.assembly.options))
 
     def _parts(self) -> dict[str, Component]:
         """Give the parts whose parameters axes may name, by their slots."""
-        return self.assembly.parts.standing().components()
+        return self.assembly.parts.standing().components
 
     def assembled(self, values: Values) -> Assembly:
         """Give the system with the values of a case in the place of its own."""

@@ -61,7 +61,7 @@ def draw(rng: np.random.Generator) -> Scene:
     one in three a body is not uniform, or not symmetric.
     """
     while True:
-        pair = _pair(rng)
+        pair = draw_pair(rng, (0.5, 2.0), (0.8, 6.0), (0.4, 1.0), 0.8)
         phase = Phase(pair, Pattern("both", "both"), pair.offset)
         place = phase.placed(np.zeros(0))
         at_rest = phase.pressures(place, phase.needed(np.zeros(6), 0.0, 0.0))
@@ -70,10 +70,17 @@ def draw(rng: np.random.Generator) -> Scene:
     return Scene(pair, _motion(rng, pair))
 
 
-def _pair(rng: np.random.Generator) -> Pair:
-    bodies, width = [], float(rng.uniform(0.5, 2.0))
+def draw_pair(
+    rng: np.random.Generator,
+    widths: tuple[float, float],
+    slenderness: tuple[float, float],
+    shares: tuple[float, float],
+    most_aside: float,
+) -> Pair:
+    """Draw a lower body of some width and an upper one of a share of that, and its offset."""
+    bodies, width = [], float(rng.uniform(*widths))
     for _ in range(2):
-        height = width * log_between(rng, 0.8, 6.0)
+        height = width * log_between(rng, *slenderness)
         mass = 2000.0 * width * height * log_between(rng, 0.5, 2.0)
         body = Body.uniform(width, height, mass)
         if rng.random() < 1.0 / 3.0:
@@ -82,10 +89,11 @@ def _pair(rng: np.random.Generator) -> Pair:
             heavier = float(rng.uniform(0.7, 1.1))
             body = Body(mass, body.inertia * heavier, 0.5 * width, level, height - level, beside)
         bodies.append(body)
-        width *= float(rng.uniform(0.4, 1.0))
+        width *= float(rng.uniform(*shares))
     lower, upper = bodies
     spare = lower.half_width - upper.half_width
-    return Pair(lower, upper, spare * float(rng.uniform(-0.8, 0.8)) if rng.random() < 0.6 else 0.0)
+    aside = rng.uniform(-most_aside, most_aside) if rng.random() < 0.6 else 0.0
+    return Pair(lower, upper, spare * float(aside))
 
 
 def _motion(rng: np.random.Generator, pair: Pair) -> dict[str, Any]:

@@ -22,6 +22,37 @@ LOOKS = 4
 MOST_EVENTS = 20000
 
 
+def first_event(guards, solver, dense, armed, slowness, gone=1e-13):
+    """Give time and name of the first guard that fires in a step; or tell to step again.
+
+    `guards` gives values by names, at a time and in a state; `armed` keeps which were positive,
+    beyond `gone`.
+    """
+    looks = np.linspace(solver.t_old, solver.t, LOOKS + 1)
+    for i in range(LOOKS + 1):
+        values = guards(looks[i], solver.y if i == LOOKS else dense(looks[i]))
+        fired = []
+        for name, value in values.items():
+            if value > gone:
+                armed[name] = True
+            elif value < 0.0 and armed.get(name):
+                fired.append(name)
+            elif value < -1e-12 and i:
+                if solver.t - solver.t_old < 1e-10 * slowness:
+                    return (solver.t, name), False
+                return None, True
+        if fired and i == 0:
+            return (solver.t_old, fired[0]), False
+        if fired:
+            found = [
+                (brentq(lambda t, n=n: guards(t, dense(t))[n], looks[i - 1], looks[i],
+                        xtol=1e-15, rtol=1e-15), n)
+                for n in fired
+            ]  # fmt: skip
+            return min(found), False
+    return None, False
+
+
 @dataclass(frozen=True)
 class Event:
     """A change of the pattern.
@@ -347,7 +378,7 @@ class _Running:
                 if solver.t < stop:
                     self.step = solver.step_size
                 dense = solver.dense_output()
-                hit, again = self._first(solver, dense, armed)
+                hit, again = first_event(self.guards, solver, dense, armed, self.pair.slowness)
                 if again:
                     # a guard that began at zero is negative: look more closely
                     cut *= 0.125
@@ -366,30 +397,6 @@ class _Running:
                 if solver.max_step < self.longest and solver.status == "running":
                     break
         return None
-
-    def _first(self, solver, dense, armed):
-        """Give time and name of the first guard that fires in a step; or tell to step again."""
-        looks = np.linspace(solver.t_old, solver.t, LOOKS + 1)
-        for i in range(LOOKS + 1):
-            values = self.guards(looks[i], solver.y if i == LOOKS else dense(looks[i]))
-            fired = []
-            for name, value in values.items():
-                if value > 1e-13:
-                    armed[name] = True
-                elif value < 0.0 and armed.get(name):
-                    fired.append(name)
-                elif value < -1e-12 and i:
-                    if solver.t - solver.t_old < 1e-10 * self.pair.slowness:
-                        return (solver.t, name), False
-                    return None, True
-            if fired:
-                found = [
-                    (brentq(lambda t, n=n: self.guards(t, dense(t))[n], looks[i - 1], looks[i],
-                            xtol=1e-15, rtol=1e-15), n)
-                    for n in fired
-                ]  # fmt: skip
-                return min(found), False
-        return None, False
 
     def _peaks(self, start, end, dense):
         """Find the greatest rotations within a step."""

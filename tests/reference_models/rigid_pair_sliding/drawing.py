@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from reference_models.rigid_pair import drawing
-from reference_models.rigid_pair.drawing import log_between
+from reference_models.rigid_pair.drawing import draw_pair, log_between
 from reference_models.rigid_pair.ground import Piece, pieces_of, still
-from reference_models.rigid_pair.pair import GRAVITY, Body, Pair
+from reference_models.rigid_pair.pair import GRAVITY, Pair
 
 from .choices import Frictions
 from .contacts import INTERFACES, Friction
@@ -53,25 +53,12 @@ def draw(seed) -> Scene:
 
 
 def _pair(rng: np.random.Generator) -> Pair | None:
-    bodies, width = [], float(rng.uniform(0.6, 2.0))
-    for _ in range(2):
-        height = width * log_between(rng, 0.6, 4.0)
-        mass = 2000.0 * width * height * log_between(rng, 0.5, 2.0)
-        body = Body.uniform(width, height, mass)
-        if rng.random() < 1.0 / 3.0:
-            level = height * float(rng.uniform(0.4, 0.55))
-            beside = width * float(rng.uniform(-0.08, 0.08))
-            heavier = float(rng.uniform(0.7, 1.1))
-            body = Body(mass, body.inertia * heavier, 0.5 * width, level, height - level, beside)
-        bodies.append(body)
-        width *= float(rng.uniform(0.3, 0.9))
-    lower, upper = bodies
-    spare = lower.half_width - upper.half_width
-    offset = spare * float(rng.uniform(-0.6, 0.6)) if rng.random() < 0.6 else 0.0
+    pair = draw_pair(rng, (0.6, 2.0), (0.6, 4.0), (0.3, 0.9), 0.6)
+    lower, upper = pair.lower, pair.upper
     total = lower.mass + upper.mass
-    foot = (lower.mass * lower.beside + upper.mass * (offset + upper.beside)) / total
+    foot = (lower.mass * lower.beside + upper.mass * (pair.offset + upper.beside)) / total
     stands = abs(foot) < 0.9 * lower.half_width
-    return Pair(lower, upper, offset) if stands else None
+    return pair if stands else None
 
 
 def _friction(rng: np.random.Generator, slender: float) -> Friction:

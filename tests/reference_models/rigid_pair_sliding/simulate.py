@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from reference_models.rigid_pair.ground import Piece
 from reference_models.rigid_pair.pair import Pair
-from reference_models.rigid_pair.simulate import LOOKS
+from reference_models.rigid_pair.simulate import first_event
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
@@ -99,7 +99,9 @@ class _Running(Moving):
                     self.step = solver.step_size
                 dense = solver.dense_output()
                 kept = dict(armed)
-                hit, again = self._first(solver, dense, armed)
+                hit, again = first_event(
+                    self.guards, solver, dense, armed, self.pair.slowness, GONE
+                )
                 if again:
                     # a guard that began at zero is negative: look more closely
                     armed = kept
@@ -119,32 +121,6 @@ class _Running(Moving):
                 if solver.max_step < self.longest and solver.status == "running":
                     break
         return None
-
-    def _first(self, solver, dense, armed):
-        """Give time and name of the first guard that fires in a step; or tell to step again."""
-        looks = np.linspace(solver.t_old, solver.t, LOOKS + 1)
-        for i in range(LOOKS + 1):
-            values = self.guards(looks[i], solver.y if i == LOOKS else dense(looks[i]))
-            fired = []
-            for name, value in values.items():
-                if value > GONE:
-                    armed[name] = True
-                elif value < 0.0 and armed.get(name):
-                    fired.append(name)
-                elif value < -1e-12 and i:
-                    if solver.t - solver.t_old < 1e-10 * self.pair.slowness:
-                        return (solver.t, name), False
-                    return None, True
-            if fired and i == 0:
-                return (solver.t_old, fired[0]), False
-            if fired:
-                found = [
-                    (brentq(lambda t, n=n: self.guards(t, dense(t))[n], looks[i - 1], looks[i],
-                            xtol=1e-15, rtol=1e-15), n)
-                    for n in fired
-                ]  # fmt: skip
-                return min(found), False
-        return None, False
 
     def _peaks(self, start, end, dense):
         """Find the greatest rotations and slips within a step."""

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pages import table
 from unit.motion.motion_files import numbers
 
 import rockframe.records
@@ -58,27 +59,15 @@ def registered():
 
 
 def test_formats_are_listed_with_name_title_and_suffixes():
+    page, head = "guide/reading_records.md", "| name | files | components in a file |"
+    head += " unit of the samples |"
     listed = formats()
-    assert [entry.name for entry in listed] == [
-        "peer-at2",
-        "cosmos",
-        "csmip",
-        "smc",
-        "esm",
-        "k-net",
-        "geonet",
-        "cwa",
-        "afad",
-        "bhrc",
-        "csmnc",
-        "resorce",
-        "unam",
-        "asdf",
-        "netcdf",
-        "miniseed",
-        "sac",
-        "text",
-    ]
+    names, shown = (
+        [entry.name for entry in listed],
+        [row[0].strip("`") for row in table(page, head)],
+    )
+    assert shown == names, f"give docs/{page} a row for each format, in the order of formats()"
+    assert names[-1] == "text"  # it takes every column of numbers
     for entry in listed:
         assert entry.title
         assert all(suffix.startswith(".") for suffix in entry.suffixes)

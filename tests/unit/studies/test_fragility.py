@@ -10,7 +10,8 @@ import rockframe as rf
 from rockframe.errors import ComponentError, FileError, SchemaError, StudyError, UnitsError
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.confidence import clopper_pearson
-from rockframe.studies.fragility.likelihood import Bands, Trials, boundary, fit, log_likelihood
+from rockframe.studies.fragility.likelihood import Bands, boundary, fit, log_likelihood
+from rockframe.studies.fragility.trials import Trials
 
 LEVELS = [0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0]
 EXCEEDED = [0, 0, 0, 4, 6, 13, 12, 16]

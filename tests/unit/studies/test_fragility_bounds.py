@@ -12,7 +12,8 @@ from rockframe.studies.fragility.labelling import (
     StructureTrials,
     fragility_dataset,
 )
-from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, Trials, fit
+from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, fit
+from rockframe.studies.fragility.trials import Trials
 from rockframe.studies.fragility.words import COVERAGE, bounded, words_of_bounds
 
 SCALES = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])

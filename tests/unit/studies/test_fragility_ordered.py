@@ -8,8 +8,9 @@ from scipy import optimize, stats
 
 import rockframe as rf
 from rockframe.errors import ComponentError, StudyError
-from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, Trials, fit
+from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, fit
 from rockframe.studies.fragility.ordered import ordered_fits
+from rockframe.studies.fragility.trials import Trials
 
 NAMES = ("slight", "moderate", "complete")
 
