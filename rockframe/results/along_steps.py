@@ -45,17 +45,32 @@ class AlongSteps:
 
     def largest(self, quantity: Callable[[Values], Array]) -> tuple[Array, Array]:
         """Give peaks and their times."""
-        shown = quantity(self.shown)
-        if shown.shape[1] < 2:  # no step was made
-            return np.zeros(len(shown)), np.full(len(shown), np.nan)
-        which = self._promising(shown)
-        inner = quantity(self.inside(which)).reshape(len(shown), len(which), len(FRACTIONS))
+        return self.each_largest(quantity)[0]
+
+    def each_largest(self, *quantities: Callable[[Values], Array]) -> list[tuple[Array, Array]]:
+        """Give peaks and their times of several quantities, each in the steps that promise them."""
+        shown = [quantity(self.shown) for quantity in quantities]
+        if len(self.steps.time) < 2:  # no step was made
+            return [(np.zeros(len(one)), np.full(len(one), np.nan)) for one in shown]
+        steps = [self._promising(one) for one in shown]
+        every = np.unique(np.concatenate(steps))
+        inside = self.inside(every)
+        return [
+            self._peaks(one, which, quantity(inside), np.searchsorted(every, which))
+            for quantity, one, which in zip(quantities, shown, steps, strict=True)
+        ]
+
+    def _peaks(
+        self, shown: Array, which: Integers, inside: Array, place: Integers
+    ) -> tuple[Array, Array]:
+        """Give the peaks of rows in some steps, whose insides stand at some places."""
+        inner = inside.reshape(len(shown), -1, len(FRACTIONS))[:, place]
         both_ends = shown[:, which - 1, None], shown[:, which, None]
         known = np.concatenate([both_ends[0], inner, both_ends[1]], axis=-1)
-        peak, place = _tops(known)
+        peak, top = _tops(known)
         row, best = np.arange(len(shown)), np.argmax(peak, axis=1)
         length = self.steps.length[which]
-        time = (self.steps.time[which] - length)[best] + length[best] * place[row, best] / PARTS
+        time = (self.steps.time[which] - length)[best] + length[best] * top[row, best] / PARTS
         return peak[row, best], time
 
     def above(self, quantity: Callable[[Values], Array], level: float) -> tuple[float, float]:
