@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.compiled import Integers
+from rockframe.compiled import Integers, Matrix, Vector, entry_at_once, inlined
 from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.solve.trajectory import Steps
@@ -45,17 +45,32 @@ class AlongSteps:
 
     def largest(self, quantity: Callable[[Values], Array]) -> tuple[Array, Array]:
         """Give peaks and their times."""
-        shown = quantity(self.shown)
-        if shown.shape[1] < 2:  # no step was made
-            return np.zeros(len(shown)), np.full(len(shown), np.nan)
-        which = self._promising(shown)
-        inner = quantity(self.inside(which)).reshape(len(shown), len(which), len(FRACTIONS))
+        return self.each_largest(quantity)[0]
+
+    def each_largest(self, *quantities: Callable[[Values], Array]) -> list[tuple[Array, Array]]:
+        """Give peaks and their times of several quantities, each in the steps that promise them."""
+        shown = [quantity(self.shown) for quantity in quantities]
+        if len(self.steps.time) < 2:  # no step was made
+            return [(np.zeros(len(one)), np.full(len(one), np.nan)) for one in shown]
+        steps = [self._promising(one) for one in shown]
+        every = np.unique(np.concatenate(steps))
+        inside = self.inside(every)
+        return [
+            self._peaks(one, which, quantity(inside), np.searchsorted(every, which))
+            for quantity, one, which in zip(quantities, shown, steps, strict=True)
+        ]
+
+    def _peaks(
+        self, shown: Array, which: Integers, inside: Array, place: Integers
+    ) -> tuple[Array, Array]:
+        """Give the peaks of rows in some steps, whose insides stand at some places."""
+        inner = inside.reshape(len(shown), -1, len(FRACTIONS))[:, place]
         both_ends = shown[:, which - 1, None], shown[:, which, None]
         known = np.concatenate([both_ends[0], inner, both_ends[1]], axis=-1)
-        peak, place = _tops(known)
+        peak, top = _tops(known)
         row, best = np.arange(len(shown)), np.argmax(peak, axis=1)
         length = self.steps.length[which]
-        time = (self.steps.time[which] - length)[best] + length[best] * place[row, best] / PARTS
+        time = (self.steps.time[which] - length)[best] + length[best] * top[row, best] / PARTS
         return peak[row, best], time
 
     def above(self, quantity: Callable[[Values], Array], level: float) -> tuple[float, float]:
@@ -78,21 +93,44 @@ class AlongSteps:
 
     def _promising(self, shown: Array) -> Integers:
         """Find the steps in which a peak of some row may lie, by the rows of their ends."""
-        start, end, length = shown[:, :-1], shown[:, 1:], self.steps.length[1:].copy()
-        anew = np.flatnonzero(length == 0.0)
-        length[anew] = math.nan  # what a jump tells nothing of
-        bend = np.full_like(shown, math.nan)
-        with np.errstate(invalid="ignore"):
-            np.abs(np.diff((end - start) / length, axis=1), out=bend[:, 1:-1])
-            bulge = np.fmax(bend[:, :-1], bend[:, 1:]) * length
-        bulge[~np.isfinite(bulge)] = 0.0
-        promise = np.fmax(start, end) + BULGE * bulge
-        promise[:, anew] = -math.inf
-        found = [
-            1 + _largest(row, top)
-            for row, top in zip(promise, np.fmax.reduce(shown, axis=1), strict=True)
-        ]
-        return np.unique(np.concatenate(found))
+        promise = np.empty_like(shown)
+        promise_of_steps(shown, np.ascontiguousarray(self.steps.length), promise)
+        tops = np.fmax.reduce(shown, axis=1)
+        rows = zip(promise[:, 1:], tops, strict=True)
+        return np.unique(np.concatenate([1 + _largest(row, top) for row, top in rows]))
+
+
+@inlined
+def greater(a: float, b: float) -> float:
+    """Give the greater of two numbers, of which NaN is none."""
+    return a if a >= b or b != b else b
+
+
+@inlined
+def slope_in(shown: Matrix, row: int, i: int, length: Vector) -> float:
+    """Give the mean slope of a row in the step that ends at `i`; NaN where steps begin anew."""
+    if i == len(length) or length[i] == 0.0:
+        return math.nan
+    return (shown[row, i] - shown[row, i - 1]) / length[i]
+
+
+@entry_at_once
+def promise_of_steps(shown: Matrix, length: Vector, out: Matrix) -> None:
+    """Fill what rows may rise to in each step, by its ends and by how slopes differ there.
+
+    Nothing where steps begin anew: what a jump tells nothing of.
+    """
+    for row in range(shown.shape[0]):
+        bend, slope = math.nan, slope_in(shown, row, 1, length)
+        for i in range(1, len(length)):
+            next_slope = slope_in(shown, row, i + 1, length)
+            next_bend = abs(next_slope - slope)
+            bulge = greater(bend, next_bend) * length[i]
+            if not bulge < math.inf:
+                bulge = 0.0
+            top = greater(shown[row, i - 1], shown[row, i]) + BULGE * bulge
+            out[row, i] = top if length[i] > 0.0 else -math.inf
+            bend, slope = next_bend, next_slope
 
 
 def _largest(promise: Array, top: float) -> Integers:

@@ -118,22 +118,27 @@ class EventStates:
         }
 
 
-def force_scalars(along: AlongSteps, events: EventStates, mass: float) -> dict[str, float]:
-    """Give peaks of forces."""
-    (shear, most), (_, when) = along.largest(_shear_and_demand)
+def peaks_along(
+    along: AlongSteps, events: EventStates, load: BaseLoad
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Give peaks of forces, and how far the middle of the base went down from rest at most."""
+    ((shear, most), (_, when)), ((deepest,), _) = along.each_largest(
+        _shear_and_demand, lambda values: _settlement(values, load)[None]
+    )
     level = min(HALF * most, ENOUGH)
     lasted = along.above(_demand, level)[1] if level > 0.0 else 0.0
-    impulses = events.impulses(mass)
+    impulses = events.impulses(load.body.mass)
     struck = friction_demand(
-        impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], mass
+        impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], load.body.mass
     )[events.is_impact]
-    return {
+    forces = {
         "peak_friction_demand": float(most),
         "peak_friction_demand_time": float(when),
         "peak_friction_demand_duration": lasted,
         "peak_impulsive_friction_demand": float(struck.max(initial=0.0)),
         "peak_base_shear": float(shear),
     }
+    return forces, {"peak_settlement": max(float(deepest), 0.0) + 0.0}
 
 
 def _demand(values: Values) -> Array:
@@ -153,16 +158,12 @@ def residuals(values: Values, load: BaseLoad) -> dict[str, float]:
     }
 
 
-def peak_settlement(along: AlongSteps, load: BaseLoad) -> dict[str, float]:
-    """Give how far the middle of the base went down from rest at most."""
-    ((deepest,), _) = along.largest(lambda values: _settlement(values, load)[None])
-    return {"peak_settlement": max(float(deepest), 0.0) + 0.0}
-
-
 def _settlement(values: Values, load: BaseLoad) -> Array:
     """Give how much lower than at rest the middle of the base is, :eq:`eq-settlement`."""
-    body, small = load.body, load.options.small
-    half, _ = sines_cosines(0.5 * values["rotation"], small=small)
-    whole, _ = sines_cosines(values["rotation"], small=small)
-    sunk = -values["vertical_displacement"] - body.eccentricity * whole
+    body, small, rotation = load.body, load.options.small, values["rotation"]
+    half, beside = 0.5 * rotation, body.eccentricity * rotation
+    if not small:
+        half = np.sin(half)
+        beside = body.eccentricity * np.sin(rotation) if body.eccentricity != 0.0 else beside
+    sunk = -values["vertical_displacement"] - beside
     return sunk - 2.0 * body.centre_height * half**2

@@ -123,9 +123,11 @@ class Signal:
         last = self.samples.size - 1
         nearest = np.rint(place)
         close = np.abs(place - nearest) <= _SAME_INSTANT * np.maximum(nearest, 1.0)
-        sampled = self.samples[np.clip(nearest, 0, last).astype(np.intp)]
-        inside = (nearest >= 0.0) & (nearest <= last)
-        return np.where(close & inside, sampled, self.at_place(place))
+        values = np.array(self.samples[np.clip(nearest, 0, last).astype(np.intp)])
+        between = ~np.asarray(close & (nearest >= 0.0) & (nearest <= last))
+        if between.any():
+            values[between] = self.at_place(place[between])
+        return values
 
     def at_place(self, place: Array) -> Array:
         """Evaluate the polynomials, at a sample that of the interval which begins there.

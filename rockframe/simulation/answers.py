@@ -17,9 +17,8 @@ from rockframe.results.forces import (
     OF_SOIL_FRICTION,
     EventStates,
     force_histories,
-    force_scalars,
     friction_demands,
-    peak_settlement,
+    peaks_along,
     residuals,
 )
 from rockframe.results.outcome import (
@@ -95,12 +94,10 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     if run.overturning_time <= run.end_time:  # how a block falls is another matter
         upright = events.until(run.overturning_time)
     found = slidings(system, along)
+    of_forces, of_settlement = peaks_along(along, upright, load)
     scalars: dict[str, Generic | float] = {
-        **force_scalars(along, upright, load.body.mass),
-        **sliding_scalars(found),
-        **residuals(values, load),
-        **peak_settlement(along, load),
-    }
+        **of_forces, **sliding_scalars(found), **residuals(values, load), **of_settlement,
+    }  # fmt: skip
     if "slip" in values:
         scalars["residual_displacement"] = float(values["horizontal_displacement"][-1])
     if system.model.shows_bodies:
@@ -250,6 +247,8 @@ def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
             np.repeat(steps.memory_row[which], places),
             resolved,
         )
+        if not _everything(plan):
+            return found | friction_demands(found, load)
         found |= force_histories(found, moved, load)
         return found | _state_of(found, time, ground)
 

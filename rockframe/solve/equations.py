@@ -5,7 +5,7 @@ addresses, and the system's numbers as a vector.
 """
 
 import math
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from rockframe.compiled import (
     COMPILED,
@@ -17,7 +17,7 @@ from rockframe.compiled import (
     numbers_in,
     put,
 )
-from rockframe.dynamics.protocol import BODY_COLUMNS, BODY_FORCES, Energies, Equations, Ground
+from rockframe.dynamics.protocol import Energies, Equations, Ground
 from rockframe.solve.accuracy import STABLE
 from rockframe.solve.march import (
     guards_at,
@@ -75,20 +75,6 @@ def observed(
 ) -> None:  # fmt: skip
     """Write the columns of a state."""
     put(system.observe(mode, state, slope, Ground(ground_x, ground_y), memory), 0, out)
-
-
-_BODY: Final = [column.name for column in BODY_COLUMNS]
-SHEAR, THRUST, PRESS = (_BODY.index(name) for name in BODY_FORCES)
-
-
-@kernel
-def forces(
-    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
-    memory: Vector, out: Vector,
-) -> None:  # fmt: skip
-    """Write `BODY_FORCES` alone, so that nothing else is computed."""
-    columns = system.observe(mode, state, slope, Ground(ground_x, ground_y), memory)
-    out[0], out[1], out[2] = columns[SHEAR], columns[THRUST], columns[PRESS]
 
 
 class BoundEquations(NamedTuple):

@@ -248,9 +248,16 @@ def integrate(
     out_state = np.empty((rows, width))
     out_mode = np.empty(rows, dtype=np.int64)
     out_work = np.zeros((rows if with_work else 0, 2))
+    pieces = pieces_of(motion)
+    # that many samples are taken from the table of steps, so that steps go on at them
+    sampled = 0
     if rows:
         out_state[0], out_mode[0] = state, mode
         counters[at.OUTPUTS] = 1
+        if keep_steps and not with_work:
+            intervals = max(map(len, pieces))
+            sampled = _on_samples(intervals, run.controls[at.TIME_STEP], output_step or 0.0, rows)
+            counters[at.OUTPUTS] += sampled
 
     progress = Progress(run.controls, clock, counters)
     first_steps: Steps | None = None
@@ -258,6 +265,13 @@ def integrate(
     def steps_in(table: StepTable) -> Steps:
         kept = int(counters[at.STEPS_KEPT])
         return steps_of(table, kept, width, exact=accuracy.rtol is not None)
+
+    def take_samples(steps: Steps) -> int:
+        """Fill the first outputs by the steps that end there; give how many outputs there are."""
+        which = steps.first_at_multiples(output_step or 1.0, ON_SAMPLE)[:sampled]
+        count = 1 + len(which)
+        out_state[1:count], out_mode[1:count] = steps.state[which], steps.mode[which]
+        return count if count <= sampled else int(counters[at.OUTPUTS])
 
     steps = no_steps()
     if keep_steps:
@@ -269,7 +283,6 @@ def integrate(
         np.empty((EVENT_ROOM, 1 + 2 * width + len(memory))),
         np.empty((EVENT_ROOM, 3), dtype=np.int64),
     )
-    pieces = pieces_of(motion)
     equations = equations_of(model.system, fixed_steps=accuracy.rtol is None)
     workspace = make_workspace(equations, state, run.reference, run.limits)
     as_python = 0.0  # time that it took in plain Python
@@ -299,11 +312,14 @@ def integrate(
                 steps = StepTable(*_longer(*steps))
             else:
                 first_steps, steps = replace(steps_in(steps), complete=False), no_steps()
+                counters[at.OUTPUTS] = take_samples(first_steps)
+                sampled = 0
 
     if not COMPILED or not runs_as_python(equations):  # of which more has been said
         say_slow(as_python)
 
-    stored = int(counters[at.OUTPUTS])
+    kept = (first_steps or steps_in(steps)) if keep_steps else None
+    stored = int(counters[at.OUTPUTS]) if not sampled or kept is None else take_samples(kept)
     time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)
     end = float(clock[at.TIME])
     out_state, out_mode, out_work = out_state[:stored], out_mode[:stored], out_work[:stored]
@@ -329,7 +345,7 @@ def integrate(
         ending=Ending(int(counters[at.MODE]), workspace.state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),
         as_python=runs_as_python(equations),
-        steps=(first_steps or steps_in(steps)) if keep_steps else None,
+        steps=kept,
     )
 
 
@@ -363,6 +379,17 @@ def make_workspace(
         ground=np.zeros(2 * TERMS),
         answers=np.zeros(4),
     )
+
+
+def _on_samples(intervals: int, interval: float, output_step: float, rows: int) -> int:
+    """Count the output times behind the start that are samples of the motion: steps end there."""
+    every = round(output_step / interval)
+    if every < 1:
+        return 0
+    count = min(rows - 1, intervals // every)
+    last = count * output_step
+    apart = abs(last - count * every * interval) + ROUNDING * last
+    return count if apart <= 0.5 * ON_SAMPLE * output_step else 0
 
 
 def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:

@@ -16,8 +16,8 @@ from rockframe.compiled import (
     kernel,
     numbers_in,
 )
-from rockframe.dynamics.protocol import BODY_FORCES, POWERS, Column, ContactModel, Equations
-from rockframe.solve.equations import energies, forces, observed, slope
+from rockframe.dynamics.protocol import POWERS, Column, ContactModel, Equations
+from rockframe.solve.equations import energies, observed, slope
 from rockframe.solve.trajectory import Steps, Trajectory
 from rockframe.solve.workspace import BESIDE
 
@@ -45,8 +45,8 @@ class OfSystem(NamedTuple):
     numbers: Vector
 
 
-def _of(system: Equations, function: Callable[..., None]) -> OfSystem:
-    return OfSystem(bound((function,), system)[0], numbers_in(system))
+def _of(system: Equations, *functions: Callable[..., None]) -> list[OfSystem]:
+    return [OfSystem(one, numbers_in(system)) for one in bound(functions, system)]
 
 
 @entry_at_once
@@ -121,8 +121,10 @@ def energy_rows(
 def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
     """Give the memories of a run, and which of them holds at each output time."""
     memory = np.vstack([trajectory.start_memory, trajectory.events.memory])
-    row = np.searchsorted(trajectory.events.time, trajectory.time, side="left")
-    return memory, row.astype(np.int64)
+    # of the few events is asked when they are, not of each of many times what was before
+    behind = np.searchsorted(trajectory.time, trajectory.events.time, side="right")
+    counts = np.diff(behind, prepend=0, append=len(trajectory.time))
+    return memory, np.repeat(np.arange(len(memory)), counts)
 
 
 def observe_states(
@@ -158,8 +160,7 @@ def observe_states(
     wanted = np.arange(len(model.columns))
     out = np.empty((len(wanted), len(mode)))
     observe_rows(
-        _of(model.system, slope),
-        _of(model.system, observed),
+        *_of(model.system, slope, observed),
         mode,
         np.ascontiguousarray(state),
         memory,
@@ -176,16 +177,12 @@ def observe_steps(
     model: ContactModel, steps: Steps, memory: Matrix, names: tuple[str, ...] | None
 ) -> dict[str, Vector]:
     """Give columns at the ends and starts of steps."""
-    columns, function = model.columns, observed
-    if names == BODY_FORCES:
-        columns = tuple(one for one in columns if one.name in BODY_FORCES)
-        function = forces
+    columns = model.columns
     chosen = [i for i, one in enumerate(columns) if names is None or one.name in names]
     wanted = np.array(chosen, dtype=np.int64)
     out = np.empty((len(wanted), len(steps.time)))
     observe_kept(
-        _of(model.system, slope),
-        _of(model.system, function),
+        *_of(model.system, slope, observed),
         int(steps.exact),
         steps.values,
         steps.codes,
@@ -224,7 +221,7 @@ def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
     """
     out = np.empty((len(trajectory.time), 4))
     energy_rows(
-        _of(model.system, energies),
+        *_of(model.system, energies),
         trajectory.mode,
         np.ascontiguousarray(trajectory.state),
         np.zeros(trajectory.state.shape[1]),

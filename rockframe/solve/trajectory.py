@@ -76,6 +76,11 @@ class Steps:
             count -= 1
         return replace(self, values=self.values[:count], codes=self.codes[:count])
 
+    def first_at_multiples(self, interval: float, tolerance: float) -> Integers:
+        """Find the rows that come first to each multiple of an interval, or a share before it."""
+        passed = np.floor(self.time / interval + tolerance)
+        return 1 + np.flatnonzero(passed[1:] > passed[:-1])
+
     def inside(self, which: Integers, model: ContactModel, fraction: Vector) -> Matrix:
         """Give states inside steps by their dense solution, :eq:`eq-hermite`."""
         size, u = model.system.coordinates(), fraction[:, None]
