@@ -172,12 +172,12 @@ def contradictions(parts: Parts) -> list[str]:
 def unused(parts: Parts, options: Options) -> list[str]:
     """Say which options were chosen that a scene of these parts has no use for."""
     told: list[str] = []
-    bodies = parts.components().values()
-    bases = [*bodies, *(one for part in bodies if isinstance(part, Stack) for one in part.interfaces)]
+    between = () if parts.stack is None else parts.stack.interfaces
+    bases = (*parts.structural(), *between)
     if options.coupling is not Coupling.COUPLED and not {"pads", "cap", "soil"} <= parts.signature:
         told.append(
-            f"coupling={str(options.coupling)!r} changes nothing here: it is how pads, a CushionCap "
-            "and soil are joined, and the scene has not all of them"
+            f"coupling={str(options.coupling)!r} changes nothing here: it is how pads, a "
+            "CushionCap and soil are joined, and the scene has not all of them"
         )
     yielding = any(slot_of(part) in ("pads", "soil") for part in bases)
     if options.restraint is not Restraint.CONTACT_STATE and not yielding and not parts.own():
