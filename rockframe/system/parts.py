@@ -189,7 +189,8 @@ class Parts:
         found = dict(self.filled)
         if slot not in found:
             known = ", ".join(map(repr, found))
-            msg = f"the scene has no part {shown(slot)}{nearest(slot, found)}; it has {known}"
+            near = nearest(slot, found) or ";"
+            msg = f"the scene has no part {shown(slot)}{near} It has {known}"
             raise LabelError(msg)
         return cast("Component", found[slot])
 
