@@ -36,6 +36,10 @@ def ensemble(
     Returns
     -------
     matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> axes = rf.plot.ensemble(rf.ensemble_statistics(...))  # doctest: +SKIP
     """
     given = drawable(dataset, "ensemble", units)
     on = single(ax, "ensemble", (5.6, 3.9))
