@@ -1,8 +1,6 @@
 """Settings of the manual: ``python -m sphinx -W --keep-going -b html docs docs/_build/html``."""
 
-import re
 import sys
-from collections import namedtuple
 from pathlib import Path
 
 from rockframe.version import __version__
@@ -17,6 +15,7 @@ version = release = __version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
     "sphinx-mathjax-offline",  # its files and fonts, copied into the site
     "numpydoc",
@@ -24,9 +23,11 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "code_tables",
     "figures",
+    "object_pages",
     "plain_entries",
 ]
-exclude_patterns = ["_build", "_ext"]
+templates_path = ["_templates"]  # of the pages of objects
+exclude_patterns = ["_build", "_ext", "_templates"]
 html_theme = "furo"
 html_title = f"rockframe {release}"
 html_static_path = ["_static"]
@@ -64,23 +65,9 @@ sphinx_gallery_conf = {
 
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
+autosummary_filename_map = {
+    # names that differ by their case alone are one file on some systems
+    f"rockframe.plot.{name}": f"rockframe.plot.{name}_class"
+    for name in ("Animation", "Player")
+}
 numpydoc_show_class_members = False
-
-
-_FIELD = type(namedtuple("Pair", "field").field)
-
-
-def _keep_bars(app, what, name, obj, options, lines):
-    """Keep |x| in docstrings an absolute value: reStructuredText would substitute it."""
-    lines[:] = [re.sub(r"\|(\w[\w ]*)\|", r"\\|\1\\|", line) for line in lines]
-
-
-def _leave_out_fields(app, what, name, obj, skip, options):
-    """Leave out the fields of named tuples: the class's signature names them."""
-    return True if isinstance(obj, _FIELD) else None
-
-
-def setup(app):
-    """Register the hooks."""
-    app.connect("autodoc-process-docstring", _keep_bars)
-    app.connect("autodoc-skip-member", _leave_out_fields)

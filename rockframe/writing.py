@@ -105,7 +105,9 @@ def _fault_of_place(named: Path, place: Path, kind: FileKind) -> str | None:
     if named.suffix.lower() not in kind.endings:
         endings = " or ".join(kind.endings)
         found = f"ends in {named.suffix!r}" if named.suffix else "has no ending"
-        return f"the name {found}; that of {kind.words} ends in {endings}"
+        printed = named.suffix.lower() == ".pdf" and ".html" in kind.endings
+        how = "; a browser prints the page into a PDF" if printed else ""
+        return f"the name {found}; that of {kind.words} ends in {endings}{how}"
     if not place.parent.is_dir():
         return f"there is no folder {str(named.parent)!r}"
     return None

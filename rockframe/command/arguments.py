@@ -75,6 +75,12 @@ OVERWRITE: Final = word(
     help="replace files that are there, also such as rockframe did not write; never one that is "
     "read",
 )
+UNITS: Final = word(
+    "--units",
+    nargs="+",
+    metavar="NAME=UNIT",
+    help="units of all numbers, such as force=kN angle=deg acceleration=g_0",
+)
 RESULT: Final = path(
     "-o", "--output", metavar="out.nc", help="write all results to this file; - is standard output"
 )

@@ -16,6 +16,7 @@ from rockframe.command.arguments import (
     RUNNING,
     SCENE,
     STORE,
+    UNITS,
     Command,
     number_typed,
     path,
@@ -269,7 +270,8 @@ COMMANDS: Final = (
         "draw a result",
         "Draw what a file holds: a run along time, or the figure of a study or an analysis.",
         """\
-  rockframe plot out.nc -o out.png
+  rockframe plot out.nc -o out.png --units angle=deg length=mm acceleration=g
+  rockframe plot out.nc -o forces.png --panels base_shear left_reaction --units force=kN
   rockframe plot map.nc -o map.pdf --title 'A pulse on blocks of marble'""",
         (
             DATASET,
@@ -281,6 +283,13 @@ COMMANDS: Final = (
             ),
             OVERWRITE,
             word("--title", help="above the figure, in the place of the verdict"),
+            UNITS,
+            word(
+                "--panels",
+                nargs="+",
+                metavar="NAME",
+                help="of a run: ground, rotation, vertical, contact, and any history that it holds",
+            ),
         ),
     ),
     Command(
@@ -350,12 +359,7 @@ COMMANDS: Final = (
                 help="of a study: which case, by its place along every axis of several values",
             ),
             word("--title", help="of the page"),
-            word(
-                "--units",
-                nargs="+",
-                metavar="NAME=UNIT",
-                help="units of all numbers, such as force=kN angle=deg acceleration=g_0",
-            ),
+            UNITS,
             path(
                 "--motion",
                 metavar="RECORD",

@@ -3,12 +3,13 @@
 import argparse
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from rockframe import plot
 from rockframe.command.answer import Answer
 from rockframe.command.shared import Outputs, check_format, read_result
 from rockframe.command.streams import STREAM
+from rockframe.command.typed_calls import values_by_name
 from rockframe.errors import ComponentError
 from rockframe.plot._checks import drawn_by
 from rockframe.reports.figures import close, figure_of
@@ -34,9 +35,17 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs = Outputs(arguments, [arguments.dataset], answer)
     outputs.check(arguments.output, PICTURE)
     dataset = read_result(arguments.dataset)
-    function = getattr(plot, drawn_by(dataset))
-    named = {} if arguments.title is None else {"title": arguments.title}
-    save(figure_of(function(dataset, **named)), arguments.output, outputs, arguments.format)
+    name = drawn_by(dataset)
+    named: dict[str, Any] = {} if arguments.title is None else {"title": arguments.title}
+    if arguments.units:
+        named["units"] = values_by_name(arguments.units, "--units", "force=kN")
+    if arguments.panels:
+        if name != plot.response.__name__:
+            msg = "--panels: only a run along time has panels to choose from"
+            raise ComponentError(msg)
+        named["panels"] = tuple(arguments.panels)
+    figure = figure_of(getattr(plot, name)(dataset, **named))
+    save(figure, arguments.output, outputs, arguments.format)
     return 0
 
 

@@ -50,7 +50,7 @@ class MemberSI:
 
 
 class Member(Component):
-    """A column, beam, slab, wall, ... of a building, seen in the plane of rocking.
+    """A column, beam, slab or wall of a building, seen in the plane of rocking.
 
     Raises
     ------

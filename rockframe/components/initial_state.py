@@ -49,6 +49,15 @@ class InitialState(Component):
         A value has the wrong unit, or none.
     ComponentError
         Not finite, or a rotation of a right angle and more.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> leaning = rf.InitialState(rotation="2 deg")
+    >>> system = rf.System(rf.Block(width="1 m", height="4 m", mass="5 t"))
+    >>> run = system.simulate(initial=leaning, duration="1 s")
+    >>> bool(run.overturned)
+    False
     """
 
     si: InitialStateSI

@@ -45,6 +45,14 @@ class TwoSpringSupport(Component):
     -----
     k = m omega_v^2 / 2 and c = xi m omega_v per pad, Eq. (7); with the two pads
     together xi is the damping ratio of the vertical motion.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+    >>> stiff = rf.TwoSpringSupport(stiffness="5 MN/m", damping="20 kN*s/m", friction=0.4)
+    >>> stiff.friction
+    0.4
     """
 
     noun: ClassVar[str] = "base"

@@ -42,11 +42,18 @@ _LETTER, _LINE, _HANDLE = 0.07, 0.19, 0.55
 words [in]."""
 
 
+_FEW: Final = 4
+"""Labels that are written whole, whatever they have in common."""
+
+
 def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> None:
     """Write a legend above what is drawn, for which the axis is made longer."""
     handles, words = axes.get_legend_handles_labels() if named is None else named
-    title = str(style.get("title", ""))
     width, height = np.divide(axes.get_window_extent().size, axes.figure.dpi)
+    if len(words) > _FEW and "title" not in style:
+        common, words = apart(words)
+        style |= {"title": common, "title_fontsize": "small"} if common else {}
+    title = str(style.get("title", ""))
     entry = _HANDLE + _LETTER * max(map(len, words))
     columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
     rows = -(-len(words) // columns) + bool(title)
@@ -61,6 +68,14 @@ def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> Non
         handles, words, loc="upper right", ncols=columns, fontsize="small", frameon=False,
         borderaxespad=0.2, handlelength=1.8, columnspacing=1.2, **style,
     )  # fmt: skip
+
+
+def apart(words: list[str]) -> tuple[str, list[str]]:
+    """Give what labels have in common, between commas, and what tells them apart."""
+    parts = [one.split(", ") for one in words]
+    common = [one for one in parts[0] if all(one in other for other in parts)]
+    rest = [", ".join(one for one in other if one not in common) for other in parts]
+    return (", ".join(common), rest) if all(rest) else ("", words)
 
 
 def ink() -> Any:

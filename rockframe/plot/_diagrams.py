@@ -66,6 +66,14 @@ def phase(
         Not the result of a single run with histories.
     UnitsError, ComponentError
         A unit of another kind, or a window without samples.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> run = system.simulate(pulse, free_vibration="2 s")
+    >>> rf.plot.phase(run, rotation="deg").figure.savefig("phase.png")  # doctest: +SKIP
     """
     given = runs_of(runs, "phase", window)
     unit = units_of(units, "phase").unless_relative(ANGLE, rotation=rotation)
@@ -210,6 +218,14 @@ def energies(
         Not the result of a single run with energies.
     UnitsError, ComponentError
         A unit of another kind, or a window without samples.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> run = system.simulate(pulse, free_vibration="2 s", outputs=("energy",))
+    >>> rf.plot.energies(run, energy="kJ").figure.savefig("energies.png")  # doctest: +SKIP
     """
     given = runs_of(run, "energies", None)
     if len(given) > 1:

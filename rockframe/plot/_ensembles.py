@@ -36,6 +36,10 @@ def ensemble(
     Returns
     -------
     matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> axes = rf.plot.ensemble(rf.ensemble_statistics(...))  # doctest: +SKIP
     """
     given = drawable(dataset, "ensemble", units)
     on = single(ax, "ensemble", (5.6, 3.9))
@@ -285,6 +289,7 @@ def _curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> No
         fraction = one["stripe_fraction"].to_numpy()
         ends = [one[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
         reach = np.abs(np.stack(ends) - fraction)
+        reach[:, one["stripe_trials"].to_numpy() < 2] = np.nan  # bounds of one trial say nothing
         # side by side where limit states were counted at one intensity
         place = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(named) - 1))
         axes.errorbar(place, fraction, yerr=reach, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7)

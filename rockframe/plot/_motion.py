@@ -122,6 +122,12 @@ def motion(
         Not a ground motion, or not three Axes.
     UnitsError
         A unit of another kind.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> record = rf.GroundMotion.example("loma-prieta")
+    >>> panels = rf.plot.motion(record, units={"acceleration": "g"})  # doctest: +SKIP
     """
     from rockframe.measures import velocity_and_displacement
 
@@ -221,6 +227,12 @@ def velocity_pulse(
     ------
     ComponentError
         Not a velocity pulse, or not two Axes.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> motion = rf.GroundMotion.stochastic(6.6, "5 km", seed=1)
+    >>> panels = rf.plot.velocity_pulse(motion.velocity_pulse())  # doctest: +SKIP
     """
     from rockframe.measures import velocity_and_displacement
     from rockframe.motion import VelocityPulse

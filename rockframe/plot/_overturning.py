@@ -314,6 +314,10 @@ def rocking_spectrum(
     Returns
     -------
     Panels
+
+    Examples
+    --------
+    >>> axes = rf.plot.rocking_spectrum(rf.rocking_spectrum(...))  # doctest: +SKIP
     """
     given = drawable(dataset, "rocking_spectrum", units)
     on = _sheet(ax, "rocking_spectrum", given)

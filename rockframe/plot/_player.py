@@ -16,12 +16,19 @@ from rockframe.arguments import text
 from rockframe.plot._artists import CONTACT, SOIL, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_of
 from rockframe.plot._checks import check_run, draws
-from rockframe.plot._response import CONTACT_COLOURS, contact_names_of, of_rotation, strips_of
+from rockframe.plot._response import (
+    CONTACT_COLOURS,
+    SLIP,
+    contact_names_of,
+    has_slid,
+    of_rotation,
+    strips_of,
+)
 from rockframe.plot._runs import Window, runs_of
 from rockframe.plot._scene import Moving
 from rockframe.proposals import proposing
 from rockframe.signals.arrays import Array
-from rockframe.units import ACCELERATION, ANGLE
+from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import UnitsLike
 from rockframe.version import __version__
 from rockframe.writing import FileKind, generator, write_file
@@ -165,8 +172,11 @@ def player(
     store = _Numbers()
     layers = _layers(moving, shown_at, store)
     label = _label("rotation", "-" if unit is None else unit.words)
+    length = chosen.of(LENGTH)
     traces = [
         _trace(of_rotation(drawn, unit), label, BLUE, store),
+        *([_trace(length.of(drawn.dataset[SLIP]), _label(SLIP, length.words), ORANGE, store)]
+          if has_slid(drawn.dataset) else []),
         _trace(ground.of(drawn.dataset["ground_acceleration"]),
                _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip

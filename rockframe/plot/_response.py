@@ -30,6 +30,7 @@ from rockframe.plot._axes import (
 from rockframe.plot._checks import draws, overturning_angles
 from rockframe.plot._panels import AxesLike, Panels, sheet
 from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
+from rockframe.results.outcome import LEAST_SLIP
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import ReaderUnits, UnitsLike
 
@@ -165,6 +166,7 @@ _SI_ACCELERATION: Final = Shown(str(ACCELERATION.unit), 1.0)
 _SI_LENGTH: Final = Shown(str(LENGTH.unit), 1.0)
 _AT_REST: Final = 1e-12
 """Rotations below are rounding [rad]."""
+SLIP: Final = "slip"
 _STACKED: Final = "rotation_on_cap"
 
 
@@ -172,7 +174,7 @@ _STACKED: Final = "rotation_on_cap"
 def response(
     runs: RunsLike,
     *,
-    panels: str | tuple[str, ...] = tuple(_HEIGHTS),
+    panels: str | tuple[str, ...] | None = None,
     window: Window = None,
     rotation: str | None = None,
     vertical: str | None = None,
@@ -191,8 +193,9 @@ def response(
         in a list, runs are called by their motions, models or accuracies, or else numbered.
     panels : str or tuple of str, optional
         Which are drawn, of ``"ground"``, ``"rotation"``, ``"vertical"`` and ``"contact"``, and
-        any history that the runs hold, by its name, such as ``"base_shear"``. Contact is a strip
-        for each run; for each of its bases, where a cap carries the block.
+        any history that the runs hold, by its name, such as ``"base_shear"``; these four unless
+        given, and the slip where a body slid. Contact is a strip for each run; for each of its
+        bases, where a cap carries the block.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is drawn; all of it unless given [s].
     rotation : str, optional
@@ -243,7 +246,7 @@ def response(
     strips = strips_of(given)
     names = [
         name
-        for panel in _chosen(panels, given)
+        for panel in (usual_panels(given) if panels is None else _chosen(panels, given))
         for name in (strips if panel == "contact" else {panel: None})
     ]
     heights = [
@@ -289,6 +292,19 @@ def of_rotation(run: Run, unit: Shown | None, name: str = "rotation") -> Any:
 def relative(rotation: Any, left: float, right: float) -> Any:
     """Give rotations over the overturning angle of their side."""
     return np.asarray(rotation) / np.where(np.asarray(rotation) < 0.0, left, right)
+
+
+def has_slid(run: xr.Dataset) -> bool:
+    """Whether a run has slip to be shown."""
+    return SLIP in run and float(np.abs(run[SLIP]).max()) >= LEAST_SLIP
+
+
+def usual_panels(runs: list[Run]) -> tuple[str, ...]:
+    """Give the panels of runs unless others are chosen."""
+    of_runs = [run.dataset for run in runs]
+    slid = any(map(has_slid, of_runs)) and all(SLIP in one for one in of_runs)
+    *above, contact = _HEIGHTS
+    return (*above, *([SLIP] if slid else []), contact)
 
 
 def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:

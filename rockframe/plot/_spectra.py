@@ -77,6 +77,12 @@ def spectra(
     ------
     UnitsError, ComponentError
         As for :func:`rockframe.measures.response_spectrum`; or not three Axes.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> record = rf.GroundMotion.example("loma-prieta")
+    >>> panels = rf.plot.spectra(record)  # doctest: +SKIP
     """
     from rockframe.measures import (
         fourier_spectrum,
@@ -235,6 +241,13 @@ def suite(
     ------
     UnitsError, ComponentError
         As for :func:`rockframe.measures.response_spectrum`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> motions = [rf.GroundMotion.stochastic(6.6, "5 km", seed=k) for k in range(3)]
+    >>> target = rf.TargetSpectrum.eurocode_8("0.3 g_0")
+    >>> axes = rf.plot.suite(rf.MotionSuite(motions), target=target)  # doctest: +SKIP
     """
     from rockframe.measures import response_spectrum
 

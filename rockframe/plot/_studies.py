@@ -53,6 +53,14 @@ def critical_scale(
     -------
     matplotlib.axes.Axes
         Shaded, the scales that overturn; a line at the least of them.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> found = rf.critical_scale(system, pulse, largest=3)  # doctest: +SKIP
+    >>> axes = rf.plot.critical_scale(found)  # doctest: +SKIP
     """
     given = drawable(dataset, "critical_scale", units)
     scale, outcome = given["scale"].to_numpy(), given["outcome"].to_numpy()
@@ -114,6 +122,14 @@ def sweep(
     ------
     SchemaError
         No dataset, no such variable, or more than two dimensions.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> runs = rf.sweep(system, pulse, scale=[1, 2], width=["0.8 m", "1 m"])  # doctest: +SKIP
+    >>> axes = rf.plot.sweep(runs)  # doctest: +SKIP
     """
     if not isinstance(cast("object", runs), xr.Dataset) or not runs.data_vars:
         raise SchemaError(refuse("sweep", runs))
@@ -164,6 +180,10 @@ def free_decay(
         The dataset is no such fit.
     UnitsError
         A unit of another kind.
+
+    Examples
+    --------
+    >>> axes = rf.plot.free_decay(rf.fit_free_decay(...))  # doctest: +SKIP
     """
     given = drawable(dataset, "free_decay")
     unit = units_of(units, "free_decay").of(ANGLE, "deg", rotation=rotation)

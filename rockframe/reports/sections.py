@@ -15,7 +15,7 @@ from rockframe.components.parameters import Declared
 from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
-from rockframe.plot._response import histories_of
+from rockframe.plot._response import SLIP, has_slid, histories_of
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
@@ -162,8 +162,8 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
                 plot.response(dataset, rotation="deg" if angle else "relative", units=units.words)
             ),
             "From the top: ground acceleration; rotation"
-            f"{'' if angle else ' over the overturning angle'}; vertical displacement; and what "
-            "bears.",
+            f"{'' if angle else ' over the overturning angle'}; vertical displacement; "
+            f"{'slip; ' if has_slid(dataset) else ''}and what bears.",
         )
         yield from _histories(dataset, units)
     else:
@@ -178,8 +178,9 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
 def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     """Show forces, accelerations and all else that was asked for along time."""
     beside = [name for name in histories_of(dataset) if name not in _DRAWN]
-    for start in range(0, len(beside), _PANELS):
-        names = beside[start : start + _PANELS]
+    below = [name for name in beside if name != SLIP or not has_slid(dataset)]
+    for start in range(0, len(below), _PANELS):
+        names = below[start : start + _PANELS]
         drawn = plot.response(dataset, panels=tuple(names), units=units.words, title=" ")
         words = ", ".join(name.replace("_", " ") for name in names)
         yield page.picture(figure_of(drawn), f"{words[0].upper()}{words[1:]}, along time.")

@@ -125,6 +125,13 @@ class Certification:
     ComponentError
         A nudge outside 0 to 0.1, a reach outside 0.01 to 0.9, or a number of runs outside
         60 to 100 000.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> wide = rf.Certification(nudge=0.01, runs=400)
+    >>> wide.nudge, wide.reach
+    (0.01, 0.5)
     """
 
     nudge: float

@@ -54,6 +54,13 @@ class Accuracy:
     ------
     SolverError
         A setting is out of range, or not one of `rtol` and `substeps` is given.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> fine = rf.Accuracy(rtol=1e-10)
+    >>> fine.rtol, fine.substeps
+    (1e-10, None)
     """
 
     rtol: float | None = None

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rockframe.errors import AssemblyError
-from rockframe.system.fitting import contradictions, misfits, missizes
+from rockframe.system.fitting import contradictions, misfits, missizes, unused
 from rockframe.system.options import (
     Coupling,
     Options,
@@ -51,7 +51,11 @@ class Assembly:
     @cached_property
     def doubts(self) -> list[str]:
         """What is unusual about the scene."""
-        return [*self.setting.cautions(), *contradictions(self.parts)]
+        return [
+            *self.setting.cautions(),
+            *contradictions(self.parts),
+            *unused(self.parts, self.options),
+        ]
 
     @cached_property
     def cautions(self) -> list[str]:

@@ -7,7 +7,7 @@ from rockframe.components import Component, RearWall, RigidGround, Stack, Tendon
 from rockframe.components.block_numbers import squat
 from rockframe.components.ground import Impact
 from rockframe.many import isfinite
-from rockframe.system.options import Options, Sliding
+from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts, slot_of
 from rockframe.system.rear_wall import IMPACT_TIME, yielding_wall
@@ -168,6 +168,31 @@ def contradictions(parts: Parts) -> list[str]:
         f"the {lower} was built for a base of a depth of {below:.6g} m, but the {upper} on it is "
         f"{above:.6g} m deep: its stiffness is the subgrade modulus times that depth"
     ]
+
+
+def unused(parts: Parts, options: Options) -> list[str]:
+    """Say which options were chosen that a scene of these parts has no use for."""
+    told: list[str] = []
+    between = () if parts.stack is None else parts.stack.interfaces
+    bases = (*parts.structural(), *between)
+    if options.coupling is not Coupling.COUPLED and not {"pads", "cap", "soil"} <= parts.signature:
+        told.append(
+            f"coupling={str(options.coupling)!r} changes nothing here: it is how pads, a "
+            "CushionCap and soil are joined, and the scene has not all of them"
+        )
+    yielding = any(slot_of(part) in ("pads", "soil") for part in bases)
+    if options.restraint is not Restraint.CONTACT_STATE and not yielding and not parts.own():
+        told.append(
+            f"restraint={str(options.restraint)!r} changes nothing here: on rigid ground it is the "
+            "corner that bears which is held"
+        )
+    has_friction = any(getattr(part.si, "friction", None) is not None for part in bases)
+    if options.sliding is Sliding.CHECKED and not has_friction and not parts.own():
+        told.append(
+            f"sliding={str(options.sliding)!r} changes nothing here: no base has a friction that "
+            "could be compared with what is needed"
+        )
+    return told
 
 
 class BaseFriction(NamedTuple):

@@ -1,6 +1,6 @@
 """The parts of a scene: which slot each fills, and what stands in which slot."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from inspect import getattr_static
 from typing import Any, Final, cast
@@ -23,7 +23,7 @@ from rockframe.components import (
 )
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import Declared
-from rockframe.errors import shown
+from rockframe.errors import LabelError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import BaseLoad, Cap, cap_under
 from rockframe.system.own_base import OwnBase
@@ -205,7 +205,20 @@ class Parts:
 
     def __getitem__(self, slot: str) -> Component:
         """Give the part in a slot, in a scene that has it."""
-        return cast("Component", dict(self.filled)[slot])
+        found = dict(self.filled)
+        if slot not in found:
+            known = ", ".join(map(repr, found))
+            near = nearest(slot, found) or ";"
+            msg = f"the scene has no part {shown(slot)}{near} It has {known}"
+            raise LabelError(msg)
+        return cast("Component", found[slot])
+
+    def __iter__(self) -> Iterator[Component | GroundMotion]:
+        """Give the parts, in a fixed order."""
+        return iter(self.given())
+
+    def __len__(self) -> int:
+        return len(self.filled)
 
     def changed(self, **by_slot: Component | GroundMotion | None) -> "Parts":
         """Give the parts with others in some slots."""

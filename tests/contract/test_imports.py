@@ -190,3 +190,30 @@ def test_errors_form_one_family():
         base = RockframeWarning if name.endswith("Warning") else RockframeError
         assert issubclass(one, base)
     assert issubclass(RockframeWarning, UserWarning)
+
+
+WITHOUT = """
+import sys, threading
+for name in ("numba", "llvmlite", "netCDF4", "tqdm", "_multiprocessing"):
+    sys.modules[name] = None  # an import of it fails, as where it is not installed
+
+def start(self):
+    raise RuntimeError("can't start new thread")
+
+threading.Thread.start = start
+import rockframe as rf
+system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
+pulse = rf.GroundMotion.sine_pulse("-5 m/s^2", "2 Hz")
+run = system.simulate(pulse, free_vibration="0.1 s", accuracy="fast", second_look=False)
+runs = rf.sweep(system, pulse, scale=[0.5, 1.0], free_vibration="0.1 s", accuracy="fast")
+assert runs.peak_rotation.values[1] == run.peak_rotation.item() > 0.0
+assert len(rf.response_spectrum(pulse, ([0.5], "s")).period) == 1
+"""
+
+
+def test_all_runs_in_the_caller_where_there_are_neither_threads_nor_compiled_libraries():
+    """As in a browser, by a stand-in: these modules are missing, and no thread can be started."""
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT], capture_output=True, text=True, timeout=240
+    )
+    assert done.returncode == 0, done.stderr

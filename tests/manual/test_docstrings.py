@@ -1,6 +1,8 @@
 """Every public name says what it takes, what it gives and what it raises."""
 
 import inspect
+import re
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +13,11 @@ FunctionDoc = pytest.importorskip("numpydoc.docscrape").FunctionDoc
 CLASSES = [name for name in rf.__all__ if inspect.isclass(getattr(rf, name))]
 FUNCTIONS = [name for name in rf.__all__ if inspect.isfunction(getattr(rf, name))]
 PLOTS = [name for name in rf.plot.__all__ if inspect.isfunction(getattr(rf.plot, name))]
+
+
+LISTED = re.compile(r"^   ([A-Za-z][\w.]+)$", re.MULTILINE)
+INDEX = Path(__file__).resolve().parents[2] / "docs" / "reference" / "index.md"
+PACKAGES = [name for name in rf.__all__ if inspect.ismodule(getattr(rf, name))]
 
 
 def public_functions():
@@ -41,6 +48,26 @@ def test_every_public_name_is_documented(name):
     value = getattr(rf, name)
     if name != "__version__":
         assert inspect.getdoc(value)
+
+
+def test_every_public_name_has_a_page():
+    """The lists of the reference are what pages are made of, each name once."""
+    listed = LISTED.findall(INDEX.read_text(encoding="utf-8"))
+    assert len(listed) == len(set(listed)) > 100
+    public = {name for name in rf.__all__ if name not in (*PACKAGES, "__version__")}
+    for package in ("plot", "export", "codes", "errors", "measures"):
+        module = getattr(rf, package)
+        names = getattr(module, "__all__", None) or [
+            name for name, value in vars(module).items()
+            if inspect.isclass(value) and value.__module__ == module.__name__ and name[0] != "_"
+        ]  # fmt: skip
+        public |= {
+            f"{package}.{name}"
+            for name in names
+            if not name.isupper()
+            and not (name in rf.__all__ and getattr(rf, name) is getattr(module, name))
+        }
+    assert public - set(listed) == set()
 
 
 def test_parameters_are_described():

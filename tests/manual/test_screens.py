@@ -36,8 +36,7 @@ async function measured(page, width) {
   document.body.appendChild(frame);
   await new Promise((done) => { frame.onload = done; });
   const inside = frame.contentWindow, root = frame.contentDocument.documentElement;
-  await inside.MathJax?.startup?.promise;
-  await pause(100);
+  for (let k = 0; k < 250 && root.dataset.equations !== "set"; k++) await pause(20);
   const seen = root.clientWidth, found = { page, width, equations: 0, scrolling: 0, cut: [] };
   for (const box of root.querySelectorAll("div.math > mjx-container")) {
     found.equations += 1;

@@ -114,6 +114,16 @@ def test_search_finds(index, word, page):
     assert page in found
 
 
+def test_every_object_of_the_reference_has_its_page_and_a_link_to_it():
+    links = (SITE / "reference" / "index.html").read_text(encoding="utf-8")
+    lists = (ROOT / "docs" / "reference" / "index.md").read_text(encoding="utf-8")
+    for name in re.findall(r"^   ([A-Za-z][\w.]+)$", lists, re.MULTILINE):
+        found = re.search(rf'href="(generated/[^"#]+)#(rockframe\.{re.escape(name)})"', links)
+        assert found, f"the reference has no link to rockframe.{name}"
+        page = SITE / "reference" / found[1]
+        assert f'id="{found[2]}"' in page.read_text(encoding="utf-8"), found[0]
+
+
 def test_the_gallery_has_a_picture_of_every_script():
     scripts = [
         path

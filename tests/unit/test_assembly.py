@@ -871,3 +871,29 @@ def test_a_weightless_block_on_rigid_ground_is_warned_about():
             rf.System(block()).simulate(motion)
         assert caught[0].filename == __file__
         rf.System(block(), pads()).simulate(motion)
+
+
+@pytest.mark.parametrize(
+    ("option", "chosen", "useless", "useful"),
+    [
+        ("coupling", "cascade", (block(), cap(), soil()), (block(), pads(), cap(), soil())),
+        ("restraint", "centre", (block(), rf.RigidGround()), (block(), pads())),
+        ("sliding", "checked", (block(), pads()), (block(), pads(friction=0.3))),
+    ],
+)
+def test_options_that_a_scene_has_no_use_for_are_told(option, chosen, useless, useful):
+    with pytest.warns(ModelWarning, match=f"{option}='{chosen}' changes nothing here") as caught:
+        rf.System(*useless, **{option: chosen})
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+    assert rf.System(*useful, **{option: chosen}).assembly.doubts == []
+    assert rf.System(*useless).assembly.doubts == []
+
+
+def test_parts_are_iterated_over_and_found_by_their_slots():
+    system = rf.System(pads(), block(), pulse())
+    assert list(system.parts) == [block(), pads(), pulse()]
+    assert len(system.parts) == 3
+    assert system.parts["pads"] == pads()
+    with pytest.raises(KeyError, match=r"the scene has no part 'pad'; was 'pads' meant.*'block'"):
+        system.parts["pad"]

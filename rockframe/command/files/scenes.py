@@ -166,7 +166,7 @@ def described_scene(file: TomlFile) -> Described | None:
     ]  # fmt: skip
     motion = described_motion(file, (MOTION,), given[MOTION]) if MOTION in given else None
     run = _run_of(file, given[RUN]) if RUN in given else {}
-    project = _project_of(file, given[PROJECT]) if PROJECT in given else ""
+    project = described_project(file, given[PROJECT]) if PROJECT in given else ""
     options = file.table((OPTIONS,), given.get(OPTIONS, {}))
     known = arguments_of(System.__init__, without=("parts",))
     hints = hints_of(System.simulate)  # of what belongs to the parts or to the run
@@ -220,7 +220,8 @@ def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
     return arguments
 
 
-def _project_of(file: TomlFile, given: object) -> str:
+def described_project(file: TomlFile, given: object) -> str:
+    """Read what reports are to say of the project."""
     table = file.table((PROJECT,), given)
     if table is None:
         return ""

@@ -1,7 +1,7 @@
 """A study in a TOML file: a scene, motions, and axes or a table of cases."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from glob import glob
 from pathlib import Path
 from typing import Any, Final
@@ -9,8 +9,11 @@ from typing import Any, Final
 import pandas as pd
 
 from rockframe.command.files.scenes import (
+    PROJECT,
+    RUN,
     Described,
     described_motion,
+    described_project,
     described_run,
     described_scene,
     import_modules,
@@ -97,17 +100,22 @@ def _scene_of(file: TomlFile) -> Described | None:
     name = file.values.get(SCENE)
     if name is None:
         return described_scene(file)
-    inner = [key for key in file.values if key in scene_keys()]
+    inner = [key for key in file.values if key in scene_keys() and key != PROJECT]
     for key in inner:
-        file.fault((key,), f"[{key}] and scene = {shown(name)} are both given; one of them does")
+        where = "; what the runs of a study take stands in [sweep]" if key == RUN else ""
+        words = f"[{key}] and scene = {shown(name)} are both given; one of them does{where}"
+        file.fault((key,), words)
     if not isinstance(name, str):
         file.fault((SCENE,), f"scene must be the path of a file, got {shown(name)}")
         return None
     try:
-        return read_scene(file.beside(name))
+        scene = read_scene(file.beside(name))
     except FileError as problem:
         file.fault((SCENE,), f"the scene is not sound\n{problem}")
         return None
+    if PROJECT in file.values:  # that of the study goes before that of the scene
+        return replace(scene, project=described_project(file, file.values[PROJECT]))
+    return scene
 
 
 def _motions_of(file: TomlFile) -> Motions:

@@ -15,7 +15,7 @@ from concurrent.futures import (
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from threading import Event
+from threading import Event, Thread
 from typing import Any, Final, Protocol, runtime_checkable
 
 from rockframe.errors import ComponentError, RockframeError, StudyError, shown
@@ -253,8 +253,32 @@ def _take_all(
             take(chunk, rows)
 
 
+class _Caller(Executor):
+    """Runs what is handed to it at once, where no threads can be started."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Run it, and give what it gave; an interrupt goes up to the caller."""
+        done: Future[Any] = Future()
+        try:
+            done.set_result(fn(*args, **kwargs))
+        except Exception as problem:
+            done.set_exception(problem)
+        return done
+
+
+def _has_threads() -> bool:
+    try:
+        Thread(target=int).start()
+    except RuntimeError:  # as in a browser
+        return False
+    return True
+
+
 @contextmanager
 def _own_threads() -> Generator[Executor]:
+    if not _has_threads():
+        yield _Caller()
+        return
     with ThreadPoolExecutor(worker_count(), thread_name_prefix="rockframe") as pool:
         yield pool
 

@@ -194,6 +194,12 @@ def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
     -----
     ModelWarning
         Another version of rockframe has run it, whose numbers may be others.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> so_far = rf.open_study("study")  # doctest: +SKIP
+    >>> so_far.verdict  # doctest: +SKIP
     """
     kept = Store.at(folder_of(path))
     if kept.version != __version__:

@@ -16,6 +16,7 @@ import rockframe as rf
 from rockframe.command import parser, study
 from rockframe.command.commands import COMMANDS
 from rockframe.command.completion import script
+from rockframe.command.files.studies import read_study
 from rockframe.command.files.templates import TEMPLATES
 from rockframe.studies.sweeps import execution
 
@@ -39,6 +40,12 @@ def test_a_run_from_the_template_to_the_report(typed, folder):
     code, told, _ = typed("plot", "out.nc", "-o", "out.png")
     assert code == 0
     assert (folder / "out.png").read_bytes().startswith(b"\x89PNG")
+    forces = ("--panels", "base_shear", "ground", "--units", "force=kN", "acceleration=g")
+    assert typed("plot", "out.nc", "-o", "out.svg", *forces)[0] == 0
+    code, _, problem = typed("plot", "out.nc", "-o", "out.svg", "--panels", "base_sheer")
+    assert (code, "was 'base_shear' meant?" in problem) == (2, True)
+    code, _, problem = typed("report", "out.nc", "-o", "out.pdf")
+    assert (code, "a browser prints the page into a PDF" in problem) == (2, True)
     code, told, _ = typed("report", "out.nc", "--no-certificate", "--title", "A <tower>")
     assert code == 0
     assert "A &lt;tower&gt;" in (folder / "out.html").read_text()
@@ -261,6 +268,11 @@ def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, fol
     assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
     assert typed("report", "runs.nc")[0] == 0
     assert "Tower" in (folder / "runs.html").read_text()
+    own = 'scene = "scene.toml"\n[axes]\nscale = [1.0]\n[project]\nobject = "All towers"\n'
+    (folder / "study.toml").write_text(own)
+    assert "All towers" in read_study("study.toml").project
+    (folder / "study.toml").write_text(f"{own}[run]\naccuracy = 'fast'\n")
+    assert "stands in [sweep]" in typed("study", "study.toml")[2]
     asked = 'checks = ["circolare_2019 confidence_factor=1.2", "asce_7_22 spectral_acceleration=1"]'
     (folder / "scene.toml").write_text(f"{scene}\n{project}{asked}\n")
     assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0

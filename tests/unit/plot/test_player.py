@@ -7,6 +7,7 @@ import subprocess
 import zlib
 from shutil import which
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -97,6 +98,12 @@ def test_traces_and_strips_are_those_of_the_run():
     changes = int((np.diff(run.contact_state.to_numpy()) != 0).sum())
     assert len(strip["times"]) == len(strip["states"]) == 1 + changes
     assert {"left", "right"} <= set(strip["states"])
+    slid = run.assign(slip=run.vertical_displacement)
+    label = read(rf.plot.player(slid, units={"length": "mm"}).to_html())[0]["traces"][1]["label"]
+    assert label == "slip [mm]"
+    panels = rf.plot.response(slid)
+    assert [one.get_ylabel() for one in panels][3:] == ["slip\n[m]", "contact"]
+    plt.close(panels.figure)
 
 
 def test_pages_are_small_whole_and_ask_for_nothing(tmp_path):

@@ -1,0 +1,114 @@
+"""A page for each public object, which autosummary writes from the lists of ``reference/index.md``.
+
+Docstrings and signatures are shown as people read and write them: defaults by their words, units
+with raised exponents, and no member that is Python's own. The pages stand in no table of contents:
+these some hundred names in the navigation of every page would take most of the time of a build.
+"""
+
+import re
+from collections import namedtuple
+from collections.abc import Callable
+from pathlib import Path
+from types import BuiltinFunctionType, MethodDescriptorType
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.ext.autosummary import Autosummary, autosummary_toc
+from sphinx.ext.autosummary.generate import find_autosummary_in_files
+
+_FIELD = type(namedtuple("Pair", "field").field)
+_INNER = {"assembly", "scene", "setting"}  # of a System, for the package
+_UNIT = re.compile(r"\[[^\[\]`'\"]*\^-?\d[^\[\]`'\"]*\]")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def remove_old_pages(app: Sphinx) -> None:
+    """Remove pages of objects that are listed no more, of which Sphinx would warn."""
+    _navigation.clear()
+    folder = Path(app.srcdir) / "reference"
+    renamed = app.config.autosummary_filename_map
+    listed = {one.name for one in find_autosummary_in_files([str(folder / "index.md")])}
+    files = {f"{renamed.get(name, name)}.rst" for name in listed}
+    for path in (folder / "generated").glob("*.rst"):
+        if path.name not in files:
+            path.unlink()
+
+
+class ObjectList(Autosummary):
+    """A list of objects, whose pages it leaves out of the table of contents."""
+
+    def run(self) -> list[nodes.Node]:
+        """Build the table."""
+        return [one for one in super().run() if not isinstance(one, autosummary_toc)]
+
+
+_navigation: dict[str, str] = {}
+
+
+def share_navigation(
+    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: object
+) -> None:
+    """Have the navigation of the first page of an object for all of them, as it is the same."""
+    if pagename.startswith("reference/generated/") and "toctree" in context:
+        whole: Callable[..., str] = context["toctree"]
+
+        def once(**settings: object) -> str:
+            key = repr(settings)
+            if key not in _navigation:
+                _navigation[key] = whole(**settings)
+            return _navigation[key]
+
+        context["toctree"] = once
+
+
+def write_as_read(
+    app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]
+) -> None:
+    """Raise exponents of units; keep |x| an absolute value, which would be a substitution."""
+    for number, line in enumerate(lines):
+        line = re.sub(r"\|(\w[\w ]*)\|", r"\\|\1\\|", line)
+        if not line.lstrip().startswith((">>>", "...")):
+            line = _UNIT.sub(lambda found: _raised(found[0]), line)
+        lines[number] = line
+
+
+def _raised(unit: str) -> str:
+    return re.sub(r"\^(-?\d+)", lambda found: found[1].translate(_RAISED), unit)
+
+
+def write_defaults(
+    app: Sphinx, what: str, name: str, obj: object, options: object, signature: str | None,
+    returned: str | None,
+) -> tuple[str | None, str | None]:  # fmt: skip
+    """Write defaults that are one of a few words by these, as users do."""
+    if signature is not None:
+        signature = re.sub(r"<\w+\.\w+: ('[^']*')>", r"\1", signature)
+        signature = re.sub(
+            r"(?<==)[A-Z]\w+\.([A-Z_]+)\b",
+            lambda found: repr(found[1].lower().replace("_", "-")),
+            signature,
+        )
+    return signature, returned
+
+
+def skip_foreign(
+    app: Sphinx, what: str, name: str, obj: object, skip: bool, options: object
+) -> bool | None:
+    """Leave out fields of named tuples, which signatures name, and what Python's classes have."""
+    if isinstance(obj, _FIELD | MethodDescriptorType | BuiltinFunctionType) or name in _INNER:
+        return True
+    function = getattr(obj, "fget", obj)
+    home = getattr(getattr(function, "__func__", function), "__module__", None)
+    return True if isinstance(home, str) and not home.startswith("rockframe") else None
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Register the hooks; pages are removed before autosummary writes any."""
+    app.connect("builder-inited", remove_old_pages, priority=50)
+    app.add_directive("autosummary", ObjectList, override=True)
+    app.connect("html-page-context", share_navigation, priority=400)
+    app.connect("autodoc-process-docstring", write_as_read)
+    app.connect("autodoc-process-signature", write_defaults)
+    app.connect("autodoc-skip-member", skip_foreign)
+    return {"parallel_read_safe": True}
