@@ -3,8 +3,8 @@
 Whether a base has friction, and how it presses, are matters of its row. A body is held along its
 rigid base as long as friction can, :eq:`eq-stack-friction`, and slips otherwise: then the force at
 each corner that bears has friction in it, :eq:`eq-stack-slip`. On a base that gives way what
-presses is known, :eq:`eq-slip-on-base`. Which corners bear and which bases slip is found together,
-under new forces as after an impact, :eq:`eq-stack-impact`.
+presses is known, :eq:`eq-mixed-slips`. Which corners bear and which bases slip is found together,
+under new forces, :eq:`eq-mixed-conditions`, as after an impact, :eq:`eq-stack-impact`.
 """
 
 import math

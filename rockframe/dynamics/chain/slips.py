@@ -144,7 +144,7 @@ class SlippingBodies(Chain):
     def drag(self, k: int, sense: float, room: Vector) -> None:
         """Load a body by the friction of a slip in a sense, instead of what is on it.
 
-        What presses is known, :eq:`eq-slip-on-base`: that of springs and dashpots.
+        What presses is known, that of springs and dashpots: a load, :eq:`eq-mixed-slips`.
         """
         i = k * PLACES
         drag = -sense * self.friction_of(k, KINETIC) * max(room[i + at.PRESS], 0.0)

@@ -169,9 +169,8 @@ class _GivingRunning(GivingMoving, _Running):
 def simulate(scene: Scene, output_step: float = 0.01, **options) -> Run:
     """Simulate a scene, by `simulate_pair`."""
     pieces, period = pieces_for(scene.motion)
-    return simulate_pair(
-        scene.pair, scene.frictions, pieces, output_step, quickest=period, **options
-    )
+    options["quickest"] = min(period, options.get("quickest", period))
+    return simulate_pair(scene.pair, scene.frictions, pieces, output_step, **options)
 
 
 def simulate_pair(
