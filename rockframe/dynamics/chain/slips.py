@@ -19,7 +19,7 @@ from rockframe.dynamics.chain.rows import COLUMNS, MODES, PLACES
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.on_base import Mode, SlidingGuards
-from rockframe.dynamics.protocol import HELD_PLACE, MOST_MODES, Ending
+from rockframe.dynamics.protocol import HELD_PLACE, MOST_MODES, Ending, Slope
 from rockframe.dynamics.sliding import NOISE
 
 STATIC: Final = 0
@@ -153,7 +153,7 @@ class SlippingBodies(Chain):
 
     @kernel
     def guards_of_slip(
-        self, k: int, mode: int, state: Vector, slope: Vector, press: float, size: float
+        self, k: int, mode: int, state: Vector, slope: Slope, press: float, size: float
     ) -> SlidingGuards:
         """Give the guards of the friction that holds a body, over a force, and of its slip."""
         standing, body = self.part_mode(mode, k), self.state_of(k, state)

@@ -135,7 +135,7 @@ def giving_of(scene: Scene, system: rf.System) -> dict[str, Any]:
             base, stiffness = Pads(support.stiffness, support.damping, 1.0), 2.0 * support.stiffness
         base.sunk = mass * pair.gravity / stiffness
         found |= {"giving": {key: base}, "rule": scene.rule}
-        found["quickest"] = 2.5 * math.sqrt(pair.upper.mass / stiffness)
+        found["quickest"] = 12.0 * math.sqrt(pair.upper.mass / stiffness)
     return found
 
 
