@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final, cast
 
-from rockframe.components import Component, RigidGround, Tendon
+from rockframe.components import Component, Tendon
 from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting
 from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
@@ -154,13 +154,13 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
         return held
     if held.options.sliding is Sliding.CHECKED:
         faults.append("friction in a Stack is computed: give no sliding='checked', or no friction")
-    elif any(isinstance(one, RigidGround) for one in bases):
-        faults += _misfits_of_rigid(bases, found, held)
-    elif any(one is None for one in found):
-        faults.append(
-            "give every TwoSpringSupport and WinklerSoil under the bodies of a Stack a friction, "
-            "or none"
-        )
+    elif any(held.rigid):
+        faults += sheared(held)
+    for k, friction in enumerate(found):
+        if friction is not None and held.rigid[k]:
+            faults += [
+                f"body {k + 1}: {one}" for one in ill_posed(held.bodies[k], friction.kinetic)
+            ]
     if held.options.small:
         faults.append(SMALL_SLIDING)
     if len(held.bodies) > MOST_THAT_SLIDE:
@@ -173,28 +173,6 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
     return SlidingStackSetting(
         held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties, frictions
     )
-
-
-def _misfits_of_rigid(
-    bases: Sequence[Component], found: Sequence[BaseFriction | None], held: StackSetting
-) -> list[str]:
-    """Give what friction on rigid bases does not go with."""
-    faults = list[str]()
-    if any(
-        not isinstance(one, RigidGround) and friction
-        for one, friction in zip(bases, found, strict=True)
-    ):
-        faults.append(
-            "where a body of a Stack stands on a rigid base, give friction to the rigid ones only: "
-            "the others hold what is on them"
-        )
-    faults += sheared(held)
-    for k, friction in enumerate(found):
-        if friction is not None:
-            faults += [
-                f"body {k + 1}: {one}" for one in ill_posed(held.bodies[k], friction.kinetic)
-            ]
-    return faults
 
 
 def sheared(held: StackSetting) -> list[str]:

@@ -95,9 +95,16 @@ def test_friction_without_end_holds():
     assert found.peak_body_slip.max().item() < 1e-9
 
 
-@pytest.mark.parametrize("base", [ground(0.5, 0.3), PADS])
-def test_energies_balance_and_mirrored_runs_are_mirrored(base):
-    joint = ground(0.36, 0.3)
+@pytest.mark.parametrize(
+    ("joint", "base"),
+    [
+        (ground(0.36, 0.3), ground(0.5, 0.3)),
+        (ground(0.36, 0.3), PADS),
+        (ground(0.36, 0.3), PADS.replace(friction=0.5)),
+        (PADS.replace(friction=0.36, restitution=0.8), ground(0.5, 0.3)),
+    ],
+)
+def test_energies_balance_and_mirrored_runs_are_mirrored(joint, base):
     one = run_of([joint], base, noise(5, 6.0), offset=0.05)
     other = run_of([joint], base, noise(5, 6.0, mirrored=-1.0), offset=-0.05)
     assert one.peak_body_slip.values[0] > 1e-3

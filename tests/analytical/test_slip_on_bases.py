@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import rockframe as rf
+from rockframe.dynamics.chain import model
+from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.errors import AssemblyError, ComponentError
 
@@ -152,12 +154,27 @@ def test_a_stack_with_friction_without_end_is_held():
     assert far < 1e-7 * held.peak_rotation.item()
 
 
-def test_what_of_a_stack_does_not_slide_is_refused():
-    stack = rf.Stack(STATUE, PLINTH, interfaces=[rf.RigidGround(friction=0.3)])
-    with pytest.raises(AssemblyError, match="give friction to the rigid ones only"):
-        rf.System(stack, SOIL.replace(friction=0.3))
+@pytest.mark.parametrize(("upper", "lower"), [(0.2, None), (None, 0.25)])
+def test_a_base_without_friction_holds_beside_one_with_friction(upper, lower):
+    pads = PADS.replace(restitution=1.0)
+    held = stacked(upper, lower, pads)
+    found = stacked(upper or 1e8, lower or 1e8, pads)
+    for name in ("body_rotation", "body_slip"):
+        most = abs(held[name]).max().item()
+        assert most > 1e-3
+        assert abs(found[name] - held[name]).max().item() < 1e-6 * most
+
+
+def test_any_mixture_and_bases_that_all_give_way_are_one(monkeypatch):
+    one = stacked(0.2, 0.25)
+    monkeypatch.setattr(model, "SlippingChain", SlippingRigidChain)
+    other = stacked(0.2, 0.25)
+    np.testing.assert_array_equal(one.event_kind, other.event_kind)
+    for name in ("body_rotation", "body_slip"):
+        np.testing.assert_allclose(one[name], other[name], rtol=0.0, atol=1e-12)
+
+
+def test_friction_in_a_stack_is_computed():
     stack = rf.Stack(STATUE, PLINTH, interfaces=[PADS.replace(friction=0.3)])
-    with pytest.raises(AssemblyError, match="or none"):
-        rf.System(stack, SOIL)
     with pytest.raises(AssemblyError, match="is computed"):
         rf.System(stack, SOIL.replace(friction=0.3), sliding="checked")

@@ -4,9 +4,12 @@ import pytest
 from reference_models.rigid_pair.compare import AGREES
 from reference_models.rigid_pair.drawing import have_records
 from reference_models.rigid_pair_sliding.compare import compared
-from reference_models.rigid_pair_sliding.drawing import draw
+from reference_models.rigid_pair_sliding.drawing import draw, draw_giving
 
 pytestmark = pytest.mark.reference_models
+
+# on pads and on beds, below and above the rigid base
+ON_SPRINGS = (0, 1, 2, 3)
 
 
 @pytest.mark.skipif(not have_records(), reason="no recorded motions")
@@ -15,4 +18,12 @@ pytestmark = pytest.mark.reference_models
 def test_random_scenes(number):
     one = compared(draw([7, number]))
     assert max(one.rotation, one.slip) < AGREES
+    assert one.same_verdict
+
+
+@pytest.mark.parametrize("number", ON_SPRINGS)
+def test_random_scenes_of_which_one_base_gives_way(number):
+    one = compared(draw_giving([8, number]))
+    assert max(one.rotation, one.slip) < AGREES
+    assert not one.missing
     assert one.same_verdict

@@ -82,8 +82,6 @@ def test_what_makes_no_stack_is_refused(bodies, given, words):
         ((STACK, GROUND, SOIL), "give one of them"),
         ((STACK, STATUE, GROUND), "a Stack and a Block are both given"),
         ((STACK, rf.CushionCap(height="1 m", mass="1 t"), SOIL), "as its lowest body"),
-        ((STACK, JOINT.replace(friction=0.5)), "a friction, or none"),
-        ((SLIPPERY, rf.RigidGround(friction=0.5)), "give friction to the rigid ones only"),
         ((TALLEST, rf.RigidGround()), "slide are at most 7"),
         ((STACK, rf.RigidGround(restitution=0.9)), "restitution must not be given"),
         ((STACK, GROUND, rf.RigidGround()), "both given"),

@@ -185,6 +185,28 @@ class RigidCorners(Chain):
         """Write the guards of friction: there is none here."""
 
     @inlined
+    def let_all_go(self, mode: int, state: Vector, memory: Vector) -> int:
+        """Let bodies move along bases that give way, of which friction holds them: none does."""
+        return mode
+
+    @inlined
+    def go_on(self, mode: int, state: Vector, memory: Vector) -> int:
+        """Give the mode in which these slip on, or are held."""
+        return mode
+
+    @inlined
+    def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
+        """Give the mode in which these slip as was tried with the corners."""
+        return mode
+
+    @inlined
+    def hold_as_tried(
+        self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
+    ) -> int:
+        """Add the constraint of a body on a base that gives way, as corners are tried."""
+        return self.hold_or_slide(k, count, standing, state, room, rows)
+
+    @inlined
     def try_corners(
         self, mode: int, some: int, closed: int, impulsive: bool, noise: float, state: Vector
     ) -> Attempt:
@@ -221,7 +243,7 @@ class RigidCorners(Chain):
         """Give what users see of a base: of a rigid one, the forces of its corners."""
         if self.is_rigid(k):
             return self.corner_force(k, True), self.corner_force(k, False), 0.0
-        return self.on_base(k).observed_base(standing, body, ())
+        return self.observed_on(k, standing, body)
 
     @kernel
     def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
@@ -231,6 +253,9 @@ class RigidCorners(Chain):
         for k in range(self.body_count):
             if self.is_rigid(k):
                 self.write_corner_guards(k, self.part_mode(mode, k), state, values, changes)
+                self.write_slip_guards(k, mode, state, values, changes)
+            elif self.is_slippery(k):
+                self.write_idle(k, values, changes)
                 self.write_slip_guards(k, mode, state, values, changes)
         for k in range(self.body_count):
             standing = self.part_mode(mode, k)
@@ -280,8 +305,7 @@ class RigidCorners(Chain):
         part, body = self.on_base(k), self.standing_state(k, standing, state)
         line, force_size = part.body.base_line_at(body), self.number(k, at.FORCE_SIZE)
         flies = part.flies(standing.contact)
-        for i in range(GUARDS):
-            values[GUARDS * k + i], changes[GUARDS * k + i] = 1.0, 0.0
+        self.write_idle(k, values, changes)
         for side in range(2):
             i = GUARDS * k + CORNER_GUARDS * side
             if part.base.is_held(standing.contact, side == 0):
@@ -293,6 +317,12 @@ class RigidCorners(Chain):
             else:
                 scale = (1.0 if side == 0 else -1.0) / part.body.angle
                 values[i], changes[i] = scale * body.rotation, scale * body.angular_velocity
+
+    @inlined
+    def write_idle(self, k: int, values: Vector, changes: Vector) -> None:
+        """Write guards of a body that do not fall."""
+        for i in range(GUARDS):
+            values[GUARDS * k + i], changes[GUARDS * k + i] = 1.0, 0.0
 
     @kernel
     def resting_corners(self, mode: int, state: Vector) -> int:

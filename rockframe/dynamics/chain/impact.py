@@ -79,7 +79,7 @@ def attempt(
         i, standing = k * PLACES, system.part_mode(mode, k)
         if not system.is_rigid(k):
             if not impulsive:
-                count = system.hold_or_slide(k, count, standing, state, room, rows)
+                count = system.hold_as_tried(k, count, standing, state, room, rows)
             elif room[i + at.HELD] != FREE:
                 add_constraint(system, count, k, 1.0, 0.0, -room[i + at.REACH], 0.0, room, rows)
                 count += 1
@@ -106,6 +106,7 @@ def attempt(
             wanted = coriolis_along(i, room) + reach.bend * rate * rate
             if impulsive:
                 wanted = reach.rate * rate - body.horizontal_velocity
+            room[i + at.HOLDS_ALONG] = count
             add_constraint(system, count, k, 1.0, 0.0, -reach.rate, wanted, room, rows)
             count += 1
     solve_motion(system, count, system.band(), room, rows, system.matrix())

@@ -64,7 +64,8 @@ def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chai
 
 def slipping(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
     """Give the equations of bodies that friction holds, of those whose bases hold."""
-    kind = SlippingRigidChain if isinstance(bare, RigidChain) else SlippingChain
+    gives = not isinstance(bare, RigidChain) and all(math.isfinite(one[0]) for one in frictions)
+    kind = SlippingChain if gives else SlippingRigidChain
     return kind(bare.body_count, np.concatenate([bare.rows, coefficients(frictions)]))
 
 
@@ -113,7 +114,6 @@ def chain(
     alone = slipping(bare, frictions) if frictions else bare
     system = linked(alone, ties) if ties else alone
     fastest, damping_rate = fastest_vibration(links, ties)
-    rigid = some_rigid(links)
     carried = np.cumsum([one.mass for one in links])
     starts = Starts(links, rest, held)
     if isinstance(system, ChainLinks):
@@ -142,7 +142,7 @@ def chain(
         ),
         memory=(
             *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
-            *(KEPT if rigid else ()),
+            *(KEPT if isinstance(system, RigidChain) else ()),
             *(
                 f"{name}_of_{k}"
                 for k in range(count if frictions else 0)

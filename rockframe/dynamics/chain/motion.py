@@ -79,7 +79,7 @@ def load_bodies(system: Rows, x: float, y: float, room: Vector) -> None:
     for k in range(system.body_count):
         i, mass = k * PLACES, system.number(k, at.MASS)
         room[i + at.LOAD_X], room[i + at.LOAD_Y] = -mass * x, -mass * y
-        room[i + at.LOAD_MOMENT] = 0.0
+        room[i + at.LOAD_MOMENT] = room[i + at.DRAG] = 0.0
 
 
 @inlined

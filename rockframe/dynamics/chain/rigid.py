@@ -24,12 +24,10 @@ from rockframe.dynamics.chain.motion import (
 )
 from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
-from rockframe.dynamics.on_base import VelocityChange
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
 from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 from rockframe.dynamics.sliding import blend
-from rockframe.dynamics.switching import disturbed
 
 # memory, behind the held places and the body of the last event
 ADMISSIBLE: Final = 1  # sets of corners that might have borne after the last event
@@ -56,8 +54,8 @@ class RigidChain(RigidCorners):
         return HELD_PLACE + self.body_count + 1 + len(KEPT)
 
     @kernel
-    def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
-        """Change the velocities by the last response, and keep the impulses of rigid bases."""
+    def take_answer(self, state: Vector) -> None:
+        """Change the velocities by the last answer, and keep the impulses of rigid bases."""
         self.add_slopes(state)
         room, rows = self.places(), self.constraints()
         for j in range(self.body_count):
@@ -152,8 +150,7 @@ class RigidChain(RigidCorners):
                 return new
             new = self.meet_anew(new, state, ground, memory)
         for other in range(count):
-            if not self.is_rigid(other):
-                new = disturbed(self, self.on_base(other), other, new, state)
+            new = self.disturb(other, new, state)
         memory[HELD_PLACE + count] = k + 1.0
         return new
 
@@ -220,10 +217,10 @@ class RigidChain(RigidCorners):
     @kernel
     def meet_anew(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Take back what rigid bases did in an event beside them, and let them press only."""
-        room = self.places()
-        self.write_contacts(mode, state, memory)
-        had, before = self.energies(mode, state).kinetic, self.bearing(mode)
-        flying = self.with_bearing(mode, 0, 0)
+        room, free = self.places(), self.let_all_go(mode, state, memory)
+        self.write_contacts(free, state, memory)
+        had, before = self.energies(free, state).kinetic, self.bearing(free)
+        flying = self.with_bearing(free, 0, 0)
         place_bodies(self, flying, state, room)
         for k in range(self.body_count):
             i = k * PLACES
@@ -234,7 +231,7 @@ class RigidChain(RigidCorners):
         self.change_velocities(state)
         memory[IMPACT_LOSS] += had - self.energies(flying, state).kinetic
         event = memory[LAST_EVENT]
-        new = self.let_bear(mode, before, before, 0, state, ground, memory)
+        new = self.let_bear(free, before, before, 0, state, ground, memory)
         new = self.rest_where_small(new, state, ground, memory)
         memory[LAST_EVENT] = event
         return new
@@ -248,7 +245,8 @@ class RigidChain(RigidCorners):
 
         After an impact, unless a corner is leaving.
         """
-        flying, kept = self.with_bearing(mode, 0, 0), HELD_PLACE + self.body_count
+        free = self.let_all_go(mode, state, memory) if leaving == 0 else mode
+        flying, kept = self.with_bearing(free, 0, 0), HELD_PLACE + self.body_count
         had = self.energies(flying, state).kinetic  # places the bodies, too
         if leaving == 0:
             load_bodies(self, 0.0, 0.0, self.places())
@@ -263,9 +261,10 @@ class RigidChain(RigidCorners):
             taken, pulled = before, pulled | leaving
         if found.admissible == 0:
             self.forget_slips(mode, leaving == 0)
-        new = self.with_bearing(mode, taken, pulled)
+        new = self.with_bearing(free, taken, pulled)
         self.hold_contacts(new, state, memory)
         self.note_free_slips(new, state)
+        new = self.go_on(new, state, memory) if leaving == 0 else self.as_tried(new, state, memory)
         memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
         memory[kept + ADMISSIBLE] = found.admissible
         memory[kept + TAKEN], memory[kept + OTHER] = taken, found.other

@@ -1,9 +1,10 @@
-"""A chain in which bodies slip on rigid bases, beside others that pads and beds hold.
+"""A chain in which bodies slip on some of their bases, and others hold.
 
-A body is held along its rigid base as long as friction can, :eq:`eq-stack-friction`, and slips
-otherwise: then the force at each corner that bears has friction in it, :eq:`eq-stack-slip`. Which
-corners bear and which bases slip is found together, under new forces as after an impact,
-:eq:`eq-stack-impact`.
+Whether a base has friction, and how it presses, are matters of its row. A body is held along its
+rigid base as long as friction can, :eq:`eq-stack-friction`, and slips otherwise: then the force at
+each corner that bears has friction in it, :eq:`eq-stack-slip`. On a base that gives way what
+presses is known, :eq:`eq-mixed-slips`. Which corners bear and which bases slip is found together,
+under new forces, :eq:`eq-mixed-conditions`, as after an impact, :eq:`eq-stack-impact`.
 """
 
 import math
@@ -19,53 +20,61 @@ from rockframe.dynamics.chain.impact import (
     LEFT_ONLY,
     NEARLY_ZERO,
     NOISE,
-    RIGHT_ONLY,
     Attempt,
     attempt,
     bearing_corners,
 )
-from rockframe.dynamics.chain.motion import FREE, coriolis_along, of_both, write_direction
+from rockframe.dynamics.chain.motion import (
+    FREE,
+    add_constraint,
+    coriolis_along,
+    of_both,
+    write_direction,
+)
 from rockframe.dynamics.chain.rigid import ADMISSIBLE, OTHER, TAKEN, RigidChain
 from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, MODES, MOST_CONSTRAINTS, PLACES
+from rockframe.dynamics.chain.slippery import SlipperyBases
 from rockframe.dynamics.chain.slips import (
     IMPULSIVE,
     KINETIC,
     OFFSET,
     ROUNDING,
     STATIC,
-    SlippingBodies,
 )
-from rockframe.dynamics.on_base import HOLD, SLIP
+from rockframe.dynamics.events import IMPACT, SILENT
+from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground
 from rockframe.dynamics.sliding import NOISE as NOISE_OF_SLIP
 
 FRICTION_ALONE: Final = -1
 """In place of the corner that leaves: what friction does has changed."""
+NOWHERE: Final = -1
+"""In place of a pivot, where a body neither slips nor is held by friction."""
 TRIES: Final = 6
 """Changes of what slips, of each body, after which a set of corners is given up."""
 
 
-class SlippingRigidChain(SlippingBodies, RigidChain):
-    """Bodies upon one another of which some slip on rigid bases: a system."""
+class SlippingRigidChain(SlipperyBases, RigidChain):
+    """Bodies upon one another of which some slip on their bases: a system."""
 
     __slots__ = ()
 
     @inlined
     def slip_sense(self, k: int) -> float:
-        """Give the sense in which a body slips on its rigid base as corners are tried: 0, held."""
+        """Give the sense in which a body slips on its base as corners are tried: 0, held."""
         return float(self.places()[k * PLACES + at.SLIPS])
 
     @inlined
     def sense_in(self, mode: int, k: int) -> float:
-        """Give the sense in which a body slips on its rigid base in a mode; 0 if it does not."""
-        if self.is_rigid(k) and self.part_mode(mode, k).slides:
+        """Give the sense in which a body slips on its base in a mode; 0 if it does not."""
+        if (self.is_rigid(k) or self.is_slippery(k)) and self.part_mode(mode, k).slides:
             return self.sense(mode, k)
         return 0.0
 
     @kernel
     def note_slips(self, mode: int) -> None:
-        """Note which bodies slip on rigid bases in a mode."""
+        """Note which bodies slip in a mode."""
         room = self.places()
         for k in range(self.body_count):
             room[k * PLACES + at.SLIPS] = self.sense_in(mode, k)
@@ -88,10 +97,46 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
         return mode - mode // value % 2 * value
 
     @kernel
-    def slip_on(self, k: int, bears: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity of slip at the corners that bear, and its rounding noise."""
+    def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
+        """Give the mode in which bodies slip on bases that give way as was tried."""
+        for k in range(self.body_count):
+            if self.is_slippery(k) and not self.on_base(k).flies(self.part_mode(mode, k).contact):
+                mode = self.with_slip(k, self.slip_sense(k), mode, state, memory)
+        return mode
+
+    @kernel
+    def hold_as_tried(
+        self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
+    ) -> int:
+        """Hold a body on a base that gives way, or load it by friction, as corners are tried."""
+        if not self.is_slippery(k) or self.on_base(k).flies(standing.contact):
+            return self.hold_or_slide(k, count, standing, state, room, rows)
+        i, sense = k * PLACES, self.slip_sense(k)
+        self.drag(k, sense, room)
+        if sense == 0.0:
+            wanted = coriolis_along(i, room) + room[i + at.DRIFT]
+            add_constraint(self, count, k, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
+            room[i + at.HOLDS_ALONG] = count
+            count += 1
+        return count
+
+    @inlined
+    def pin_on(self, bears: int) -> int:
+        """Give the pivot of corners that bear; both move alike."""
+        return PIVOT_LEFT if bears == LEFT_ONLY else PIVOT_RIGHT
+
+    @inlined
+    def pressed(self, k: int) -> float:
+        """Give what presses a body on its base."""
+        if self.is_rigid(k):
+            return self.corner_force(k, True) + self.corner_force(k, False)
+        return float(self.places()[k * PLACES + at.PRESS])
+
+    @kernel
+    def slip_on(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
+        """Give the velocity of slip of a point of a base, and its rounding noise."""
         part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(PIVOT_LEFT if bears == LEFT_ONLY else PIVOT_RIGHT)
+        pin = part.body.pin(pivot)
         about = part.body.reach(pin, part.body.attitude(body.rotation)).rate * body.angular_velocity
         sway = body.horizontal_velocity
         return sway - about, NOISE_OF_SLIP * (abs(sway) + abs(about))
@@ -102,7 +147,7 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
         bearing, room = self.bearing(mode), self.places()
         for k in range(self.body_count):
             if self.is_rigid(k) and bearing >> 2 * k & BOTH == 0:
-                rate, noise = self.slip_on(k, BOTH, state)
+                rate, noise = self.slip_on(k, self.pin_on(BOTH), state)
                 slips = abs(rate) > noise and self.friction_of(k, IMPULSIVE) < math.inf
                 room[k * PLACES + at.SLIPS] = math.copysign(1.0, rate) if slips else 0.0
 
@@ -152,7 +197,7 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
             return 0.0
         # the same at both corners, where both bear
         left = room[k * PLACES + at.LEFT_CORNER] != NONE
-        slip, _ = self.slip_on(k, LEFT_ONLY if left else RIGHT_ONLY, state)
+        slip, _ = self.slip_on(k, PIVOT_LEFT if left else PIVOT_RIGHT, state)
         leaned = of_both(self, k, first + at.HOLDS, room, rows) - rows[first + at.VALUE]
         return float(-rows[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
 
@@ -180,35 +225,54 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
         """
         room = self.places()
         for k in range(self.body_count):
-            i, bears = k * PLACES, some >> 2 * k & BOTH
+            i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
             room[i + at.SLIPS] = 0.0
-            if self.is_rigid(k) and bears != 0 and not impulsive:
-                rate, least = self.slip_on(k, bears, state)
+            if pivot != NOWHERE and not impulsive:
                 room[i + at.SLIPS] = room[i + at.STARTS]
+                rate, least = self.slip_before(k, pivot, mode, state)
                 if abs(rate) > least:
                     room[i + at.SLIPS] = math.copysign(1.0, rate)
         found = Attempt(0, math.inf)
         for _ in range(TRIES * self.body_count):
             found = attempt(self, mode, some, closed, False, impulsive, noise, state)
-            k = self.otherwise(some, closed, impulsive, state)
+            k = self.otherwise(mode, some, closed, impulsive, state)
             if k < 0:
                 return found
         return Attempt(max(found.fault, 0), math.inf)
 
+    @inlined
+    def tried_at(self, k: int, mode: int, some: int, impulsive: bool) -> int:
+        """Give the pivot at which a body is held or slips as corners are tried, or `NOWHERE`.
+
+        On a base that gives way friction takes no part in impacts.
+        """
+        bears, standing = some >> 2 * k & BOTH, self.part_mode(mode, k)
+        if self.is_rigid(k):
+            return NOWHERE if bears == 0 else self.pin_on(bears)
+        idle = impulsive or self.on_base(k).flies(standing.contact)
+        return NOWHERE if idle or not self.is_slippery(k) else standing.pivot
+
+    @inlined
+    def slip_before(self, k: int, pivot: int, mode: int, state: Vector) -> tuple[float, float]:
+        """Give the velocity of slip before corners are tried, and its rounding noise."""
+        if not self.is_rigid(k) and not self.part_mode(mode, k).slides:
+            return 0.0, 0.0  # held: the state need not tell
+        return self.slip_on(k, pivot, state)
+
     @kernel
-    def otherwise(self, some: int, closed: int, impulsive: bool, state: Vector) -> int:
+    def otherwise(self, mode: int, some: int, closed: int, impulsive: bool, state: Vector) -> int:
         """Change how a body is tried that friction cannot hold, or that does not slip; else -1."""
         room, rows = self.places(), self.constraints()
         for k in range(self.body_count):
-            i, bears = k * PLACES, some >> 2 * k & BOTH
+            i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
             friction = self.friction_of(k, IMPULSIVE if impulsive else STATIC)
-            if not self.is_rigid(k) or bears & closed >> 2 * k == 0 or friction == math.inf:
+            pulled = self.is_rigid(k) and some & closed & BOTH << 2 * k == 0
+            if pivot == NOWHERE or friction == math.inf or pulled:
                 continue
             sense = room[i + at.SLIPS]
             if sense == 0.0:
-                press = self.corner_force(k, True) + self.corner_force(k, False)
-                last = max(room[i + at.LEFT_CORNER], room[i + at.RIGHT_CORNER])
-                thrust = rows[(int(last) + 1) * CONSTRAINT + at.FORCE]
+                press = self.pressed(k)
+                thrust = rows[int(room[i + at.HOLDS_ALONG]) * CONSTRAINT + at.FORCE]
                 least = NOISE * abs(press)
                 if not impulsive:
                     least = ROUNDING * self.number(k, at.FORCE_SIZE)
@@ -216,9 +280,9 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
                     room[i + at.SLIPS] = -math.copysign(1.0, thrust)
                     return k
             else:
-                rate, least = self.slip_on(k, bears, state)
+                rate, least = self.slip_before(k, pivot, mode, state)
                 if impulsive or abs(rate) <= least:
-                    after = self.slips_on(k, bears, impulsive, state)
+                    after = self.slips_on(k, pivot, impulsive, state)
                     if impulsive:
                         after, least = after + rate, least + NOISE_OF_SLIP * abs(after)
                     else:  # as it starts to slip, friction is what holds it
@@ -229,12 +293,11 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
         return -1
 
     @kernel
-    def slips_on(self, k: int, bears: int, impulsive: bool, state: Vector) -> float:
-        """Give the acceleration of slip at the corners that bear, or its change in an impact."""
+    def slips_on(self, k: int, pivot: int, impulsive: bool, state: Vector) -> float:
+        """Give the acceleration of the slip of a point, or its change in an impact."""
         i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
         room, rows, rate = self.places(), self.constraints(), body.angular_velocity
-        pin = part.body.pin(PIVOT_LEFT if bears == LEFT_ONLY else PIVOT_RIGHT)
-        reach = part.body.reach(pin, part.body.attitude(body.rotation))
+        reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
         spare = MOST_CONSTRAINTS * self.body_count - 1  # what slips is not held, so there is room
         keeps = spare * CONSTRAINT + at.KEEPS
         write_direction(self, k, 1.0, 0.0, -reach.rate, keeps, room, rows)
@@ -250,25 +313,16 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
         self, k: int, mode: int, state: Vector, values: Vector, changes: Vector
     ) -> None:
         """Write the guards of the friction that holds a body, and of its slip."""
-        part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
-        i, friction = GUARDS * k + 2 * CORNER_GUARDS, self.friction_of(k, STATIC)
-        if part.flies(standing.contact):
+        standing, i = self.part_mode(mode, k), GUARDS * k + 2 * CORNER_GUARDS
+        size = self.number(k, at.FORCE_SIZE if self.is_rigid(k) else at.GRAVITY)
+        held = self.friction_of(k, STATIC) == math.inf and not standing.slides
+        if self.on_base(k).flies(standing.contact) or held:
             return
-        if standing.slides:
-            out, rate, sense = self.slopes(), body.angular_velocity, self.sense(mode, k)
-            reach = part.body.reach(
-                part.body.pin(standing.pivot), part.body.attitude(body.rotation)
-            )
-            scale = 1.0 / math.sqrt(part.body.gravity * part.body.size())
-            change = out[self.horizontal_of(k)] - reach.bend * rate * rate
-            change -= reach.rate * out[BEFORE_HORIZONTAL * k + ROTATION]
-            values[i + SLIP] = scale * sense * (body.horizontal_velocity - reach.rate * rate)
-            # a slip that starts is not stopped by rounding
-            changes[i + SLIP] = scale * (sense * change + ROUNDING * part.body.gravity)
-        elif friction < math.inf and standing.contact & PULLED == 0:
-            press = self.corner_force(k, True) + self.corner_force(k, False)
-            left = friction * max(press, 0.0) - abs(self.places()[k * PLACES + at.THRUST])
-            values[i + HOLD] = left / self.number(k, at.FORCE_SIZE)
+        if not standing.slides and self.is_rigid(k) and standing.contact & PULLED != 0:
+            return
+        found = self.guards_of_slip(k, mode, state, self.slopes(), self.pressed(k), size)
+        values[i + HOLD], values[i + SLIP] = found.hold, found.slip
+        changes[i + SLIP] = found.slip_rate
 
     @kernel
     def switch_body(
@@ -279,7 +333,7 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
         which = guard - k * GUARDS - 2 * CORNER_GUARDS
         self.begin_event(memory)
         self.begin_slips(mode, state, memory)
-        if self.is_rigid(k) and which in (HOLD, SLIP):
+        if which in (HOLD, SLIP) and (self.is_rigid(k) or self.is_slippery(k)):
             self.write_contacts(mode, state, memory)
             if which == HOLD:
                 self.accelerate(mode, state, ground)
@@ -290,10 +344,41 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
             new = self.rearrange(mode, state, ground, memory)
             memory[LAST_EVENT] = self.kind_of(k, mode, new)
             memory[HELD_PLACE + self.body_count] = k + 1.0
-        else:
+        elif self.is_slippery(k):
+            new = self.switch_beside(mode, guard, state, ground, memory)
+        elif self.is_rigid(k):
             new = self.switch_contacts(mode, guard, state, ground, memory)
             new = self.hold_as_far(new, state, ground, memory)
+        else:  # a change of what is held may be a blow
+            new = self.let_all_go(mode, state, memory)
+            new = self.switch_contacts(new, guard, state, ground, memory)
+            new = self.go_on(new, state, memory)
+            new = self.hold_as_far(new, state, ground, memory)
         self.end_slips(new, state, memory)
+        return new
+
+    @kernel
+    def switch_beside(
+        self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Carry out a switch of a body on a base that gives way, and let it slip or be held."""
+        k = guard // GUARDS
+        which = guard - k * GUARDS
+        self.scale_impulses(0.0)
+        memory[HELD_PLACE + self.body_count] = k + 1.0
+        new = self.switch_slippery(k, which, mode, state, ground, memory)
+        if which < 2 * CORNER_GUARDS and memory[LAST_EVENT] == SILENT:
+            return new
+        if memory[LAST_EVENT] == IMPACT:
+            if self.must_meet_anew():
+                new = self.meet_anew(new, state, ground, memory)
+            for other in range(self.body_count):
+                if not self.is_slippery(other):
+                    new = self.disturb(other, new, state)
+        new = self.go_on(new, state, memory)
+        new = self.hold_as_far(new, state, ground, memory)
+        if which < 2 * CORNER_GUARDS:
+            new = self.wait(k, which < CORNER_GUARDS, new, state, ground, memory)
         return new
 
     @kernel
@@ -330,17 +415,16 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
     def is_amiss(self, k: int, mode: int, state: Vector) -> bool:
         """Whether friction cannot hold a body that is held, or acts along the slip."""
         part, standing = self.on_base(k), self.part_mode(mode, k)
-        if not self.is_rigid(k) or part.flies(standing.contact):
+        friction, room = self.friction_of(k, STATIC), self.places()
+        if part.flies(standing.contact) or friction == math.inf:
             return False
         if standing.slides:
             rate, noise = self.slip_rate(k, mode, state)
             return self.sense(mode, k) * rate < -noise
-        friction, room = self.friction_of(k, STATIC), self.places()
-        if friction == math.inf or standing.contact & PULLED != 0:
+        if self.is_rigid(k) and standing.contact & PULLED != 0:
             return False
-        press = self.corner_force(k, True) + self.corner_force(k, False)
         thrust, least = room[k * PLACES + at.THRUST], ROUNDING * self.number(k, at.FORCE_SIZE)
-        if abs(thrust) <= friction * max(press, 0.0) + least:
+        if abs(thrust) <= friction * max(self.pressed(k), 0.0) + least:
             return False
         room[k * PLACES + at.STARTS] = -math.copysign(1.0, thrust)
         return True
@@ -364,6 +448,7 @@ class SlippingRigidChain(SlippingBodies, RigidChain):
                     self.places()[k * PLACES + at.SLIPS] = starts
         new = self.with_bearing(mode, found.taken, pulled)
         self.hold_contacts(new, state, memory)
+        new = self.as_tried(new, state, memory)
         memory[kept + ADMISSIBLE] = found.admissible
         memory[kept + TAKEN], memory[kept + OTHER] = found.taken, found.other
         return new

@@ -84,7 +84,11 @@ IMPULSES: Final = 5
 SLIPS: Final = 28
 STARTS: Final = 29
 RUBS: Final = 30
-PLACES: Final = 31
+# of bodies that may slip at all: their friction among the loads, on a base that gives way; and the
+# constraint that holds a body along its base, as that is tried
+DRAG: Final = 31
+HOLDS_ALONG: Final = 32
+PLACES: Final = 33
 
 # constraints, at most so many of each body; of each
 MOST_CONSTRAINTS: Final = 3

@@ -4,6 +4,7 @@ Of each base the point that the rule of restraint names, or the corner that bear
 Which of the two stands in the mode, with the sense of the slip.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Final
 
@@ -11,11 +12,14 @@ import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel, stretch
 from rockframe.dynamics import events
-from rockframe.dynamics.chain.rows import COLUMNS, MODES
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.motion import load_along
+from rockframe.dynamics.chain.rows import COLUMNS, MODES, PLACES
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.events import SILENT
-from rockframe.dynamics.on_base import Mode
-from rockframe.dynamics.protocol import MOST_MODES, Ending
+from rockframe.dynamics.on_base import Mode, SlidingGuards
+from rockframe.dynamics.protocol import HELD_PLACE, MOST_MODES, Ending, Slope
 from rockframe.dynamics.sliding import NOISE
 
 STATIC: Final = 0
@@ -124,6 +128,84 @@ class SlippingBodies(Chain):
         if not slipped:
             return events.SLIP
         return SILENT if self.sense(old, k) == self.sense(new, k) else events.REVERSAL
+
+    @inlined
+    def is_slippery(self, k: int) -> bool:
+        """Whether a body may slip on a base that gives way."""
+        return not self.is_rigid(k) and self.friction_of(k, STATIC) < math.inf
+
+    @inlined
+    def load_by_friction(self, k: int, mode: int, room: Vector) -> None:
+        """Load a body that slips on a base that gives way by its friction."""
+        if self.is_slippery(k) and self.part_mode(mode, k).slides:
+            self.drag(k, self.sense(mode, k), room)
+
+    @kernel
+    def drag(self, k: int, sense: float, room: Vector) -> None:
+        """Load a body by the friction of a slip in a sense, instead of what is on it.
+
+        What presses is known, that of springs and dashpots: a load, :eq:`eq-mixed-slips`.
+        """
+        i = k * PLACES
+        drag = -sense * self.friction_of(k, KINETIC) * max(room[i + at.PRESS], 0.0)
+        load_along(self, k, drag - room[i + at.DRAG], room)
+        room[i + at.DRAG] = drag
+
+    @kernel
+    def guards_of_slip(
+        self, k: int, mode: int, state: Vector, slope: Slope, press: float, size: float
+    ) -> SlidingGuards:
+        """Give the guards of the friction that holds a body, over a force, and of its slip."""
+        standing, body = self.part_mode(mode, k), self.state_of(k, state)
+        if not standing.slides:
+            hold = self.friction_of(k, STATIC) * max(press, 0.0)
+            hold -= abs(self.places()[k * PLACES + at.THRUST])
+            return SlidingGuards(hold / size, 1.0, 0.0)
+        law, sense, rate = self.on_base(k).body, self.sense(mode, k), body.angular_velocity
+        reach = law.reach(law.pin(standing.pivot), law.attitude(body.rotation))
+        scale = 1.0 / math.sqrt(law.gravity * law.size())
+        change = slope[self.horizontal_of(k)] - reach.bend * rate * rate
+        change -= reach.rate * slope[BEFORE_HORIZONTAL * k + ROTATION]
+        slip = scale * sense * (body.horizontal_velocity - reach.rate * rate)
+        # a slip that starts is not stopped by rounding
+        return SlidingGuards(1.0, slip, scale * (sense * change + ROUNDING * law.gravity))
+
+    @kernel
+    def go_on(self, mode: int, state: Vector, memory: Vector) -> int:
+        """Give the mode in which bodies that are let go on bases that give way slip, or are held.
+
+        Held are those that do not slip, as far as friction can.
+        """
+        for k in range(self.body_count):
+            if self.is_slippery(k) and self.part_mode(mode, k).slides:
+                rate, noise = self.slip_rate(k, mode, state)
+                sense = math.copysign(1.0, rate) if abs(rate) > noise else 0.0
+                mode = self.with_slip(k, sense, mode, state, memory)
+        return mode
+
+    @kernel
+    def with_slip(self, k: int, sense: float, mode: int, state: Vector, memory: Vector) -> int:
+        """Give the mode in which a body slips in a sense, or, with 0, is held."""
+        standing = self.part_mode(mode, k)
+        if sense != 0.0:
+            return self.slipping(self.let_go(k, mode, state, memory), k, sense)
+        if standing.slides:
+            self.end_slip(k, mode, state)
+            point = self.point_of(k, mode, state, memory)
+            mode = self.with_part(mode, k, Mode(standing.contact, standing.pivot, False))
+            memory[HELD_PLACE + k] = point
+        return mode
+
+    @kernel
+    def let_all_go(self, mode: int, state: Vector, memory: Vector) -> int:
+        """Let bodies move along bases that give way if friction holds them: its force is finite.
+
+        So it holds nothing in an impact beside it.
+        """
+        for k in range(self.body_count):
+            if self.is_slippery(k):
+                mode = self.let_go(k, mode, state, memory)
+        return mode
 
     @kernel
     def let_go(self, k: int, mode: int, state: Vector, memory: Vector) -> int:

@@ -1,50 +1,28 @@
-"""A chain of bodies as a system: what the integrator and the switches of contact ask of it.
-
-Equations :eq:`eq-chain`; per unit of a mass that all others are measured by.
-"""
+"""A chain of bodies as a system: what the integrator and the switches of contact ask of it."""
 
 from rockframe.compiled import Vector, inlined, kernel, put
 from rockframe.dynamics.base import Guards, Variables
-from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.motion import (
-    FREE,
-    add_constraint,
-    coriolis_along,
-    coriolis_normal,
-    input_power,
-    load_bodies,
-    place_bodies,
-    press_at,
-    solve_motion,
-    write_direction,
-    write_relative,
-)
+from rockframe.dynamics.chain.moving import MovingBodies
 from rockframe.dynamics.chain.rows import (
     COLUMNS,
-    CONSTRAINT,
     GUARDS,
     MODES,
     OBSERVED,
     PLACES,
-    Rows,
 )
-from rockframe.dynamics.on_base import IDLE, Mode, VelocityChange
-from rockframe.dynamics.protocol import HELD_PLACE, Energies, Ground, Slope
+from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode, SlidingGuards
+from rockframe.dynamics.pads import CORNER_GUARDS
+from rockframe.dynamics.protocol import HELD_PLACE, Ground, Slope
 from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
-from rockframe.dynamics.trigonometry import versine
 
 
-class Chain(Rows):
+class Chain(MovingBodies):
     """Bodies upon one another, from the top down: a system."""
 
     __slots__ = ()
-
-    @kernel
-    def variables(self) -> int:
-        """Give 0: pads and beds have no variables of their own."""
-        return 0
 
     @kernel
     def guards(self) -> int:
@@ -57,204 +35,22 @@ class Chain(Rows):
         return MODES**self.body_count
 
     @kernel
-    def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: all but the lowest body's where it is held."""
-        lowest = self.body_count - 1
-        free = self.on_base(lowest).is_free(self.part_mode(mode, lowest))
-        return DEGREES * self.body_count - (0 if free else 1)
-
-    @kernel
     def contact_state_of(self, mode: int, k: int) -> int:
         """Give the contact state of a body."""
         return self.on_base(k).shown_contact(self.part_mode(mode, k))
-
-    @kernel
-    def relaxation_in(self, mode: int) -> float:
-        """Give the rate at which an end that slides returns to its level."""
-        fastest = 0.0
-        for k in range(self.body_count):
-            fastest = max(fastest, self.on_base(k).relaxation_in(self.part_mode(mode, k)))
-        return fastest
-
-    @inlined
-    def own_place(self, k: int) -> int:
-        """Give the place of the variables of a base's own in the state."""
-        return 2 * DEGREES * self.body_count
-
-    @kernel
-    def constrain(self, mode: int, state: Vector, room: Vector) -> int:
-        """Write the constraints of a mode; give how many there are."""
-        count, rows = 0, self.constraints()
-        for k in range(self.body_count):
-            standing = self.part_mode(mode, k)
-            count = self.add_corners(k, count, mode, state, True, room, rows)
-            count = self.hold_or_slide(k, count, standing, state, room, rows)
-        return count
-
-    @inlined
-    def is_rigid(self, k: int) -> bool:
-        """Whether a body stands on a rigid base: none does here."""
-        return False
-
-    @inlined
-    def hold_or_slide(
-        self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
-    ) -> int:
-        """Add the constraint of a point that is held, or of an end that slides."""
-        i = k * PLACES
-        room[i + at.THRUST] = 0.0
-        if room[i + at.HELD] != FREE:
-            wanted = coriolis_along(i, room) + room[i + at.DRIFT]
-            add_constraint(self, count, k, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
-            count += 1
-        elif standing.slides and not self.is_rigid(k):
-            self.let_slide(k, count, standing, state, room, rows)
-            count += 1
-        return count
-
-    @inlined
-    def add_corners(
-        self, k: int, count: int, mode: int, state: Vector, moves: bool, room: Vector, rows: Vector
-    ) -> int:
-        """Add the constraints of corners on a rigid base: there are none here."""
-        return count
-
-    @inlined
-    def band(self) -> int:
-        """Give how far apart constraints that have a body in common may stand."""
-        return 1
-
-    @inlined
-    def stand_still(self, room: Vector, out: Vector) -> None:
-        """Take rounding from the accelerations of bodies that do not move on theirs: none."""
-
-    @kernel
-    def let_slide(
-        self, k: int, which: int, standing: Mode, state: Vector, room: Vector, rows: Vector
-    ) -> None:
-        """Keep the end that slides at the level of its base, :eq:`eq-sliding-contact`."""
-        i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
-        attitude = part.body.attitude(body.rotation)
-        line = part.body.base_line(body, attitude)
-        left = part.base.is_held(standing.contact, True)
-        on_left, on_right = part.body.end_accelerations(attitude, body.angular_velocity, 0.0, 0.0)
-        bend, speed = (on_left, line.left_speed) if left else (on_right, line.right_speed)
-        lever = line.left_lever if left else line.right_lever
-        sinking = bend + part.base.following_rate() * speed
-        wanted = -coriolis_normal(i, room) - sinking
-        add_constraint(self, which, k, 0.0, 1.0, lever, wanted, room, rows)
-        holds = which * CONSTRAINT + at.HOLDS
-        write_direction(self, k, 1.0, 0.0, -room[i + at.REACH], holds, room, rows)
-
-    @kernel
-    def solve(self, count: int, room: Vector) -> None:
-        """Write forces and accelerations, in the ground's axes and of all coordinates."""
-        rows = self.constraints()
-        solve_motion(self, count, self.band(), room, rows, self.matrix())
-        for which in range(count):  # the last one of each body is along what it stands on
-            first = which * CONSTRAINT
-            room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]
-        write_relative(self, room, self.slopes())
-        self.stand_still(room, self.slopes())
-
-    @kernel
-    def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give the accelerations of all coordinates, and the powers."""
-        room, out = self.places(), self.slopes()
-        place_bodies(self, mode, state, room)
-        load_bodies(self, ground.x, self.number(0, at.GRAVITY) + ground.y, room)
-        dissipated = supplied = 0.0
-        for k in range(self.body_count):
-            i, mass = k * PLACES, self.number(k, at.MASS)
-            part, body = self.on_base(k), self.state_of(k, state)
-            line = part.body.base_line_at(body)
-            base = part.base.force(self.contact_with_force(k, mode), line, ())
-            dissipated += base.dissipated
-            room[i + at.PRESS] = base.upward
-            press_at(self, k, base.upward, base.moment, room)
-            supplied -= mass * (ground.x * room[i + at.SPEED_X] + ground.y * room[i + at.SPEED_Y])
-        dissipated += self.pull(mode, state, room)
-        self.solve(self.constrain(mode, state, room), room)
-        for k in range(self.body_count):
-            i = k * PLACES
-            if self.part_mode(mode, k).slides:
-                slip = room[i + at.SWAY] - room[i + at.REACH] * room[i + at.RATE]
-                dissipated -= room[i + at.THRUST] * slip
-        powers = DEGREES * self.body_count + self.variables()
-        out[powers], out[powers + 1] = dissipated, supplied
-        return out
-
-    @kernel
-    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the power dissipated at the rates of the slope, and that put in at those given."""
-        dissipated = slope[DEGREES * self.body_count + self.variables()]
-        return dissipated, input_power(self, state, ground, self.places())
-
-    @inlined
-    def contact_with_force(self, k: int, mode: int) -> int:
-        """Give the contact of a body with its base as far as forces go."""
-        return self.on_base(k).contact_with_force(self.part_mode(mode, k))
-
-    @inlined
-    def pull(self, mode: int, state: Vector, room: Vector) -> float:
-        """Load bodies by what links them, and give what that dissipates: nothing links them."""
-        return 0.0
-
-    @inlined
-    def pulled_x(self, k: int) -> float:
-        """Give the last force of links on a body, to the right."""
-        return 0.0
-
-    @inlined
-    def pulled_y(self, k: int) -> float:
-        """Give the same upwards."""
-        return 0.0
 
     @kernel
     def some_end_slides(self, mode: int) -> bool:
         """Whether an end of some body slides."""
         found = False
         for k in range(self.body_count):
-            found |= self.part_mode(mode, k).slides
+            found |= self.part_mode(mode, k).slides and not self.is_slippery(k)
         return found
 
     @kernel
     def without_sliding(self, mode: int) -> int:
         """Give the mode itself: nothing is compiled for it."""
         return mode
-
-    @kernel
-    def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
-        """Write the bodies' accelerations and the forces at their bases, from a slope.
-
-        What rests has no acceleration of its own: that of the lowest body follows from its
-        rotation where it is held.
-        """
-        room = self.places()
-        place_bodies(self, mode, state, room)
-        self.pull(mode, state, room)
-        x = y = angular = 0.0
-        for k in range(self.body_count - 1, -1, -1):
-            i, first = k * PLACES, BEFORE_HORIZONTAL * k
-            along = slope[self.horizontal_of(k)]
-            if room[i + at.HELD] != FREE:
-                along = room[i + at.REACH] * slope[first + ROTATION] + room[i + at.DRIFT]
-            along += coriolis_along(i, room) + room[i + at.ARM] * angular
-            normal = slope[first + VERTICAL] - coriolis_normal(i, room)
-            normal -= room[i + at.ACROSS] * angular
-            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-            x, y = x + along * cosine + normal * sine, y - along * sine + normal * cosine
-            angular += slope[first + ROTATION]
-            room[i + at.X], room[i + at.Y], room[i + at.ROTATION] = x, y, angular
-        force_x = force_y = 0.0
-        for k in range(self.body_count):
-            i, mass = k * PLACES, self.number(k, at.MASS)
-            force_x += mass * (room[i + at.X] + ground.x) - self.pulled_x(k)
-            force_y += mass * (room[i + at.Y] + self.number(k, at.GRAVITY) + ground.y)
-            force_y -= self.pulled_y(k)
-            sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-            room[i + at.THRUST] = cosine * force_x - sine * force_y
-            room[i + at.PRESS] = sine * force_x + cosine * force_y
 
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
@@ -280,7 +76,12 @@ class Chain(Rows):
         part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         first, sliding = BEFORE_HORIZONTAL * k, IDLE
         vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
-        if slides and standing.slides:
+        if self.is_slippery(k):  # written before
+            values, changes = self.guard_room(0), self.guard_room(1)
+            i = GUARDS * k + 2 * CORNER_GUARDS
+            sliding = SlidingGuards(values[i + HOLD], values[i + SLIP], changes[i + SLIP])
+            standing = Mode(standing.contact, standing.pivot, False)
+        elif slides and standing.slides:
             rise = lift_by_slip(self, part, k, mode, state)
             self.forces_from(mode, state, slope, ground)
             push = self.places()[k * PLACES + at.THRUST]
@@ -323,47 +124,23 @@ class Chain(Rows):
         k = guard // GUARDS
         new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
         for above in range(k):
-            if not self.is_rigid(above):
-                new = disturbed(self, self.on_base(above), above, new, state)
+            new = self.disturb(above, new, state)
         for below in range(k + 1, self.body_count):
-            if not self.is_rigid(below):
+            if not self.is_rigid(below) and not self.is_slippery(below):
                 new = checked_sliding(self, self.on_base(below), below, new, state)
         memory[HELD_PLACE + self.body_count] = k + 1.0
         return new
 
     @kernel
-    def energies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of all bodies and bases."""
-        return self.energies_of_bodies(mode, state)
-
-    @kernel
-    def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of all bodies and bases, and leave how the bodies lie in the room."""
-        room = self.places()
-        place_bodies(self, mode, state, room)
-        kinetic = gravity = elastic = change = rise = rate = 0.0
-        for k in range(self.body_count - 1, -1, -1):
-            i, mass = k * PLACES, self.number(k, at.MASS)
-            body = self.standing_state(k, self.part_mode(mode, k), state)
-            x, y = room[i + at.SPEED_X], room[i + at.SPEED_Y]
-            rate += body.angular_velocity
-            kinetic += 0.5 * (mass * (x * x + y * y) + self.number(k, at.INERTIA) * rate * rate)
-            rise = self.rise_of(k, rise, body.vertical, room)
-            gravity += mass * self.number(k, at.GRAVITY) * rise
-            stored, more = self.on_base(k).elastic_energy(body, ())
-            elastic += stored
-            change += more
-        return Energies(kinetic, gravity, elastic, change)
-
-    @inlined
-    def rise_of(self, k: int, below: float, vertical: float, room: Vector) -> float:
-        """Give the rise of a body's centre of mass from rest, to all digits, from that below."""
-        i = k * PLACES
-        sine, cosine = room[i + at.SINE], room[i + at.COSINE]
-        fixed = room[i + at.ARM] - vertical if k + 1 < self.body_count else 0.0
-        return (
-            below + vertical * cosine - room[i + at.ACROSS] * sine - fixed * versine(sine, cosine)
-        )
+    def disturb(self, k: int, mode: int, state: Vector) -> int:
+        """Give the mode after an event of another body, which changed the speeds of this one."""
+        if self.is_rigid(k):
+            return mode
+        part, was = self.on_base(k), self.part_mode(mode, k)
+        if self.is_slippery(k):
+            contact = part.base.disturbed(was.contact)
+            return self.with_part(mode, k, Mode(contact, was.pivot, was.slides))
+        return disturbed(self, part, k, mode, state)
 
     @kernel
     def observe(
@@ -417,87 +194,12 @@ class Chain(Rows):
     @inlined
     def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
         """Give what users see of a base."""
-        return self.on_base(k).observed_base(standing, body, ())
+        return self.observed_on(k, standing, body)
 
     @kernel
-    def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the horizontal place of a centre of mass: along the body below, or on the ground."""
-        if k + 1 < self.body_count:
-            return state[self.horizontal_of(k)]
-        body = self.state_of(k, state)
-        return self.on_base(k).horizontal_place(
-            self.part_mode(mode, k), body, memory[HELD_PLACE + k]
-        )
-
-    @kernel
-    def response(
-        self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
-    ) -> VelocityChange:
-        """Give how velocities change by an impulse, or as a hold stops a slip.
-
-        The changes of all velocities stand in the room for slopes until the next ones.
-        """
-        room, out = self.places(), self.slopes()
-        place_bodies(self, mode, state, room)
-        load_bodies(self, 0.0, 0.0, room)
-        press_at(self, k, press, moment, room)
-        count, rows = 0, self.constraints()
-        for j in range(self.body_count):
-            i = j * PLACES
-            room[i + at.RISE] = room[i + at.SWAY] = room[i + at.FRAME_RATE] = 0.0
-            count = self.add_corners(j, count, mode, state, False, room, rows)
-            if room[i + at.HELD] != FREE:
-                wanted = -slip if j == k else 0.0
-                add_constraint(self, count, j, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
-                count += 1
-            else:
-                room[i + at.THRUST] = 0.0
-        self.solve(count, room)
-        first = BEFORE_HORIZONTAL * k
-        thrust = room[k * PLACES + at.THRUST]
-        return VelocityChange(out[first + ROTATION], out[first + VERTICAL], thrust, ())
-
-    @kernel
-    def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
-        """Change the velocities by the last response."""
-        self.add_slopes(state)
-
-    @inlined
-    def add_slopes(self, state: Vector) -> None:
-        """Change the velocities by what stands in the room for slopes; what holds lasts."""
-        out, room, n = self.slopes(), self.places(), self.coordinates()
-        for i in range(n):
-            state[n + i] += out[i]
-        for j in range(self.body_count):
-            if room[j * PLACES + at.HELD] != FREE:
-                rate = room[j * PLACES + at.REACH] * state[n + BEFORE_HORIZONTAL * j + ROTATION]
-                state[n + self.horizontal_of(j)] = rate
-
-    @kernel
-    def velocities(self, state: Vector) -> Vector:
-        """Give all velocities, which stand in a room of their own until the next ones."""
-        out, n = self.velocity_room(), self.coordinates()
-        for i in range(n):
-            out[i] = state[n + i]
-        return out
-
-    @kernel
-    def end_accelerations(
-        self, k: int, mode: int, state: Vector, ground: Ground
-    ) -> tuple[float, float]:
-        """Give the accelerations of the ends of a base in a mode, seen from what it stands on."""
-        slope, first = self.accelerate(mode, state, ground), BEFORE_HORIZONTAL * k
-        body = self.state_of(k, state)
-        return self.on_base(k).end_rises(body, slope[first + VERTICAL], slope[first + ROTATION])
-
-    @kernel
-    def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the side to which a body will rotate; a first guess will do at rest."""
-        if ground.x != 0.0:
-            return -ground.x
-        if self.body_count == 1:
-            return self.on_base(k).base.tilt(self.part_mode(mode, k).contact)
-        other = state[BEFORE_HORIZONTAL * (k - 1) + ROTATION] if k > 0 else 0.0
-        if k == 0:
-            other = -state[self.coordinates() + BEFORE_HORIZONTAL + ROTATION]
-        return other if other != 0.0 else 1.0
+    def observed_on(self, k: int, standing: Mode, body: BodyState) -> Variables:
+        """Give what users see of a base that gives way."""
+        part = self.on_base(k)
+        if self.is_slippery(k):
+            return part.base.observed(standing.contact, part.body.base_line_at(body), ())
+        return part.observed_base(standing, body, ())

@@ -15,6 +15,8 @@ from scipy.integrate import solve_ivp
 from . import ties
 
 MOST_EVENTS = 500
+GAUSS = list(zip(*np.polynomial.legendre.leggauss(3), strict=True))
+"""Nodes and weights."""
 
 
 @dataclass
@@ -124,7 +126,7 @@ class Bed:
         if last <= first or not (self.held("L") or self.held("R")):
             return []
         found = []
-        for node, weight in zip(*np.polynomial.legendre.leggauss(3), strict=True):
+        for node, weight in GAUSS:
             p = first + 0.5 * (last - first) * (1.0 + node)
             pressure = self.stiffness * (u0 + p * (u1 - u0)) - self.damping * (s0 + p * (s1 - s0))
             found.append(

@@ -20,9 +20,16 @@ if __package__ in (None, ""):
     sys.path.insert(0, str(HERE.parents[2]))
     sys.path.append(str(HERE.parents[3]))
 
+from reference_models.monoliths.slipping_block import Bed, Pads  # noqa: E402
 from reference_models.rigid_pair import compare as held  # noqa: E402
-from reference_models.rigid_pair_sliding.contacts import INTERFACES, Friction  # noqa: E402
-from reference_models.rigid_pair_sliding.drawing import FREE, STEP, Scene, draw  # noqa: E402
+from reference_models.rigid_pair_sliding.contacts import INTERFACES  # noqa: E402
+from reference_models.rigid_pair_sliding.drawing import (  # noqa: E402
+    FREE,
+    STEP,
+    Scene,
+    draw,
+    draw_giving,
+)
 from reference_models.rigid_pair_sliding.events import Event, OffTheTopError, Run  # noqa: E402
 from reference_models.rigid_pair_sliding.simulate import simulate  # noqa: E402
 
@@ -89,8 +96,13 @@ def _at(instants: list, wanted) -> set:
     return set().union(*(what for t, what in instants if abs(t - wanted[0]) < TOGETHER))
 
 
-def ground_of(friction: Friction) -> rf.RigidGround:
+def ground_of(scene: Scene, key: str) -> Any:
     """Give the package's interface."""
+    friction = scene.frictions[key]
+    if key in scene.bases:
+        given = {"friction": friction.static, "kinetic_friction": friction.kinetic}
+        given |= scene.bases[key]
+        return (rf.WinklerSoil if "stiffness" in given else rf.TwoSpringSupport)(**given)
     if friction.holds:
         return rf.RigidGround()
     return rf.RigidGround(
@@ -104,9 +116,27 @@ def system_of(scene: Scene) -> rf.System:
     pair = scene.pair
     stack = rf.Stack(
         held.block_of(pair.upper), held.block_of(pair.lower),
-        interfaces=[ground_of(scene.frictions["joint"])], offsets=[f"{pair.offset!r} m"],
+        interfaces=[ground_of(scene, "joint")], offsets=[f"{pair.offset!r} m"],
     )  # fmt: skip
-    return rf.System(stack, ground_of(scene.frictions["ground"]))
+    return rf.System(stack, ground_of(scene, "ground"), restraint=scene.rule)
+
+
+def giving_of(scene: Scene, system: rf.System) -> dict[str, Any]:
+    """Give what is not rigid in a scene to the reference model, and how quick it is."""
+    pair, found = scene.pair, {}
+    for key in scene.bases:
+        support = system.setting.bases[BODIES[key] - 1]
+        mass = pair.upper.mass + (pair.lower.mass if key == "ground" else 0.0)
+        if "stiffness" in scene.bases[key]:
+            width = 2.0 * (pair.lower if key == "ground" else pair.upper).half_width
+            base = Bed(support.stiffness, support.damping, width)
+            stiffness = width * support.stiffness
+        else:
+            base, stiffness = Pads(support.stiffness, support.damping, 1.0), 2.0 * support.stiffness
+        base.sunk = mass * pair.gravity / stiffness
+        found |= {"giving": {key: base}, "rule": scene.rule}
+        found["quickest"] = 12.0 * math.sqrt(pair.upper.mass / stiffness)
+    return found
 
 
 def motion_of(motion: dict[str, Any]) -> rf.GroundMotion:
@@ -146,12 +176,12 @@ def changes_of(event: Event) -> list:
 
 def compared(scene: Scene, accuracy: str = "reference") -> Compared:
     """Run a scene by both."""
-    off = False
+    off, system = False, system_of(scene)
     try:
-        reference = simulate(scene, OUTPUT)
+        reference = simulate(scene, OUTPUT, **giving_of(scene, system))
     except OffTheTopError as fault:
         reference, off = fault.run, True
-    package = system_of(scene).simulate(
+    package = system.simulate(
         motion_of(scene.motion), free_vibration=f"{FREE!r} s", accuracy=accuracy,
         output_step=f"{OUTPUT!r} s",
     )  # fmt: skip
@@ -203,11 +233,11 @@ def tell(number: int, one: Compared) -> None:
     )  # fmt: skip
 
 
-def table_of(seed: int, numbers) -> dict:
+def table_of(seed: int, numbers, drawn=draw) -> dict:
     """Compare scenes and count."""
     found, refused = {}, {}
     for number in numbers:
-        scene = draw([seed, number])
+        scene = drawn([seed, number])
         try:
             found[number] = compared(scene)
         except rf.errors.RockframeError as fault:
@@ -249,15 +279,17 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=100)
     parser.add_argument("--seed", type=int, default=7)
     parser.add_argument("--replay", type=int, nargs="+", help="numbers of scenes to repeat")
+    parser.add_argument("--giving", action="store_true", help="one base on pads or on a bed")
     given = parser.parse_args()
+    drawn = draw_giving if given.giving else draw
     if given.replay:
         for number in given.replay:
-            one = compared(draw([given.seed, number]))
+            one = compared(drawn([given.seed, number]))
             tell(number, one)
             print("    missing", one.missing[:3], "added", one.added[:3])
             print("    renamed", one.renamed[:3])
         return
-    print(json.dumps(table_of(given.seed, range(given.scenes)), indent=1))
+    print(json.dumps(table_of(given.seed, range(given.scenes), drawn), indent=1))
 
 
 if __name__ == "__main__":

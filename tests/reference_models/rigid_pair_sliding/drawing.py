@@ -17,6 +17,8 @@ FREE = drawing.FREE
 STEP = 0.1
 """Between the samples of noise [s]."""
 SAMPLES = 26
+NOISE_ON_SPRINGS = 16
+"""Samples where springs make a run long."""
 
 
 class Scene(NamedTuple):
@@ -25,6 +27,8 @@ class Scene(NamedTuple):
     pair: Pair
     frictions: Frictions
     motion: dict[str, Any]
+    bases: dict[str, dict[str, Any]] = {}  # noqa: RUF012  what is not rigid, as the package has it
+    rule: str = "contact-state"
 
     def mirrored(self) -> "Scene":
         """Give the scene as seen from behind."""
@@ -50,6 +54,40 @@ def draw(seed) -> Scene:
     sides = zip(INTERFACES, pair.limits, strict=True)
     frictions = {key: _friction(rng, math.tan(min(-one, two))) for key, (one, two) in sides}
     return Scene(pair, frictions, _motion(rng, pair, frictions))
+
+
+def draw_giving(seed) -> Scene:
+    """Draw a scene in which the lower or the upper body stands on pads or on a bed, with friction.
+
+    The bodies are symmetric, so that they are upright at rest. Landings on pads are no impacts.
+    """
+    rng = np.random.default_rng(seed)
+    pair = None
+    while pair is None:
+        pair = _pair(rng)
+    upper, lower = (one._replace(beside=0.0) for one in (pair.upper, pair.lower))
+    key = str(rng.choice(INTERFACES))
+    pair = Pair(lower, upper, 0.0 if key == "ground" else pair.offset)
+    sides = zip(INTERFACES, pair.limits, strict=True)
+    frictions = {one: _friction(rng, math.tan(min(-a, b))) for one, (a, b) in sides}
+    while math.isinf(frictions[key].static):
+        frictions[key] = _friction(rng, 0.3)
+    frictions[key] = frictions[key]._replace(stick=False)
+    damping = float(rng.choice([0.0, rng.uniform(0.02, 0.4)], p=[0.25, 0.75]))
+    base: dict[str, Any] = {"damping_ratio": damping}
+    if rng.random() < 0.6:
+        base["frequency_ratio"] = float(rng.uniform(8.0, 20.0))
+        base["restitution"] = 1.0
+    else:
+        carried = lower.mass + upper.mass if key == "ground" else upper.mass
+        width = 2.0 * (lower if key == "ground" else upper).half_width
+        sinks = float(rng.uniform(0.002, 0.01))
+        base["stiffness"] = f"{carried * GRAVITY / (width * width * sinks)!r} Pa"
+    rule = str(rng.choice(["contact-state", "centre"]))
+    motion = _motion(rng, pair, frictions)
+    if motion["form"] == "noise":
+        motion = {k: v[:NOISE_ON_SPRINGS] if k != "form" else v for k, v in motion.items()}
+    return Scene(pair, frictions, motion, {key: base}, rule)
 
 
 def _pair(rng: np.random.Generator) -> Pair | None:

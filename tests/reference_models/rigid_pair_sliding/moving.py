@@ -28,6 +28,8 @@ MOST, SPAN = 200, 1e-3
 class Moving:
     """Two bodies as they move."""
 
+    giving: dict = {}  # noqa: RUF012  interfaces that give way: there are none
+
     def __init__(self, pair, frictions, output, accuracy, longest):
         self.pair, self.frictions, self.accuracy = pair, frictions, accuracy
         self.pattern = STANDING
@@ -109,7 +111,8 @@ class Moving:
         touch = self.touch(place, speed, self.touching(pattern))
         rows = []
         for key, bearing in zip(INTERFACES, pattern, strict=True):
-            rows += [touch.contacts[key, end].normal for end in bearing.ends]
+            if key not in self.giving:
+                rows += [touch.contacts[key, end].normal for end in bearing.ends]
             if bearing.ends and bearing.slip == 0:
                 rows.append(touch.contacts[key, bearing.ends[0]].along)
         if not rows:
@@ -132,7 +135,7 @@ class Moving:
         if self.pulled:
             found["let", "go", ""] = -1.0 if self._followed(t, state) else 1.0
         for name, push in answer.normal.items():
-            if not self.pulled:
+            if not self.pulled and name[0] not in self.giving:
                 found["press", *name] = push / scale
         rates = self.slip_rates(touch, state)
         for key, bearing, rate in zip(INTERFACES, self.pattern, rates, strict=True):
@@ -157,20 +160,21 @@ class Moving:
         """Add how far ends are from their surfaces, and those of the upper base from the edges."""
         angles = {"ground": place[2], "joint": place[5] - place[2]}
         for key, bearing in zip(INTERFACES, self.pattern, strict=True):
-            if len(bearing.ends) == 1:
+            if len(bearing.ends) == 1 and key not in self.giving:
                 (end,) = bearing.ends
                 other = ENDS[end == "left"]
                 found["gap", key, other] = SIGN[end] * angles[key]
         half = self.pair.lower.half_width
         for end in ENDS:
-            if not self.pattern.ground.ends:
+            if not self.pattern.ground.ends and "ground" not in self.giving:
                 found["gap", "ground", end] = height(self.pair, place, end) / half
             if self.pattern.joint.ends and not self.pattern.joint.slip:
                 continue
             along, above = on_top(self.pair, place, end)
-            if not self.pattern.joint.ends:
+            if not self.pattern.joint.ends and "joint" not in self.giving:
                 found["gap", "joint", end] = above / half
-            found["off", "joint", end] = 1.0 - abs(along) / half + 1e-9
+            if not self.giving:
+                found["off", "joint", end] = 1.0 - abs(along) / half + 1e-9
 
     # changes ------------------------------------------------------------------------------------
 
@@ -230,6 +234,8 @@ class Moving:
         """Let an end close by an impact."""
         before = self.pattern
         touching = self.touching()
+        # what gives way has no part in an impact
+        touching = {one: () if one in self.giving else touching[one] for one in INTERFACES}
         if touching[key]:
             touching[key] = ENDS
         else:
@@ -259,7 +265,8 @@ class Moving:
         angles = {"ground": self.place[2], "joint": self.place[5] - self.place[2]}
         rates = {"ground": self.speed[2], "joint": self.speed[5] - self.speed[2]}
         for key, bearing in zip(INTERFACES, self.pattern, strict=True):
-            if len(bearing.ends) == 1 and abs(rates[key]) < self.slow and abs(angles[key]) < 1e-15:
+            flat = abs(angles[key]) < 1e-15 and key not in self.giving
+            if len(bearing.ends) == 1 and abs(rates[key]) < self.slow and flat:
                 tiny.append(key)
         across, up = self.piece.across(self.now), self.piece.up(self.now)
         before = self.pattern

@@ -14,6 +14,7 @@ from .choices import Frictions
 from .contacts import STANDING, middle_slips
 from .drawing import Scene, pieces_for
 from .events import Run
+from .giving import Giving, GivingMoving
 from .moving import GONE, Moving
 
 
@@ -137,12 +138,15 @@ class _Running(Moving):
             self.peak(dense(top))
 
 
+class _GivingRunning(GivingMoving, _Running):
+    """The same where some stand on bases that give way."""
+
+
 def simulate(scene: Scene, output_step: float = 0.01, **options) -> Run:
     """Simulate a scene, by `simulate_pair`."""
     pieces, period = pieces_for(scene.motion)
-    return simulate_pair(
-        scene.pair, scene.frictions, pieces, output_step, quickest=period, **options
-    )
+    options["quickest"] = min(period, options.get("quickest", period))
+    return simulate_pair(scene.pair, scene.frictions, pieces, output_step, **options)
 
 
 def simulate_pair(
@@ -154,6 +158,8 @@ def simulate_pair(
     accuracy: float = 1e-11,
     quickest: float = math.inf,
     start: tuple | None = None,
+    giving: Giving | None = None,
+    rule: str = "contact-state",
 ) -> Run:
     """Simulate two bodies that stand on one another.
 
@@ -172,6 +178,10 @@ def simulate_pair(
         Least period of the ground motion [s].
     start : tuple, optional
         Pattern, six places and six velocities at the start.
+    giving : dict, optional
+        Pads or beds in the place of rigid bases, as forces; `quickest` is theirs too.
+    rule : str
+        Which point of these is held.
 
     Returns
     -------
@@ -190,7 +200,10 @@ def simulate_pair(
     stop = pieces[-1].stop
     output = np.arange(math.floor(stop / output_step * (1.0 + 1e-12)) + 1) * output_step
     longest = min(0.04 * pair.slowness, 0.02 * quickest)
-    now = _Running(pair, frictions, output, accuracy, longest)
+    kind = _GivingRunning if giving else _Running
+    now = kind(pair, frictions, output, accuracy, longest)
+    if giving:
+        now.give(giving, rule)
     now.piece = pieces[0]
     if start is not None:
         now.pattern = start[0]

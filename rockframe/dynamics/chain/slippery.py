@@ -1,0 +1,160 @@
+"""What happens to a body that friction holds on a base that gives way, :eq:`eq-slip-on-base`.
+
+Of each base the point that the rule of restraint names is held as long as friction can, and slips
+against it otherwise. What a base presses with follows from where its body is, so that no force
+waits for another, and friction holds nothing in an impact beside it.
+"""
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
+from rockframe.dynamics.body import accelerated
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.motion import load_along, load_bodies, place_bodies, press_at
+from rockframe.dynamics.chain.rows import PLACES
+from rockframe.dynamics.chain.slips import IMPULSIVE, SlippingBodies
+from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
+from rockframe.dynamics.events import IMPACT, PIVOT_CHANGE, REENGAGEMENT, SEPARATION, SILENT
+from rockframe.dynamics.on_base import Mode
+from rockframe.dynamics.pads import CORNER_GUARDS
+from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
+from rockframe.dynamics.sliding import NOISE
+from rockframe.dynamics.switching import end_speed, next_pivot
+
+
+class SlipperyBases(SlippingBodies):
+    """Bodies upon one another of which some slip on bases that give way. A mixin of systems."""
+
+    __slots__ = ()
+
+    @kernel
+    def switch_slippery(
+        self, k: int, which: int, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Carry out the switch of an end's contact, or of the held point of a body.
+
+        Unless nothing happens, in the mode that is given the body is let go.
+        """
+        if which < 2 * CORNER_GUARDS:
+            left = which < CORNER_GUARDS
+            return self.switch_end(k, left, which % CORNER_GUARDS, mode, state, memory)
+        part, was = self.on_base(k), self.part_mode(mode, k)
+        pivot = next_pivot(self, part, k, mode, state, ground)
+        memory[LAST_EVENT] = SILENT if was.pivot == 0 else PIVOT_CHANGE
+        new = self.let_go(k, mode, state, memory)
+        self.stand_upright(k, state)
+        return self.with_part(new, k, Mode(was.contact, pivot, True))
+
+    @kernel
+    def switch_end(
+        self, k: int, left: bool, which: int, mode: int, state: Vector, memory: Vector
+    ) -> int:
+        """Carry out the switch of an end's contact; give the mode in which the body is let go."""
+        part, was = self.on_base(k), self.part_mode(mode, k)
+        line = part.body.base_line_at(self.state_of(k, state))
+        found = part.base.switch(was.contact, left, which, line, ())
+        memory[LAST_EVENT] = found.event
+        if found.crossed:
+            # the crossed level is set exactly, so that rounding cannot undo the switch
+            self.change(k, part.base.level(left, line, ()), 0.0, state)
+        if found.event == SILENT:
+            return self.with_part(mode, k, Mode(found.contact, was.pivot, was.slides))
+        new = self.let_go(k, mode, state, memory)
+        now = part.standing(found.contact, self.state_of(k, state))
+        new = self.with_part(new, k, Mode(now.contact, now.pivot, not part.flies(now.contact)))
+        if found.event == IMPACT and part.base.rebound(left) < 1.0:
+            both = part.flies(was.contact) and part.base.is_held(now.contact, not left)
+            new = self.strike(k, left, both, new, state, memory)
+        return new
+
+    @kernel
+    def strike(
+        self, k: int, left: bool, both: bool, mode: int, state: Vector, memory: Vector
+    ) -> int:
+        """Reduce the speed of the end that lands, or of both, with friction in the impact.
+
+        Other bases that give way press with forces. Those with friction hold nothing in it.
+        """
+        mode = self.let_all_go(mode, state, memory)
+        for j in range(self.body_count):
+            if j != k and self.is_slippery(j):
+                mode = self.disturb(j, mode, state)
+        before = self.energies_of_bodies(mode, state).kinetic
+        rate, noise = self.slip_rate(k, mode, state)
+        if both and abs(rate) > noise:  # the end that leads comes first
+            left = rate < 0.0
+        self.strike_end(k, left, mode, state)
+        if both:
+            self.strike_end(k, not left, mode, state)
+        memory[IMPACT_LOSS] += before - self.energies_of_bodies(mode, state).kinetic
+        return mode
+
+    @kernel
+    def strike_end(self, k: int, left: bool, mode: int, state: Vector) -> None:
+        """Reduce the speed of an end to eps times what it was, :eq:`eq-slide-impact`."""
+        part = self.on_base(k)
+        speed, _ = end_speed(part, left, self.state_of(k, state))
+        if speed >= 0.0:
+            return
+        line = part.body.base_line_at(self.state_of(k, state))
+        lever = line.left_lever if left else line.right_lever
+        slip, noise = self.slip_rate(k, mode, state)
+        if abs(slip) <= noise:
+            slip = 0.0
+        rises, slides = self.answers(k, 1.0, lever, 0.0, mode, state)
+        normal_by_normal, along_by_normal = rises + lever * self.turned(k), slides
+        rises, slides = self.answers(k, 0.0, 0.0, 1.0, mode, state)
+        along, normal = coulomb_impulse(
+            ImpulseResponse(
+                normal_by_normal, rises + lever * self.turned(k), along_by_normal, slides
+            ),
+            slip, (1.0 - part.base.rebound(left)) * speed, self.friction_of(k, IMPULSIVE),
+        )  # fmt: skip
+        self.answers(k, normal, normal * lever, along, mode, state)
+        self.take_answer(state)
+        after, noise = self.slip_rate(k, mode, state)
+        if abs(after) <= noise + 2.0 * NOISE * abs(slip):
+            self.end_slip(k, mode, state)
+
+    @inlined
+    def turned(self, k: int) -> float:
+        """Give the change of a body's angular velocity in the last answer."""
+        return float(self.slopes()[BEFORE_HORIZONTAL * k + ROTATION])
+
+    @kernel
+    def answers(
+        self, k: int, press: float, moment: float, along: float, mode: int, state: Vector
+    ) -> tuple[float, float]:
+        """Give what impulses of a base change of its body's rise and of the slip.
+
+        The changes of all velocities stand in the room for slopes until the next ones.
+        """
+        room, out = self.places(), self.slopes()
+        place_bodies(self, mode, state, room)
+        load_bodies(self, 0.0, 0.0, room)
+        press_at(self, k, press, moment, room)
+        load_along(self, k, along, room)
+        self.answer(k, mode, 0.0, state)
+        turned = out[BEFORE_HORIZONTAL * k + ROTATION]
+        slides = out[self.horizontal_of(k)] - room[k * PLACES + at.REACH] * turned
+        return out[BEFORE_HORIZONTAL * k + VERTICAL], slides
+
+    @kernel
+    def wait(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Let an end that the change of the held point would send back at once wait.
+
+        One that has left and would be pressed again, and one that presses and would let go.
+        """
+        part, now, event = self.on_base(k), self.part_mode(mode, k), memory[LAST_EVENT]
+        if event not in (SEPARATION, REENGAGEMENT) or part.flies(now.contact):
+            return mode
+        rises = self.end_accelerations(k, mode, state, ground)
+        line = accelerated(part.body.base_line_at(self.state_of(k, state)), rises[0], rises[1])
+        grows = part.base.will_press(left, line, ())
+        contact = now.contact
+        if event == SEPARATION and grows and part.base.presses(contact, left, line, ()):
+            contact = part.base.waiting(contact, left)
+        elif event == REENGAGEMENT and not grows:
+            contact = part.base.unpressed(contact, left)
+        return self.with_part(mode, k, Mode(contact, now.pivot, now.slides))
