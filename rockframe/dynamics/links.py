@@ -491,5 +491,6 @@ class Tie(NamedTuple):
         return SHOWN_PRESSED if state == SLACK and self.pushes != 0.0 else state
 
     def idles(self, state: int) -> bool:
-        """Whether it hangs slack, or is broken."""
-        return state == BROKEN or (state == SLACK and self.pushes == 0.0)
+        """Whether it is broken, or hangs slack without a dashpot."""
+        slack = state == SLACK and self.pushes == 0.0 and self.damping == 0.0
+        return state == BROKEN or slack

@@ -40,9 +40,7 @@ class TiedSetting(StackSetting):
         from rockframe.dynamics.tied_slide_rock import tied_slide_rock
 
         self._rest  # noqa: B018 - refuses a block that its links tip over
-        bare = slide_rock_of(
-            self.body, self.friction, self.body.maximum_restitution, self.gravity
-        )
+        bare = slide_rock_of(self.body, self.friction, self.body.maximum_restitution, self.gravity)
         if not self.chain_ties:  # of loads that are masses
             return slide_rock(bare, mass=self.body.mass)
         return tied_slide_rock(bare, self.chain_ties, mass=self.body.mass)
@@ -102,9 +100,7 @@ def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
     """Give the setting of a block with links: of one that slides where the ground has friction."""
     found = friction_under(ground, held.options)
     if found is None:
-        return TiedSetting(
-            held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties
-        )
+        return TiedSetting(held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties)
     faults = sheared(held)
     faults += ill_posed(held.body, found.kinetic)
     if faults:
