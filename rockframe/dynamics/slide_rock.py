@@ -198,7 +198,8 @@ class SlideSwitches(SlideMotion):
         # what rounding leaves of a slip that has ended
         noise = ROUNDING * (abs(across) + abs(along) + abs(above * rate))
         state[SIZE + SLIP] = slip if abs(slip) > noise else 0.0
-        state[SIZE + ROTATION], state[SIZE + RISE] = rate, 0.0
+        state[SIZE + ROTATION] = rate
+        state[SIZE + RISE] = up + beside * rate if normal == 0.0 else 0.0
 
     @kernel
     def lie_flat(self, state: Vector, across: float, up: float) -> None:
@@ -296,6 +297,8 @@ class SlideSwitches(SlideMotion):
             self.struck(bears, state, (across, up), 1.0)
             touched = self.with_contact(mode, SLIPS * bears)
             new = self.leaning(bears, state, self.loads(touched, state, ground), False)
+            if state[SIZE + RISE] > 0.0:
+                new = SLIPS * (bears + FLIES_RIGHT - ON_RIGHT)
         memory[IMPACT_LOSS] += before - self.kinetic_energy(new, state)
         return self.with_contact(mode, new)
 
