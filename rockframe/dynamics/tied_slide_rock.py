@@ -25,6 +25,7 @@ from rockframe.dynamics.chain.link_rows import (
 from rockframe.dynamics.chain.linked import Linked, rows_of_links, with_room
 from rockframe.dynamics.chain.model import (
     links_shown,
+    rounding_of_ties,
     scales_of_links,
     tie_columns,
     tie_tolerance,
@@ -37,6 +38,7 @@ from rockframe.dynamics.slide_motion import (
     GUARDS,
     HELD,
     MODES,
+    PRESSING,
     REMEMBERED,
     RISE,
     ROTATION,
@@ -239,6 +241,9 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
         return system.start_links(mode, state), state, np.append(memory, 0.0)
 
     frequency, damping = fastest_pull(bare, ties)
+    own_tolerance = alone.guard_tolerance.copy()
+    forces = own_tolerance[PRESSING:]
+    own_tolerance[PRESSING:] = np.maximum(forces, rounding_of_ties(ties) / bare.gravity)
     tied, own = links_shown(ties), alone.columns
     if bare.static == math.inf:  # users do not see a slip that there is not
         own = tuple(
@@ -249,7 +254,7 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
         alone,
         system=system,
         scales=np.append(alone.scales, scales_of_links(system, ties)),
-        guard_tolerance=np.concatenate([alone.guard_tolerance, *map(tie_tolerance, ties)]),
+        guard_tolerance=np.concatenate([own_tolerance, *map(tie_tolerance, ties)]),
         columns=(
             *own,
             *(column for i in range(len(ties)) for column in tie_columns(i, shown=i < tied)),
