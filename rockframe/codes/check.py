@@ -8,20 +8,31 @@ from rockframe.measures.common import check_some
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.system.rigid_ground import RigidGroundSetting
+from rockframe.system.tied_sliding import TiedSetting
 from rockframe.units import QuantityLike
 
 
-def rocking_block(system: object, owner: str) -> RigidGroundSetting:
-    """Give the setting of a block that rocks on rigid ground; refuse all else."""
+def rocking_block(
+    system: object, owner: str, *, carries: bool = False
+) -> RigidGroundSetting | TiedSetting:
+    """Give the setting of a block that rocks on rigid ground; refuse all else.
+
+    It may carry masses, as loads, if told.
+    """
     if not isinstance(system, System):
         msg = f"{owner}: system needs a System, got {shown(system)}"
         raise ComponentError(msg)
     setting = system.setting
     level = system.options.slope.level
-    if not isinstance(setting, RigidGroundSetting) or system.parts.block is None or not level:
-        msg = f"{owner}: the check is of a block on level rigid ground, got {setting.model}"
-        raise ComponentError(msg)
-    return setting
+    if system.parts.block is not None and level:
+        if isinstance(setting, RigidGroundSetting):
+            return setting
+        held = isinstance(setting, TiedSetting) and not setting.slides
+        if carries and held and not setting.ties:  # what is left of loads that are masses
+            return setting
+    carried = ", which may carry loads that are masses," if carries else ""
+    msg = f"{owner}: the check is of a block on level rigid ground{carried} got {setting.model}"
+    raise ComponentError(msg)
 
 
 def read_motions(given: object, owner: str) -> dict[str, GroundMotion]:

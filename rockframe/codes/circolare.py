@@ -1,13 +1,15 @@
 """Circolare 7/2019, C8.7.1: a local mechanism by kinematics, and by its motion."""
 
 import math
+import operator
 from collections.abc import Mapping
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from rockframe.arguments import one_of_names
 from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
+from rockframe.components import Load
 from rockframe.errors import ComponentError
 from rockframe.measures import response_spectrum
 from rockframe.motion import GroundMotion
@@ -16,6 +18,7 @@ from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
+from rockframe.system.tied_sliding import TiedSetting
 from rockframe.units import (
     POSITIVE,
     TIME,
@@ -32,6 +35,9 @@ _CODE: Final = "Circolare C.S.LL.PP. 21 January 2019, n. 7, to the NTC 2018, C8.
 _FACTOR: Final = Condition("1 or more", lambda value: value >= 1.0)
 LIMIT_STATES: Final = {"SLV": (0.40, 1.68, 0.08, "10"), "SLC": (0.60, 1.56, 0.10, "11")}
 """Share of d0, factor of the period over pi, damping ratio, and number of the formula."""
+SLD: Final = "SLD"
+"""The limit state of damage: the wall is at rest until its mechanism is activated."""
+_SLD_DAMPING: Final = 0.05
 _PERIODS: Final = 80
 _SHORTEST: Final = 0.2
 """Of the periods at which the spectra of motions are looked at [s]."""
@@ -44,6 +50,7 @@ def circolare_2019(
     *,
     confidence_factor: RatioLike = 1.35,
     limit_state: str = "SLV",
+    elastic_period: QuantityLike | None = None,
     free_vibration: QuantityLike = "20 s",
 ) -> CodeCheck:
     """Check a wall that overturns by Circolare 7/2019, C8.7.1: kinematics beside its motion.
@@ -56,15 +63,17 @@ def circolare_2019(
     ----------
     system : System
         A :class:`~rockframe.Block` on level rigid ground, with a :class:`~rockframe.RearWall` or
-        without.
+        without; or with overburden, a :class:`~rockframe.Load` of a `moving_mass` for each.
     demand : TargetSpectrum, GroundMotion, or mapping of str to GroundMotion
-        At the wall's base, of the limit state: a spectrum at its damping ratio, 8 % (SLV) or 10 %
-        (SLC), for the check in displacement alone; or motions, such as a suite, for the dynamic
-        alternative, too.
+        At the wall's base, of the limit state: a spectrum at its damping ratio, 5 % (SLD), 8 %
+        (SLV) or 10 % (SLC), for the kinematic check alone; or motions, such as a suite, of SLV
+        and SLC for the dynamic alternative, too.
     confidence_factor : float, optional
         FC: 1.35, 1.20 or 1.00 by the level of knowledge [1].
-    limit_state : {"SLV", "SLC"}, optional
+    limit_state : {"SLV", "SLC", "SLD"}, optional
         Which the demand belongs to.
+    elastic_period : str or Quantity, optional
+        T_0 of the wall before it lifts, at which the spectrum is read for the SLD [s].
     free_vibration : str or Quantity, optional
         Still ground after each motion [s].
 
@@ -76,8 +85,8 @@ def circolare_2019(
     Raises
     ------
     ComponentError
-        Another scene, an unknown limit state, or a spectrum of another damping ratio or not known
-        at the period.
+        Another scene, an unknown limit state, a period that is missing or has no use, or a
+        spectrum of another damping ratio or not known at the period.
     UnitsError
         FC is no pure ratio.
 
@@ -92,14 +101,21 @@ def circolare_2019(
     >>> round(check.value("T_SLV"), 6)
     2.383086
     """
-    setting = rocking_block(system, _OWNER)
+    setting = rocking_block(system, _OWNER, carries=True)
     factor = to_ratio(
         confidence_factor, owner=_OWNER, name="confidence_factor", condition=_FACTOR, example="1.35"
     )
-    one_of_names(limit_state, LIMIT_STATES, owner=_OWNER, name="limit_state")
+    one_of_names(limit_state, (*LIMIT_STATES, SLD), owner=_OWNER, name="limit_state")
     to_si(free_vibration, TIME, owner=_OWNER, name="free_vibration", condition=POSITIVE)
-    capacity = _capacity(setting, factor)
+    if (elastic_period is None) == (limit_state == SLD):
+        msg = f"{_OWNER}: elastic_period goes with limit_state='SLD', for example '0.2 s'"
+        raise ComponentError(msg)
+    mechanism = _mechanism(system, setting)
+    capacity = _capacity(mechanism, factor)
     values = {one.symbol: one.value for one in capacity}
+    if elastic_period is not None:
+        first = to_si(elastic_period, TIME, owner=_OWNER, name="elastic_period", condition=POSITIVE)
+        return _damage(system, demand, capacity, values["a_0*"], first)
     _, _, damping, _ = LIMIT_STATES[limit_state]
     d_limit, period = values[f"d_{limit_state}"], values[f"T_{limit_state}"]
     motions = None if isinstance(demand, TargetSpectrum) else read_motions(demand, _OWNER)
@@ -120,33 +136,99 @@ def circolare_2019(
     ]  # fmt: skip
     lines = {"Mechanism and capacity": capacity, "Demand in displacement": (wanted,)}
     if motions is not None:
-        found = _dynamic(system, setting, motions, free_vibration)
+        found = _dynamic(system, mechanism, motions, free_vibration)
         lines["Motion of the wall"] = found
         verdicts += _dynamic_verdicts(found, values["d_0"], d_limit, limit_state)
-    notes = (
-        "interlocking with side walls, ties, overburden and crushing of the edge",
-        "an elastic branch before the wall lifts; the capacity curve is straight",
-    )
     title = "A rigid block that overturns, by kinematics" + (" and by its motion" * bool(motions))
-    return CodeCheck(title, _CODE, lines, tuple(verdicts), notes, scene_words(system))
+    return CodeCheck(title, _CODE, lines, tuple(verdicts), _NOTES, scene_words(system))
 
 
-def _outwards(setting: RigidGroundSetting) -> tuple[float, float]:
-    """Give how far the centre of mass is from the edge, beside and above it [m]."""
-    angles, body = setting.overturning_angles, setting.body
-    to_right = setting.overturning_rotations[0] > 0.0 and angles.right <= angles.left
-    return (body.right if to_right else body.left), body.centre_height
+_NOTES: Final = (
+    "interlocking with side walls, ties and crushing of the edge",
+    "an elastic branch before the wall lifts; the capacity curve is straight",
+)
 
 
-def _capacity(setting: RigidGroundSetting, factor: float) -> tuple[CheckedLine, ...]:
+def _damage(
+    system: System,
+    demand: TargetSpectrum | GroundMotion | Mapping[str, GroundMotion],
+    capacity: tuple[CheckedLine, ...],
+    activation: float,
+    period: float,
+) -> CodeCheck:
+    """Check that the mechanism is not activated at the SLD."""
+    if isinstance(demand, TargetSpectrum):
+        needed = _ordinate(demand, period, _SLD_DAMPING)
+    else:
+        motions = read_motions(demand, _OWNER)
+        found = response_spectrum(motions, ([period], "s"), _SLD_DAMPING)
+        needed = float(found.pseudo_spectral_acceleration.mean())
+    wanted = (
+        CheckedLine("T_0", period, Unit.SECOND, "elastic period of the wall", "given"),
+        CheckedLine("S_e(T_0)", needed, Unit.METRE_PER_SECOND_SQUARED,
+                    "demand in acceleration, xi = 5 %", "C8.7.1.9"),
+    )  # fmt: skip
+    verdict = CheckedVerdict(
+        "kinematic, SLD", needed <= activation,
+        f"demand {needed:.4g} m/s^2, activation {activation:.4g} m/s^2", "C8.7.1.8",
+    )  # fmt: skip
+    lines = {"Mechanism and capacity": capacity, "Demand in acceleration": wanted}
+    title = "A rigid block that overturns, whether its mechanism is activated"
+    return CodeCheck(title, _CODE, lines, (verdict,), _NOTES, scene_words(system))
+
+
+class _Mechanism(NamedTuple):
+    """Weights that overturn together about an edge."""
+
+    weights: tuple[float, ...]  # of the wall, and of what it carries [N]
+    beside: tuple[float, ...]  # of each from the edge [m]
+    above: tuple[float, ...]
+    gravity: float
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Place of the centre of mass of all from the edge, beside and above it [m]."""
+        whole = math.fsum(self.weights)
+        return tuple(  # type: ignore[return-value]
+            math.fsum(map(operator.mul, self.weights, one)) / whole
+            for one in (self.beside, self.above)
+        )
+
+    @property
+    def oscillator(self) -> float:
+        """Displacement of the equivalent oscillator over that of the centre of mass."""
+        horizontal = math.fsum(map(operator.mul, self.weights, self.above))
+        square = math.fsum(p * y * y for p, y in zip(self.weights, self.above, strict=True))
+        return square / (self.centre[1] * horizontal)
+
+
+def _mechanism(system: System, setting: RigidGroundSetting | TiedSetting) -> _Mechanism:
+    """Give the wall and what it carries, about the edge over which it overturns."""
+    angles, block = setting.overturning_angles, system.parts.the_block
+    side = 1.0 if setting.overturning_rotations[0] > 0.0 and angles.right <= angles.left else -1.0
+    carried = [one.si for one in system.parts.links if isinstance(one, Load)]
+    places = [(block.eccentricity, block.centre_height), *(one.at for one in carried)]
+    masses = [block.mass, *(one.moving_mass for one in carried)]
+    return _Mechanism(
+        tuple(mass * setting.gravity for mass in masses),
+        tuple(0.5 * block.width - side * x for x, _ in places),
+        tuple(y for _, y in places),
+        setting.gravity,
+    )
+
+
+def _capacity(mechanism: _Mechanism, factor: float) -> tuple[CheckedLine, ...]:
     """Give activation, capacity curve and the displacements and periods of limit states."""
-    beside, above = _outwards(setting)
-    weight, gravity = setting.body.mass * setting.gravity, setting.gravity
-    # the virtual displacements of the centre of mass, by a rotation of one
-    multiplier = (weight * beside) / (weight * above)
-    share = (weight * above) ** 2 / (weight * (weight * above**2))
+    weights, beside, above, gravity = mechanism
+    # the virtual displacements of the weights, by a rotation of one
+    vertical = math.fsum(map(operator.mul, weights, beside))
+    horizontal = math.fsum(map(operator.mul, weights, above))
+    square = math.fsum(weight * up * up for weight, up in zip(weights, above, strict=True))
+    multiplier = vertical / horizontal
+    share = horizontal**2 / (math.fsum(weights) * square)
     spectral = multiplier * gravity / (share * factor)
-    last = beside  # where the centre of mass stands above the edge
+    # where the centre of mass stands above the edge
+    last = mechanism.oscillator * mechanism.centre[0]
     lines = [
         CheckedLine("alpha_0", multiplier, Unit.ONE, "activation multiplier, "
                     "sum(P d_Py)/sum((P + Q) d_PQx)", "C8.7.1.1"),
@@ -155,8 +237,8 @@ def _capacity(setting: RigidGroundSetting, factor: float) -> tuple[CheckedLine, 
         CheckedLine("a_0*", spectral, Unit.METRE_PER_SECOND_SQUARED,
                     "acceleration of activation, alpha_0 g/(e* FC), also the capacity at the SLD",
                     "C8.7.1.3, C8.7.1.8"),
-        CheckedLine("d_0", last, Unit.METRE, "displacement of the centre of mass at which the "
-                    "multiplier is zero; of the equivalent oscillator the same", "C8.7.1.4"),
+        CheckedLine("d_0", last, Unit.METRE, "displacement at which the multiplier is zero, of "
+                    "the equivalent oscillator", "C8.7.1.4"),
     ]  # fmt: skip
     for state, (part, times, _, number) in LIMIT_STATES.items():
         limit = part * last
@@ -176,14 +258,18 @@ def _capacity(setting: RigidGroundSetting, factor: float) -> tuple[CheckedLine, 
 
 def _of_spectrum(spectrum: TargetSpectrum, period: float, damping: float) -> float:
     """Give the spectral displacement at a period [m]."""
+    return _ordinate(spectrum, period, damping) * period * period / (4.0 * math.pi**2)
+
+
+def _ordinate(spectrum: TargetSpectrum, period: float, damping: float) -> float:
+    """Give the spectral acceleration at a period [m s^-2]."""
     if not math.isclose(spectrum.damping_ratio, damping, rel_tol=1e-9):
         msg = (
             f"{_OWNER}: the spectrum must be of a damping ratio of {damping:g}, got "
             f"{spectrum.damping_ratio:g}"
         )
         raise ComponentError(msg)
-    ordinate = float(spectrum.at_seconds(np.array([period]), owner=_OWNER)[0])
-    return ordinate * period * period / (4.0 * math.pi**2)
+    return float(spectrum.at_seconds(np.array([period]), owner=_OWNER)[0])
 
 
 def _of_motions(motions: Mapping[str, GroundMotion], period: float, damping: float) -> float:
@@ -195,18 +281,18 @@ def _of_motions(motions: Mapping[str, GroundMotion], period: float, damping: flo
 
 def _dynamic(
     system: System,
-    setting: RigidGroundSetting,
+    mechanism: _Mechanism,
     motions: Mapping[str, GroundMotion],
     free_vibration: QuantityLike,
 ) -> tuple[CheckedLine, ...]:
-    """Give the largest displacement of the centre of mass under each motion."""
-    beside, above = _outwards(setting)
+    """Give the largest displacement of the equivalent oscillator under each motion."""
+    (beside, above), oscillator = mechanism.centre, mechanism.oscillator
     radius, theta = math.hypot(beside, above), math.atan2(beside, above)
     lines: list[CheckedLine] = []
     for label, (peak, overturned) in peaks_of(system, motions, free_vibration).items():
         moved = radius * (math.sin(theta) - math.sin(theta - min(peak, theta)))
         words = "overturned" if overturned else f"peak rotation {peak:.4g} rad"
-        moved = beside if overturned else moved
+        moved = oscillator * (beside if overturned else moved)
         lines.append(CheckedLine(f"d, {label}", moved, Unit.METRE, words, "run"))
     mean = float(np.mean([one.value for one in lines]))
     words = "of the largest displacements; overturned ones count d_0"

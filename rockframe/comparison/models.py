@@ -4,7 +4,17 @@ import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from rockframe.components import Component, RigidGround, Stack, TwoSpringSupport, WinklerSoil
+from rockframe.components import (
+    Component,
+    Load,
+    RearWall,
+    Restrainer,
+    RigidGround,
+    Stack,
+    Tendon,
+    TwoSpringSupport,
+    WinklerSoil,
+)
 from rockframe.components.block_numbers import squat
 from rockframe.errors import ComponentError, ModelWarning
 from rockframe.proposals import hinted
@@ -37,6 +47,10 @@ _WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
 """Words of rungs, and the slots of the bases that they name."""
 
 
+_LINKS: Final = {Restrainer: "restrainers", Tendon: "tendons", Load: "loads", RearWall: "wall"}
+"""Words for links; those of users' own are called by their classes."""
+
+
 def check_system(given: object, owner: str) -> None:
     """Refuse what is no System."""
     if not isinstance(given, System):
@@ -50,8 +64,9 @@ def model_ladder(system: System) -> dict[str, System]:
 
     From rigid ground over pads to pads, cap and soil, first by cascade, then coupled; or
     from rigid ground to soil, without the cap and with it. A base of a user's own comes after
-    those that it calls simpler. Each with small rotations first, then with finite ones; a block
-    that slides first held, then sliding.
+    those that it calls simpler. Each with small rotations first, then with finite ones, and then
+    with the restrainers, tendons, loads and elastic walls of the scene; a block that slides first
+    held, then sliding.
 
     Parameters
     ----------
@@ -102,6 +117,8 @@ def model_ladder(system: System) -> dict[str, System]:
         "sliding": held,
     }  # fmt: skip
     models: dict[str, System] = {}
+    links = () if system.parts.own() else system.parts.links
+    acts = " and ".join(dict.fromkeys(_LINKS.get(type(one), type(one).__name__) for one in links))
     with warnings.catch_warnings():
         # what is left out may be said of a rung, but the scene itself has said its own
         warnings.simplefilter("ignore", ModelWarning)
@@ -120,6 +137,8 @@ def model_ladder(system: System) -> dict[str, System]:
                     models[rung] = System(
                         *parts.values(), rotation=rotation, coupling=coupling, **options
                     )
+                if links:
+                    models[f"{words} with {acts}"] = System(*parts.values(), *links, **options)
     if slides:
         computed: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
         last = list(models)[-1] if models else "rigid ground"

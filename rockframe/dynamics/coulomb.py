@@ -41,7 +41,9 @@ def coulomb_impulse(
             slip, sinking = 0.0, sinking + slowing * stops
     pushed = (slip * normal_by_along - sinking * along_by_along) / both
     held = -(slip + along_by_normal * pushed) / along_by_along
-    if abs(held) > friction * pushed:
+    if friction == math.inf and pushed < 0.0:  # what stops the slip throws the point up
+        return -slip / along_by_along, 0.0
+    if friction < math.inf and abs(held) > friction * pushed:
         ratio = math.copysign(friction, held)
         across = normal_by_normal + ratio * normal_by_along
         if across > 0.0:

@@ -27,6 +27,8 @@ from rockframe.proposals import hinted
 Law = TypeVar("Law")
 NEEDED: Final = ("force", "energy")
 """Methods that a law must give."""
+INLINED: Final = ("force", "power", "idles", "with_numbers")
+"""Those that are compiled into what calls them."""
 GUARDS: Final = 2
 """Guards of every link; a law may need fewer."""
 
@@ -110,6 +112,15 @@ class LinkLaw:
         return TAUT
 
     @inlined
+    def idles(self, state: int) -> bool:
+        """Whether it does nothing in a state, however it is stretched.
+
+        It stores and dissipates nothing then, its variables stay, and its guards need no
+        acceleration.
+        """
+        return False
+
+    @inlined
     def number_count(self) -> int:
         """Give how many numbers it has."""
         return len(self)  # type: ignore[arg-type]
@@ -147,7 +158,7 @@ def link_law(law: type[Law]) -> type[Law]:
         raise ArgumentError("; ".join(faults))
     for name, method in own.items():
         if not name.startswith("_"):
-            (inlined if name in ("force", "power", "with_numbers") else kernel)(method)
+            (inlined if name in INLINED else kernel)(method)
     for name, method in vars(LinkLaw).items():
         if not name.startswith("_") and name not in own:
             setattr(law, name, method)
@@ -220,6 +231,10 @@ class OneOfTwo(NamedTuple):
         if self.which == 0.0:
             return self.first.shown(state)
         return self.second.shown(state)
+
+    def idles(self, state: int) -> bool:
+        """Whether it does nothing in a state."""
+        return self.first.idles(state) if self.which == 0.0 else self.second.idles(state)
 
     def number_count(self) -> int:
         """Give how many numbers both have."""
@@ -328,6 +343,10 @@ class Bumper(NamedTuple):
     def shown(self, state: int) -> int:
         """Give the state that users see."""
         return state
+
+    def idles(self, state: int) -> bool:
+        """Whether it is free."""
+        return state == SLACK
 
 
 @dataclass(frozen=True)
@@ -470,6 +489,11 @@ class Tie(NamedTuple):
     def shown(self, state: int) -> int:
         """Give the state that users see."""
         return SHOWN_PRESSED if state == SLACK and self.pushes != 0.0 else state
+
+    def idles(self, state: int) -> bool:
+        """Whether it is broken, or hangs slack without a dashpot."""
+        slack = state == SLACK and self.pushes == 0.0 and self.damping == 0.0
+        return state == BROKEN or slack
 
 
 SHIPPED: Final = (Tie(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Bumper(0.0, 0.0, 0.0), SteadyForce(0.0))

@@ -35,9 +35,9 @@ TO_LEFT: Final = 2
 SLIPS: Final = 3
 MODES: Final = BEARINGS * SLIPS
 
-# the state: slip and rise of the corner that bears, from its place at rest, and the rotation
-SLIP: Final = 0
-ROTATION: Final = 1
+# the state: the rotation, and slip and rise of the corner that bears, from its place at rest
+ROTATION: Final = 0
+SLIP: Final = 1
 RISE: Final = 2
 SIZE: Final = 3
 
@@ -93,13 +93,13 @@ class SlideMotion(OnRigidGround):
     right: float
     height: float  # of the centre of mass
     inertia: float  # about the centre of mass
-    static: float  # coefficients of friction
+    static: float  # coefficients of friction; infinite where the ground holds the block
     kinetic: float
     gravity: float
 
     @kernel
     def coordinates(self) -> int:
-        """Give 3: slip, rotation, rise."""
+        """Give 3: rotation, slip, rise."""
         return SIZE
 
     @kernel
@@ -114,11 +114,11 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give how many of slip, rotation and rise change, in this order."""
-        bears = self.bears_in(mode)
-        if bears == FULL:
-            return 0 if mode % SLIPS == HELD else 1
-        return SIZE if bears >= FLIES_RIGHT else 2
+        """Give how many of rotation, slip and rise change, in this order."""
+        bears, slips = self.bears_in(mode), 0 if mode % SLIPS == HELD else 1
+        if bears >= FLIES_RIGHT:
+            return SIZE
+        return 2 * slips if bears == FULL else 1 + slips
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
@@ -199,6 +199,12 @@ class SlideMotion(OnRigidGround):
         return Contact(slip, turns, 0.0, along, normal)
 
     @inlined
+    def free_rise(self, bears: int, state: Vector, loads: Loads) -> float:
+        """Give the acceleration away from the ground of a corner that is let go."""
+        flies = bears + FLIES_RIGHT - ON_RIGHT
+        return self.contact(SLIPS * flies, state, loads).rise
+
+    @inlined
     def speeds(self, mode: int, state: Vector) -> tuple[float, float]:
         """Give the velocity of the centre of mass relative to the ground."""
         beside, above = self.reach(self.side(self.bears_in(mode)), state[ROTATION])
@@ -221,7 +227,7 @@ class SlideMotion(OnRigidGround):
         across, up = self.speeds(mode, state)
         supplied = -ground.x * across - ground.y * up
         lost = -found.along * state[SIZE + SLIP]
-        return found.slip, found.rotation, found.rise, lost, supplied
+        return found.rotation, found.slip, found.rise, lost, supplied
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
@@ -255,9 +261,11 @@ class SlideMotion(OnRigidGround):
                 slowing = speed * (sense * slope[SLIP] + ROUNDING * self.gravity)
                 stopping = speed * sense * state[SIZE + SLIP]
                 pressing = scale * found.normal
-            else:
+            elif self.static < math.inf:
                 most = self.static * found.normal
                 to_right, to_left = scale * (most + found.along), scale * (most - found.along)
+            elif bears != FULL:  # one that would come back at once is held, and pulled
+                pressing = scale * max(found.normal, -self.free_rise(bears, state, loads))
             if bears == FULL:
                 tips = found.along - loads.turning / self.height
                 pressing = scale * (self.right / self.height * found.normal + tips)

@@ -124,6 +124,8 @@ class SlideSwitches(SlideMotion):
             over = tips if tips != FULL else self.tips_over(across, loads)
             if over == FULL and not lets_go and abs(across) <= self.static * weight:
                 return SLIPS * FULL + HELD
+            if over != FULL and self.static == math.inf:
+                return self.leaning(over, state, loads, False)
             if over != FULL:
                 held = self.contact(SLIPS * over, state, loads)
                 if abs(held.along) <= self.static * held.normal:
@@ -145,11 +147,15 @@ class SlideSwitches(SlideMotion):
         """Give how a block on one corner goes on: held, slipping, or in flight."""
         slip, corner = state[SIZE + SLIP], SLIPS * bears
         flies = corner + SLIPS * (FLIES_RIGHT - ON_RIGHT)
-        if self.contact(flies, state, loads).rise >= -ROUNDING * self.gravity:
+        held = self.contact(corner + HELD, state, loads)
+        holds = self.static == math.inf
+        rises = self.free_rise(bears, state, loads) >= -ROUNDING * self.gravity
+        if rises and not (holds and held.normal > 0.0):
             return flies
+        if holds:
+            return corner + HELD
         if slip != 0.0:
             return corner + (TO_RIGHT if slip > 0.0 else TO_LEFT)
-        held = self.contact(corner + HELD, state, loads)
         if not lets_go and abs(held.along) <= self.static * held.normal:
             return corner + HELD
         first, second = (TO_LEFT, TO_RIGHT) if held.along > 0.0 else (TO_RIGHT, TO_LEFT)
@@ -192,7 +198,8 @@ class SlideSwitches(SlideMotion):
         # what rounding leaves of a slip that has ended
         noise = ROUNDING * (abs(across) + abs(along) + abs(above * rate))
         state[SIZE + SLIP] = slip if abs(slip) > noise else 0.0
-        state[SIZE + ROTATION], state[SIZE + RISE] = rate, 0.0
+        state[SIZE + ROTATION] = rate
+        state[SIZE + RISE] = up + beside * rate if normal == 0.0 else 0.0
 
     @kernel
     def lie_flat(self, state: Vector, across: float, up: float) -> None:
@@ -290,6 +297,8 @@ class SlideSwitches(SlideMotion):
             self.struck(bears, state, (across, up), 1.0)
             touched = self.with_contact(mode, SLIPS * bears)
             new = self.leaning(bears, state, self.loads(touched, state, ground), False)
+            if state[SIZE + RISE] > 0.0:
+                new = SLIPS * (bears + FLIES_RIGHT - ON_RIGHT)
         memory[IMPACT_LOSS] += before - self.kinetic_energy(new, state)
         return self.with_contact(mode, new)
 

@@ -43,20 +43,20 @@ def slide_rock(system: SlideRock, *, mass: float) -> ContactModel:
     least = min(system.left, system.right)
     angle, radius = atan2(least, system.height), hypot(least, system.height)
     frequency = sqrt(gravity * radius / (system.inertia + radius * radius))
-    size = np.array([least, angle, least])
+    size = np.array([angle, least, least])
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         rotation, rate = start.rotation or 0.0, start.angular_velocity
         leans = rotation or rate
         bears = FULL if leans == 0.0 else ON_RIGHT if leans > 0.0 else ON_LEFT
-        state = np.array([0.0, rotation, 0.0, 0.0, rate, 0.0])
+        state = np.array([rotation, 0.0, 0.0, rate, 0.0, 0.0])
         return SLIPS * bears + HELD, state, np.zeros(len(REMEMBERED))
 
     return ContactModel(
         name="sliding on rigid ground",
         system=system,
         rotation_limits=(angle, angle),
-        rotation_weights=np.array([0.0, 1.0, 0.0]),
+        rotation_weights=np.array([1.0, 0.0, 0.0]),
         scales=np.concatenate([size, frequency * size]),
         guard_tolerance=np.array([1e-15, 1e-15, *(1e-14,) * 4]),
         columns=COLUMNS,

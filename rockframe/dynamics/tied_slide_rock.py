@@ -25,6 +25,7 @@ from rockframe.dynamics.chain.link_rows import (
 from rockframe.dynamics.chain.linked import Linked, rows_of_links, with_room
 from rockframe.dynamics.chain.model import (
     links_shown,
+    rounding_of_ties,
     scales_of_links,
     tie_columns,
     tie_tolerance,
@@ -35,7 +36,9 @@ from rockframe.dynamics.slide_motion import (
     COLUMNS,
     FULL,
     GUARDS,
+    HELD,
     MODES,
+    PRESSING,
     REMEMBERED,
     RISE,
     ROTATION,
@@ -48,6 +51,7 @@ from rockframe.dynamics.slide_rock_model import slide_rock
 from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 OWN_COLUMNS: Final = len(COLUMNS)
+SLIP_COLUMNS: Final = ("slip", "slip_velocity")
 LINK_PLACE: Final = len(REMEMBERED)
 """Index into the memory: the link of the last event, counted from 1; 0 for none."""
 
@@ -67,6 +71,7 @@ class TiedNumbers(NamedTuple):
     gravity: float
     body_count: int  # 1
     link_count: int
+    begins_idle: float  # 1 where no link does anything while all are in their first state
     law: Any  # of the class of all links; its numbers are those of one of them
     rows: Vector  # room for the block; then rows of the links, and room to work in
 
@@ -105,14 +110,20 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     def begin_event(self, memory: Vector) -> None:
         """Forget what the last event left: nothing but its link."""
 
+    @inlined
+    def all_idle(self, mode: int) -> bool:
+        """Whether it is known at once that no link does anything in a mode."""
+        return mode < MODES and self.begins_idle != 0.0
+
     @kernel
     def lay(self, mode: int, state: Vector, room: Vector) -> None:
         """Write where the block is, from where it is given, and how it moves."""
         lies, side = self.lies(), self.side(self.bears_in(mode))
         sine, cosine = sine_cosine(state[ROTATION])
         lacks = versine(sine, cosine)
-        aside = self.height * sine + side * self.distance(side) * lacks
-        lies[MOVED_X], lies[MOVED_Y] = state[SLIP] + aside, self.centre_rise(mode, state)
+        away = side * self.distance(side)
+        lies[MOVED_X] = state[SLIP] + self.height * sine + away * lacks
+        lies[MOVED_Y] = state[RISE] + away * sine - self.height * lacks
         lies[OWN_SINE], lies[OWN_VERSINE] = sine, lacks
         lies[OWN_RATE] = state[SIZE + ROTATION]
         room[at.SPEED_X], room[at.SPEED_Y] = self.speeds(mode, state)
@@ -125,6 +136,8 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     @inlined
     def pulled(self, mode: int, state: Vector, ground: Ground) -> tuple[Loads, float]:
         """Give what acts on the block, :eq:`eq-slide-tied`, and what links dissipate."""
+        if self.all_idle(mode):
+            return Loads(ground.x, self.gravity + ground.y, 0.0), 0.0
         room = self.places()
         room[at.LOAD_X] = room[at.LOAD_Y] = room[at.LOAD_MOMENT] = 0.0
         lost = self.pull(mode, state, room)
@@ -140,6 +153,11 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Give accelerations, rates of the links' variables, and powers."""
         out = self.slopes()
+        if self.all_idle(mode):
+            for i in range(len(out)):
+                out[i] = 0.0
+            if mode == HELD:
+                return out
         loads, lost = self.pulled(mode, state, ground)
         found = self.accelerations(mode, state, ground, loads)
         out[SLIP], out[ROTATION], out[RISE] = found[SLIP], found[ROTATION], found[RISE]
@@ -185,7 +203,8 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
         """
         new = self.switch_one(mode, guard, state, ground, memory)
         # a slip that starts at once goes on
-        if guard >= GUARDS and (self.sense(new) == 0.0 or state[SIZE + SLIP] != 0.0):
+        slips = self.sense(new) != 0.0 and state[SIZE + SLIP] == 0.0
+        if guard >= GUARDS and self.static < math.inf and not slips:
             new = self.go_on(new, state, ground, False, FULL)
         return new
 
@@ -209,7 +228,9 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
     alone = slide_rock(bare, mass=mass)
     law, rows = rows_of_links(ties, MODES, 1)
     filled = np.concatenate([np.zeros(PLACES), *rows])
-    system: TiedSlideRock = with_room(TiedSlideRock(*bare, 1, len(ties), law, filled), filled)
+    system: TiedSlideRock = with_room(TiedSlideRock(*bare, 1, len(ties), 0.0, law, filled), filled)
+    each = [system.law_of(system.row_of_link(i)) for i in range(len(ties))]
+    system = system._replace(begins_idle=float(all(one.idles(0) for one in each)))
     upright, at_rest, _ = alone.initial(Start())
     none = np.zeros(system.variables())
     system.keep_energies(system.start_links(upright, state := np.append(at_rest, none)), state)
@@ -220,14 +241,22 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
         return system.start_links(mode, state), state, np.append(memory, 0.0)
 
     frequency, damping = fastest_pull(bare, ties)
-    tied = links_shown(ties)
+    own_tolerance = alone.guard_tolerance.copy()
+    forces = own_tolerance[PRESSING:]
+    own_tolerance[PRESSING:] = np.maximum(forces, rounding_of_ties(ties) / bare.gravity)
+    tied, own = links_shown(ties), alone.columns
+    if bare.static == math.inf:  # users do not see a slip that there is not
+        own = tuple(
+            replace(one, name=f"unused_{one.name}") if one.name in SLIP_COLUMNS else one
+            for one in own
+        )
     return replace(
         alone,
         system=system,
         scales=np.append(alone.scales, scales_of_links(system, ties)),
-        guard_tolerance=np.concatenate([alone.guard_tolerance, *map(tie_tolerance, ties)]),
+        guard_tolerance=np.concatenate([own_tolerance, *map(tie_tolerance, ties)]),
         columns=(
-            *alone.columns,
+            *own,
             *(column for i in range(len(ties)) for column in tie_columns(i, shown=i < tied)),
         ),
         memory=(*alone.memory, "link_of_event"),

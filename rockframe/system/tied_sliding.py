@@ -1,4 +1,4 @@
-"""The scene of a block with links that slides on rigid ground: its numbers, words and model."""
+"""The scene of a block with links on rigid ground, which holds it or on which it slides."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rockframe.components import RigidGround
 from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
-from rockframe.system.fitting import friction_under
+from rockframe.system.fitting import HELD, BaseFriction, friction_under
 from rockframe.system.setting import SlipRange
 from rockframe.system.sliding_base import sheared
 from rockframe.system.sliding_ground import (
@@ -25,7 +25,33 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class TiedSlidingSetting(StackSetting):
+class TiedSetting(StackSetting):
+    """A block with links on rigid ground, which holds it."""
+
+    @property
+    def friction(self) -> BaseFriction:
+        """Friction of the ground."""
+        return self.frictions[0] if self.frictions else HELD
+
+    @cached_property
+    def _model(self) -> "ContactModel":
+        """The equations of slip, rotation and rise, with links."""
+        from rockframe.dynamics.slide_rock_model import slide_rock
+        from rockframe.dynamics.tied_slide_rock import tied_slide_rock
+
+        self._rest  # noqa: B018 - refuses a block that its links tip over
+        bare = slide_rock_of(self.body, self.friction, self.body.maximum_restitution, self.gravity)
+        if not self.chain_ties:  # of loads that are masses
+            return slide_rock(bare, mass=self.body.mass)
+        return tied_slide_rock(bare, self.chain_ties, mass=self.body.mass)
+
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of slip, rotation and rise, with links."""
+        return self._model
+
+
+@dataclass(frozen=True)
+class TiedSlidingSetting(TiedSetting):
     """A block with links on rigid ground, on which it slides."""
 
     impact: Impact = Impact.COULOMB  # law of its impacts
@@ -59,29 +85,11 @@ class TiedSlidingSetting(StackSetting):
             "options make no difference)",
             numbers=[
                 *told.numbers,
-                ("friction at rest, and of slip", self.frictions[0].words()),
+                ("friction at rest, and of slip", self.friction.words()),
                 ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
             ],
             left_out=[one for one in told.left_out if one != "sliding"],
         )  # fmt: skip
-
-    @cached_property
-    def _sliding_model(self) -> "ContactModel":
-        """The equations of slip, rotation and rise, with links."""
-        from rockframe.dynamics.slide_rock_model import slide_rock
-        from rockframe.dynamics.tied_slide_rock import tied_slide_rock
-
-        self._rest  # noqa: B018 - refuses a block that its links tip over
-        bare = slide_rock_of(
-            self.body, self.frictions[0], self.body.maximum_restitution, self.gravity
-        )
-        if not self.chain_ties:  # of loads that are masses
-            return slide_rock(bare, mass=self.body.mass)
-        return tied_slide_rock(bare, self.chain_ties, mass=self.body.mass)
-
-    def contact_model(self) -> "ContactModel":
-        """Give the equations of slip, rotation and rise, with links."""
-        return self._sliding_model
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the block slipped."""
@@ -92,7 +100,7 @@ def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
     """Give the setting of a block with links: of one that slides where the ground has friction."""
     found = friction_under(ground, held.options)
     if found is None:
-        return held
+        return TiedSetting(held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties)
     faults = sheared(held)
     faults += ill_posed(held.body, found.kinetic)
     if faults:

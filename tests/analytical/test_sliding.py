@@ -9,7 +9,7 @@ from plainly import plainly
 import rockframe as rf
 from rockframe.dynamics.events import EventKind
 from rockframe.dynamics.protocol import IMPACT_LOSS, Ground
-from rockframe.dynamics.slide_motion import REMEMBERED, SIZE, SLIP, SLIPS
+from rockframe.dynamics.slide_motion import REMEMBERED, ROTATION, SIZE, SLIP, SLIPS
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 
 pytestmark = pytest.mark.analytical
@@ -149,10 +149,10 @@ def test_impacts_after_rocking_about_a_held_corner(slenderness, share, side):
     block = rf.Block(width="1 m", height=f"{slenderness} m", mass="1 t")
     system = standing(block, friction).assembly.model.system
     state, memory = np.zeros(2 * SIZE), np.zeros(len(REMEMBERED))
-    state[SIZE + 1] = -0.3 * side
+    state[SIZE + ROTATION] = -0.3 * side
     corner, other = (1, 2) if side > 0.0 else (2, 1)
     mode = system.roll_over(SLIPS * corner, state, Ground(0.0, 0.0), memory)
-    rate, slip = state[SIZE + 1], state[SIZE + SLIP]
+    rate, slip = state[SIZE + ROTATION], state[SIZE + SLIP]
     if share > 1.0:
         assert rate == pytest.approx(-0.3 * side * block.maximum_restitution, rel=1e-12)
         assert slip == 0.0
@@ -194,9 +194,9 @@ def test_impacts_that_stick_are_housners_whatever_the_friction():
     ground = rf.RigidGround(friction=0.05, impact="stick")
     system = rf.System(SLENDER, ground).assembly.model.system
     state, memory = np.zeros(2 * SIZE), np.zeros(len(REMEMBERED))
-    state[SIZE + 1] = -0.3
+    state[SIZE + ROTATION] = -0.3
     system.roll_over(SLIPS, state, Ground(0.0, 0.0), memory)
-    assert state[SIZE + 1] == pytest.approx(-0.3 * SLENDER.maximum_restitution, rel=1e-12)
+    assert state[SIZE + ROTATION] == pytest.approx(-0.3 * SLENDER.maximum_restitution, rel=1e-12)
 
 
 def kinds_under(acceleration, friction, kinetic=None):

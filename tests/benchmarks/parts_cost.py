@@ -1,11 +1,13 @@
 """What each part costs a run that has it, beside the same run without it.
 
-Run from the root, with ``PYTHONPATH=.``: ``python tests/benchmarks/parts_cost.py``. Writes
-docs/data/parts_cost.json. Runs with and without a part take turns, so that other work on the
-machine meets both; a ratio is that of the least processor times.
+Run from the root, with ``PYTHONPATH=.``: ``python tests/benchmarks/parts_cost.py``, and with words
+that are in the names of parts to measure these anew. Writes docs/data/parts_cost.json. Runs with
+and without a part take turns, so that other work on the machine meets both; a ratio is that of the
+least processor times.
 """
 
 import json
+import sys
 import time
 import warnings
 from pathlib import Path
@@ -90,6 +92,17 @@ def scenes():
             )
             for count in (2, 4, 8)
         },
+        **{
+            f"stack of {count}, friction that {name}, rigid joints": (
+                rf.System(stack(count, rf.RigidGround()), rf.RigidGround()),
+                rf.System(stack(count, joint), joint), peak / high(count),
+            )
+            for name, joint, peak in (
+                ("holds", rf.RigidGround(friction=5.0, kinetic_friction=0.5), 10.4),
+                ("slips", rf.RigidGround(friction=0.2), 10.4),
+            )
+            for count in (2, 4)
+        },
     }  # fmt: skip
 
 
@@ -124,8 +137,11 @@ def _shown(number):
 
 def main():
     warnings.simplefilter("ignore")
-    table = {}
+    words = sys.argv[1:]
+    table = json.loads(DATA.read_text(encoding="utf-8")) if words else {}
     for name, (without, having, peak) in scenes().items():
+        if words and not any(one in name for one in words):
+            continue
         table[name] = {level: measured(without, having, motion(peak), level) for level in LEVELS}
         print(name, table[name], flush=True)
         DATA.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")

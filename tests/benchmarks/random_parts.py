@@ -1,7 +1,7 @@
-"""Random scenes of walls, frames and tendons: none may end otherwise than by its verdict.
+"""Random scenes of walls, frames, tendons and friction: none may end but by its verdict.
 
 Run from the root, with ``PYTHONPATH=.``:
-``python tests/benchmarks/random_parts.py --runs 10000 --json docs/data/random_parts.json``.
+``python tests/benchmarks/random_parts.py --json docs/data/random_parts.json``; `--parts` for some.
 """
 
 import argparse
@@ -16,7 +16,42 @@ import numpy as np
 import rockframe as rf
 
 GRAVITY = 9.80665
-PARTS = ("stiff wall", "frame", "frame with tendons")
+COMPLETE = 2  # the last status of runs that come to their end: completed, overturned, toppled
+PARTS = (
+    "stiff wall", "frame", "frame with tendons", "friction on pads", "friction on soil",
+    "elastic wall on rigid ground", "elastic wall on pads",
+)  # fmt: skip
+RUNS = dict.fromkeys(PARTS[:3], 10_000) | dict.fromkeys(PARTS[3:], 1000)
+
+
+def drawn_base(on, friction, rng):
+    """Give a random base, with friction or without."""
+    if on == "rigid ground":
+        return rf.RigidGround(**friction)
+    if on == "pads":
+        return rf.TwoSpringSupport(
+            frequency_ratio=rng.uniform(8.0, 40.0), damping_ratio=rng.uniform(0.0, 0.4), **friction
+        )
+    stiffness = f"{10.0 ** rng.uniform(5.5, 8.0)} Pa"
+    return rf.WinklerSoil(stiffness=stiffness, damping_ratio=rng.uniform(0.0, 0.4), **friction)
+
+
+def drawn_friction(width, height, rng):
+    """Give random coefficients, half of them near what parts sliding from rocking."""
+    static = rng.choice([rng.uniform(0.02, 1.0), width / height * rng.uniform(0.6, 1.5)])
+    return {"friction": static, "kinetic_friction": min(static * rng.uniform(0.5, 1.0), 0.6)}
+
+
+def drawn_wall(width, height, rng):
+    """Give a random elastic wall behind a block of 2 t."""
+    stiffness = 2e3 * GRAVITY / height * 10.0 ** rng.uniform(0.0, 4.0)
+    side, damped = str(rng.choice(["left", "right"])), rng.random() < 0.7
+    damping = rng.uniform(0.0, 0.3) * np.sqrt(stiffness * 2e3) * damped
+    gap = width * rng.choice([0.0, 10.0 ** rng.uniform(-4.0, -1.0)])
+    return rf.RearWall(
+        side=side, stiffness=f"{stiffness} N/m", damping=f"{damping} N s/m", gap=f"{gap} m",
+        height=f"{height * rng.uniform(0.2, 1.0)} m",
+    )  # fmt: skip
 
 
 def drawn(part, rng):
@@ -27,6 +62,12 @@ def drawn(part, rng):
     if part == "stiff wall":
         side = str(rng.choice(["left", "right"]))
         system = rf.System(block, rf.RearWall(side=side, restitution=rng.uniform(-1.0, 0.0)))
+    elif " on " in part:
+        what, on = part.split(" on ")
+        slides = what == "friction" or rng.random() < 0.5
+        friction = drawn_friction(width, height, rng) if slides else {}
+        walls = [drawn_wall(width, height, rng)] if what == "elastic wall" else []
+        system = rf.System(block, drawn_base(on, friction, rng), *walls)
     else:
         columns = int(rng.integers(2, 6))
         frame = rf.RockingFrame(block, columns=columns, beam_mass=f"{rng.uniform(0.0, 40.0)} t")
@@ -41,25 +82,34 @@ def drawn(part, rng):
         system = rf.System(frame, *(tendons if part == "frame with tendons" else []))
     noise = np.convolve(rng.normal(size=80), np.hanning(rng.integers(5, 25)), "same")
     noise *= GRAVITY * width / height * rng.uniform(0.8, 5.0) / np.abs(noise).max()
-    return system, rf.GroundMotion.from_arrays((noise, "m/s^2"), time_step="0.04 s")
+    if " on " not in part or rng.random() < 0.5:
+        return system, rf.GroundMotion.from_arrays((noise, "m/s^2"), time_step="0.04 s")
+    up = (rng.uniform(0.1, 1.5) * GRAVITY * rng.normal(size=80), "m/s^2")
+    motion = rf.GroundMotion.from_arrays((noise, "m/s^2"), time_step="0.04 s", vertical=up)
+    return system, motion
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=2000)
+    parser.add_argument("--runs", type=int, help="of each part and accuracy")
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS)
     parser.add_argument("--seconds", type=float, default=np.inf, help="of each part and accuracy")
     parser.add_argument("--json", type=Path)
     given = parser.parse_args()
     warnings.simplefilter("ignore")
-    table = {}
-    for part in PARTS:
+    # what is not drawn anew stays
+    known = given.json is not None and given.json.exists()
+    table = json.loads(given.json.read_text(encoding="utf-8")) if known else {}
+    for part in given.parts:
         for accuracy in ("fast", "standard"):
             begun, ends, worst, count = time.monotonic(), Counter(), 0.0, 0
-            while count < given.runs and time.monotonic() < begun + given.seconds:
+            while count < (given.runs or RUNS[part]) and time.monotonic() < begun + given.seconds:
                 system, motion = drawn(part, np.random.default_rng(count))
                 try:
                     run = system.simulate(motion, accuracy=accuracy, outputs=("energy",))
                     ends[f"status {int(run.status)}"] += 1
+                    if int(run.status) > COMPLETE:
+                        print(part, accuracy, count, run.attrs["verdict"], flush=True)
                     worst = max(worst, float(run.energy_residual))
                 except Exception as fault:
                     ends[type(fault).__name__] += 1

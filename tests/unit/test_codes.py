@@ -42,6 +42,34 @@ def test_the_worked_numbers_of_a_wall_of_six_metres():
     assert sources["T_SLC"] == "C8.7.1.11"
 
 
+def test_damage_begins_as_the_mechanism_is_activated():
+    for acceleration, stands in ((0.8, True), (0.83, False)):
+        check = rf.codes.circolare_2019(
+            LOW, spectrum(0.05, acceleration), confidence_factor=1, limit_state="SLD",
+            elastic_period="0.5 s",
+        )  # fmt: skip
+        assert check.passed == {"kinematic, SLD": stands}
+        assert check.value("S_e(T_0)") == pytest.approx(acceleration)
+    motions = rf.codes.circolare_2019(LOW, PULSES, limit_state="SLD", elastic_period="0.5 s")
+    found = rf.response_spectrum(PULSES, ["0.5 s"], 0.05).pseudo_spectral_acceleration
+    assert motions.value("S_e(T_0)") == pytest.approx(float(found.mean()))
+
+
+def test_overburden():
+    """By hand: a floor of 2 t at the top, 0.1 m from the face to which the wall falls."""
+    floor = rf.Load(at=("-0.15 m", "6 m"), moving_mass="2 t")
+    system = rf.System(WALL, rf.RigidGround(), floor, gravity="9.81 m/s^2")
+    check = rf.codes.circolare_2019(system, spectrum(), confidence_factor=1)
+    beside, level, square = 5.7 * 0.25 + 2 * 0.1, 5.7 * 3.0 + 2 * 6.0, 5.7 * 9.0 + 2 * 36.0
+    assert check.value("alpha_0") == pytest.approx(beside / level)
+    assert check.value("e*") == pytest.approx(level**2 / (7.7 * square))
+    assert check.value("d_0") == pytest.approx(beside * square / level**2)
+    with pytest.raises(ComponentError, match="which may carry loads that are masses"):
+        rf.codes.circolare_2019(
+            rf.System(WALL, rf.Load(at=("0 m", "6 m"), vertical="1 kN")), spectrum()
+        )
+
+
 def test_the_side_that_falls():
     eccentric = WALL.replace(eccentricity="0.05 m")
     free = rf.codes.circolare_2019(rf.System(eccentric), spectrum())
@@ -95,7 +123,9 @@ def test_what_cannot_be_checked_is_refused(given, words):
 
 
 def test_faults_of_arguments():
-    with pytest.raises(ComponentError, match="'SLV', 'SLC', got 'SLD'"):
+    with pytest.raises(ComponentError, match="'SLV', 'SLC', 'SLD', got 'SLO'"):
+        rf.codes.circolare_2019(LOW, spectrum(), limit_state="SLO")
+    with pytest.raises(ComponentError, match="elastic_period goes with limit_state='SLD'"):
         rf.codes.circolare_2019(LOW, spectrum(), limit_state="SLD")
     with pytest.raises(ComponentError, match="1 or more"):
         rf.codes.circolare_2019(LOW, spectrum(), confidence_factor=0.9)

@@ -136,10 +136,15 @@ class LinkPoints(LinkRows):
         )
 
     @inlined
-    def watched(self, row: Vector, room: Vector) -> Stretch:
-        """Give how a link is stretched, with its acceleration, as forces are known."""
+    def watched(self, row: Vector, room: Vector, idle: bool) -> Stretch:
+        """Give how a link is stretched, with its acceleration, as forces are known.
+
+        Of one that is idle without that.
+        """
         on, to = self.points_of(row, room)
         found, x, y = self.drawn(row, on, to)
+        if idle:
+            return found
         on_x, on_y = self.accelerated_point(int(row[ON]), on, room)
         to_x, to_y = self.accelerated_point(int(row[TO]), to, room)
         speed_x, speed_y = on.speed_x - to.speed_x, on.speed_y - to.speed_y

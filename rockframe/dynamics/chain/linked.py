@@ -58,17 +58,19 @@ class Linked(LinkPoints):
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
+            each = law.variables()
+            rates = stretch(out, self.coordinates() + i * each, each)
+            if law.idles(standing):
+                for j in range(each):
+                    rates[j] = 0.0
+                continue
             on, to = self.points_of(row, room)
             link = self.drawn(row, on, to)
             force = law.force(standing, link.stretch, own)
             lost += law.power(standing, link.stretch, own)
             self.load_point(int(row[ON]), on, -force * link.x, -force * link.y, room, lies)
             self.load_point(int(row[TO]), to, force * link.x, force * link.y, room, lies)
-            each = law.variables()
-            law.rates(
-                standing, link.stretch, own,
-                stretch(out, self.coordinates() + i * each, each),
-            )  # fmt: skip
+            law.rates(standing, link.stretch, own, rates)
         return lost
 
     @inlined
@@ -97,17 +99,29 @@ class Linked(LinkPoints):
     @kernel
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Give the guards of the bodies, then of each link in turn, and their rates."""
-        found = self.guards_of_bodies(mode, state, slope, ground)
-        self.forces_from(mode, state, slope, ground)
+        found, idle = self.guards_of_bodies(mode, state, slope, ground), self.all_idle(mode)
         room, values, changes = self.places(), self.guard_room(0), self.guard_room(1)
+        if idle and self.moving_in(mode) == 0:
+            for i in range(self.own_guards(), len(values)):
+                values[i], changes[i] = 1.0, 0.0
+            return found
+        if idle:
+            self.set_out(mode, state, room)
+        else:
+            self.forces_from(mode, state, slope, ground)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
-            link, first = self.watched(row, room), self.own_guards() + GUARDS * i
+            link, first = self.watched(row, room, idle), self.own_guards() + GUARDS * i
             for which in range(GUARDS):
                 value, change = law.guard(which, standing, link, own)
                 values[first + which], changes[first + which] = value, change
         return found
+
+    @inlined
+    def all_idle(self, mode: int) -> bool:
+        """Whether it is known at once that no link does anything in a mode."""
+        return False
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:

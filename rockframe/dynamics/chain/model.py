@@ -56,9 +56,8 @@ def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chai
     """Give the equations of bodies upon one another, from the top down, without their ties."""
     kind = RigidChain if some_rigid(links) else Chain
     rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
-    for row in rows:  # what rounds the length of a stiff tie changes its force, which corners bear
-        noise = ROUNDING * sum(one.numbers.stiffness * reach_of(one) for one in ties)
-        row[at.FORCE_SIZE] = max(row[at.FORCE_SIZE], noise / ROUNDING_OF_FORCES)
+    for row in rows:
+        row[at.FORCE_SIZE] = max(row[at.FORCE_SIZE], rounding_of_ties(ties) / ROUNDING_OF_FORCES)
     return kind(*lists_of(rows))
 
 
@@ -200,6 +199,11 @@ def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
         Column(column_of(one.name, k), one.per_mass, one.mass_ratio)
         for one in (*own, *base.columns, *unused)
     )
+
+
+def rounding_of_ties(ties: Sequence[ChainLink]) -> float:
+    """Give by how much the rounding of the lengths of stiff ties changes what corners bear."""
+    return ROUNDING * sum(one.numbers.stiffness * reach_of(one) for one in ties)
 
 
 def reach_of(tie: ChainLink) -> float:

@@ -54,3 +54,32 @@ def test_a_ladder_does_not_repeat_what_the_scene_has_warned_of():
     with pytest.warns(ModelWarning, match="restitution"):
         system = rf.System(BLOCK, rf.RigidGround(restitution=1.0))
     assert len(rf.model_ladder(system)) == 2
+
+
+TIE = rf.Restrainer(on=("-0.5 m", "3 m"), to=("-2 m", "3 m"), stiffness="1 MN/m", slack="5 mm")
+UPON = rf.Stack(BLOCK, BLOCK, interfaces=[PADS])
+BENT = rf.RockingFrame(BLOCK, columns=2, beam_mass="1 t")
+LOAD = rf.Load(at=("0 m", "4 m"), vertical="5 kN")
+
+
+@pytest.mark.parametrize(
+    ("parts", "bases", "acts"),
+    [
+        ((BLOCK, PADS, TIE, LOAD), ("rigid ground", "two pads"), "restrainers and loads"),
+        ((UPON, TIE), ("stack on rigid ground",), "restrainers"),
+        ((BENT, rf.Tendon(stiffness="1 MN/m")), ("rigid ground",), "tendons"),
+    ],
+)
+def test_each_base_comes_without_and_with_what_pulls(parts, bases, acts):
+    system = rf.System(*parts)
+    ladder = rf.model_ladder(system)
+    rungs = [(f"{base}, small rotations", base, f"{base} with {acts}") for base in bases]
+    assert list(ladder) == [name for names in rungs for name in names]
+    assert list(ladder.values())[-1].to_dict() == system.to_dict()
+
+
+def test_a_tied_block_is_held_before_it_slides():
+    ladder = rf.model_ladder(rf.System(BLOCK, rf.RigidGround(friction=0.2), TIE))
+    assert list(ladder)[-2:] == [
+        "rigid ground with restrainers", "rigid ground with restrainers, sliding",
+    ]  # fmt: skip
