@@ -9,7 +9,7 @@ from reference_models.rigid_pair_sliding.drawing import draw, draw_giving
 pytestmark = pytest.mark.reference_models
 
 # on pads and on beds, below and above the rigid base
-ON_SPRINGS = (0, 1, 2, 3)
+ON_SPRINGS = (2, 6, 8)
 
 
 @pytest.mark.skipif(not have_records(), reason="no recorded motions")
@@ -21,6 +21,7 @@ def test_random_scenes(number):
     assert one.same_verdict
 
 
+@pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
 @pytest.mark.parametrize("number", ON_SPRINGS)
 def test_random_scenes_of_which_one_base_gives_way(number):
     one = compared(draw_giving([8, number]))
