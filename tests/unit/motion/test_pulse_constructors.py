@@ -147,10 +147,7 @@ def test_type_a_is_one_sine_and_type_b_one_cosine(period):
 
 def test_cosine_is_a_harmonic_of_a_quarter_turn():
     cosine = GroundMotion.cosine_pulse("2 m/s^2", "1.5 Hz", 3)
-    assert (
-        cosine.si.digest
-        == GroundMotion.harmonic("2 m/s^2", "1.5 Hz", "2 s", "90 deg").si.digest
-    )
+    assert cosine.si.digest == GroundMotion.harmonic("2 m/s^2", "1.5 Hz", "2 s", "90 deg").si.digest
     assert cosine.si.horizontal.samples[[0, 64, -1]].tolist() == [2.0, -2.0, 2.0]
 
 
