@@ -270,24 +270,29 @@ def alone(
     vertical = sqrt(base.vertical_stiffness)
     rocking = sqrt(base.rotational_stiffness / (body.inertia + body.height**2))
     fastest = max(vertical, rocking)
+    size, rate = radius_of(body), rocking_rate(body)
+    sizes = np.array([body.angle, base.settlement, size * body.angle])
+    # how the coordinates answer the rounding of a height
+    width = 0.5 * (body.left + body.right)
+    answers = np.array([width / (body.inertia + body.height**2), 1.0, 1.0])
     return ContactModel(
         name=name,
         system=Alone(part),
         rotation_limits=(atan2(body.left, body.height), atan2(body.right, body.height)),
         rotation_weights=np.array([1.0, 0.0, 0.0]),
-        scales=np.concatenate([*_sizes(body, base, vertical), base.variable_scales]),
+        scales=np.concatenate([
+            sizes, sizes * np.array([rate, vertical, rate]), base.variable_scales,
+        ]),
         guard_tolerance=part_tolerance(base),
         columns=(*BODY_COLUMNS, *base.columns),
         memory=MEMORY,
         mass=mass,
         fastest_frequency=fastest,
         damping_rate=base.damping_time * fastest**2,
-        energy_scale=body.gravity * radius_of(body) * body.angle,
+        energy_scale=body.gravity * size * body.angle,
         initial=_starting(part, rest_rotation),
-        rounding=rounding_at(
-            radius_of(body), base.settlement, _answers(body), fastest, len(base.variable_scales)
-        ),
-    )
+        rounding=rounding_at(size, base.settlement, answers, fastest, len(base.variable_scales)),
+    )  # fmt: skip
 
 
 def radius_of(body: Body) -> float:
@@ -309,18 +314,6 @@ def rocking_rate(body: Body) -> float:
 def part_tolerance(base: BaseNumbers) -> Vector:
     """Give the rounding noise of the guards of a body: of both ends, and of the body's own."""
     return np.concatenate([base.end_tolerance, base.end_tolerance, np.full(BODY_GUARDS, ROUNDING)])
-
-
-def _sizes(body: Body, base: BaseNumbers, vertical_frequency: float) -> tuple[Vector, Vector]:
-    sway, rate = radius_of(body) * body.angle, rocking_rate(body)
-    sizes = np.array([body.angle, base.settlement, sway])
-    return sizes, sizes * np.array([rate, vertical_frequency, rate])
-
-
-def _answers(body: Body) -> Vector:
-    """Give how the coordinates answer the rounding of a height."""
-    width = 0.5 * (body.left + body.right)
-    return np.array([width / (body.inertia + body.height**2), 1.0, 1.0])
 
 
 def rounding_at(

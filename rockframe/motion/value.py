@@ -88,7 +88,7 @@ class MotionValue(metaclass=Proposing):
     @property
     def sha256(self) -> str:
         """Digest of time step, samples and pieces: the identity of what is simulated."""
-        return self.si.digest()
+        return self.si.digest
 
     @property
     def time_step(self) -> Quantity:

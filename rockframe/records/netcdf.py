@@ -183,7 +183,7 @@ def stored_motion(dataset: xr.Dataset) -> dict[str, Any]:
         found = f"a dataset that holds no ground motion: {problem}"
         raise NoMotionError(found) from problem
     written = attributes.get("motion_sha256")
-    if written is not None and written != si.digest():
+    if written is not None and written != si.digest:
         found = "samples that differ from those the attribute 'motion_sha256' was written for"
         expected = "the same; delete the attribute if they were changed on purpose"
         raise NoMotionError(found, expected)

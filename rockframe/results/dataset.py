@@ -44,7 +44,18 @@ def build_dataset(
     names = dict.fromkeys((*COORDINATES, *own))
     coordinates = {name: variables.pop(name) for name in names if name in variables}
     dataset = xr.Dataset(
-        variables, coords=coordinates, attrs=_attributes(attributes, title, source)
+        variables,
+        coords=coordinates,
+        attrs={
+            "Conventions": CONVENTIONS,
+            "title": title,
+            "history": dated("computed"),
+            "source": f"rockframe {__version__}, {source}",
+            "references": PAPER_TITLE,
+            "rockframe_version": __version__,
+            "schema_version": SCHEMA_VERSION,
+            **attributes,
+        },
     )
     # labelled in place, since xarray copies each variable that it is handed with attributes
     for name, label in labels.items():
@@ -71,16 +82,3 @@ def dated(done: str) -> str:
     """Give a line of a dataset's history: when, and what was done by which version."""
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return f"{now} {done} by rockframe {__version__}"
-
-
-def _attributes(given: Mapping[str, str | float | int], title: str, source: str) -> dict[str, Any]:
-    return {
-        "Conventions": CONVENTIONS,
-        "title": title,
-        "history": dated("computed"),
-        "source": f"rockframe {__version__}, {source}",
-        "references": PAPER_TITLE,
-        "rockframe_version": __version__,
-        "schema_version": SCHEMA_VERSION,
-        **given,
-    }

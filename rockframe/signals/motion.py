@@ -117,12 +117,9 @@ class Motion:
         horizontal = change(self.horizontal)
         return Motion(horizontal, None if self.vertical is None else change(self.vertical))
 
-    def digest(self) -> str:
-        """Give the sha256 of time step, samples and polynomials: what a simulation sees."""
-        return self._digest
-
     @cached_property
-    def _digest(self) -> str:
+    def digest(self) -> str:
+        """The sha256 of time step, samples and polynomials: what a simulation sees."""
         total = hashlib.sha256(b"rockframe motion 1")
         total.update(struct.pack("<d", self.time_step))
         samples = (self.horizontal.samples, self.vertical and self.vertical.samples)

@@ -147,7 +147,7 @@ class Response:
         ]  # fmt: skip
         _ = self.scalars  # what is missing of them is said, too
         return [
-            *_unfinished(self.system, summary),
+            *([] if summary.status.finished else [(SolverWarning, _verdict(self.system, summary))]),
             *((SolverWarning, text) for text in moving),
             *([] if audit is None else [(SolverWarning, audit)]),
             *((ModelWarning, text) for text in (self.uniqueness or NOT_LOOKED_AT).cautions),
@@ -317,11 +317,6 @@ def has_no_cautions(system: Assembly, summary: Summary) -> bool:
 def _verdict(system: Assembly, summary: Summary) -> str:
     end = system.model.rotation_in(summary.ending.state)
     return verdict(summary, system.setting, end=end)
-
-
-def _unfinished(system: Assembly, summary: Summary) -> Iterator[Caution]:
-    if not summary.status.finished:
-        yield SolverWarning, _verdict(system, summary)
 
 
 def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:

@@ -1,6 +1,7 @@
 """Whether parts fit one another."""
 
 import math
+from inspect import getattr_static
 from typing import Final, NamedTuple
 
 from rockframe.components import Component, RearWall, RigidGround, Stack, Tendon
@@ -154,13 +155,13 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
 
 def contradictions(parts: Parts) -> list[str]:
     """Say which sizes of parts contradict one another, though they can be simulated."""
-    # of each the depth that it was built with, where that is known
-    depths = {
-        type(part).__name__: float(depth.m_as("m"))
-        for part in (parts.cap or parts.block, parts.soil)
-        # of its class, since a component that lacks it proposes others
-        if hasattr(type(part), "depth") and (depth := getattr(part, "depth")) is not None  # noqa: B009
-    }
+    depths: dict[str, float] = {}  # that each was built with, where that is known
+    for part in (parts.cap or parts.block, parts.soil):
+        # a component that has no depth would first look for what was meant
+        known = getattr_static(part, "depth", None) is not None
+        depth = getattr(part, "depth", None) if known else None
+        if depth is not None:
+            depths[type(part).__name__] = float(depth.m_as("m"))
     if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_ROUNDING_OF_DEPTHS):
         return []
     (upper, above), (lower, below) = depths.items()

@@ -100,7 +100,7 @@ def test_changing_the_dataset_leaves_the_motion_alone():
     digest = motion.sha256
     dataset = motion.to_dataset()
     dataset["acceleration"].values[:] = 0.0
-    assert motion.si.digest() == digest
+    assert motion.si.digest == digest
 
 
 def test_polynomials_without_samples_are_refused():

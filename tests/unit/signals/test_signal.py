@@ -80,7 +80,7 @@ def test_the_vertical_component_has_its_own_pieces():
     assert motion.at([0.013]).tolist() == ANALYTIC.at([0.013]).tolist()
     assert Motion(RECORD, ANALYTIC).analytic
     assert not Motion(RECORD, RECORD).analytic
-    assert Motion(RECORD, ANALYTIC).digest() != motion.digest()
+    assert Motion(RECORD, ANALYTIC).digest != motion.digest
 
 
 def test_both_components_are_changed_alike():
@@ -100,7 +100,7 @@ def test_both_components_are_changed_alike():
 def test_copies_are_equal_and_read_only(twin):
     motion = Motion(ANALYTIC, RECORD)
     again = twin(motion)
-    assert again.digest() == motion.digest()
+    assert again.digest == motion.digest
     for signal in (again.horizontal, again.vertical):
         assert not signal.samples.flags.writeable
         assert not signal.pieces.flags.writeable
