@@ -20,6 +20,9 @@ _WRITTEN: Final = {"g_0": "g", "deg": "°", "degree": "°", "degrees": "°"}
 _READ: Final = {("g", kinds.ACCELERATION): "g_0"}
 """What is meant by a letter that is a unit of something else too."""
 _BELOW: Final = re.compile(r"\s*/\s*([^\W\d_]+)(?:\^(\d+))?")
+_NUMBER: Final = r"-?\d[\d.]*(?:e[+-]?\d+)?"
+_SENTENCES: Final = ("verdict",)
+"""Attributes of datasets that tell numbers with their units."""
 UnitsLike: TypeAlias = Mapping[str, str] | None
 """Units by what they are of, such as ``{"force": "kN"}``."""
 KINDS: Final[Mapping[str, Measure]] = {
@@ -90,9 +93,26 @@ class ReaderUnits:
                 shown_in = dataset[name].copy(data=unit.of(values.to_numpy()))
                 found[str(name)] = shown_in.assign_attrs(units=unit.words)
         coords = {name: found.pop(name) for name in list(found) if name in dataset.coords}
-        return dataset.assign(found).assign_coords(
-            {name: (one.dims, one.data, one.attrs) for name, one in coords.items()}
+        told = {name: self.of_sentence(str(dataset.attrs[name])) for name in _SENTENCES
+                if name in dataset.attrs}  # fmt: skip
+        return (
+            dataset.assign(found)
+            .assign_attrs(told)
+            .assign_coords({name: (one.dims, one.data, one.attrs) for name, one in coords.items()})
         )
+
+    def of_sentence(self, text: str) -> str:
+        """Write the numbers of a sentence that are in SI units in these units."""
+        for si, unit in self.chosen.items():
+            numbers = rf"(?:({_NUMBER}) (to|and) )?({_NUMBER}) {re.escape(si)}(?!\w|\^| s\^)"
+
+            def written(found: "re.Match[str]", unit: Shown = unit) -> str:
+                first, word, last = found.groups()
+                shown_as = [f"{float(one) / unit.size:.4g}" for one in (first, last) if one]
+                return f"{f' {word} '.join(shown_as)} {unit.words}"
+
+            text = re.sub(numbers, written, text)
+        return text
 
 
 def reader_units(given: object, *, owner: str) -> ReaderUnits:

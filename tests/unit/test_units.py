@@ -14,6 +14,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import ComponentError, RockframeError
 from rockframe.units import LENGTH, to_si, to_si_values
+from rockframe.units.shown import reader_units
 
 pytestmark = pytest.mark.unit
 
@@ -621,3 +622,9 @@ def test_columns_of_floats_are_converted_as_each_of_them(unit):
     assert found == [
         to_si((number, unit), LENGTH, owner="here", name="width") for number in numbers
     ]
+
+
+def test_sentences_are_told_in_the_units_of_the_reader():
+    units = reader_units({"acceleration": "g", "length": "mm"}, owner="a figure")
+    told = units.of_sentence("from 9.80665 to 19.6133 m s^-2, 0.02 m, -1e-3 m; 2 m s^-1, 3 m s^-2.")
+    assert told == "from 1 to 2 g, 20 mm, -1 mm; 2 m s^-1, 0.3059 g."
