@@ -182,11 +182,15 @@ def test_other_answers_are_tables_too():
 
 def test_what_has_other_dimensions_has_rows_of_its_own():
     """Rows are added, and not multiplied by dimensions that have nothing to do with them."""
-    curves = xr.Dataset({
-        "response_fractile": (("quantile", "scale"), np.ones((2, 5))),
-        "overturned_count": ("scale", np.arange(5)),
-        "intensity_fractile": (("quantile", "response_level"), np.ones((2, 3))),
-    }, {"quantile": [0.1, 0.9], "scale": np.arange(5.0), "response_level": [0.1, 0.2, 0.3]})  # fmt: skip
+    labels = {"quantile": [0.1, 0.9], "scale": np.arange(5.0), "response_level": [0.1, 0.2, 0.3]}
+    curves = xr.Dataset(
+        {
+            "response_fractile": (("quantile", "scale"), np.ones((2, 5))),
+            "overturned_count": ("scale", np.arange(5)),
+            "intensity_fractile": (("quantile", "response_level"), np.ones((2, 3))),
+        },
+        labels,
+    )
     table = rf.table(curves)
     assert len(table) == 2 * 5 + 2 * 3
     assert set(table.index.names) == {"quantile", "scale", "response_level"}
