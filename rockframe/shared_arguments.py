@@ -103,6 +103,11 @@ def _unknown(function: str, name: str, known: Iterable[str]) -> str:
             f"{function}() takes no {name!r}; the width of a bracket is 'bracket_{name}', and "
             "incremental_dynamic_analysis takes axes such as that of a block"
         )
+    if name == "axes":
+        return (
+            f"{function}() takes no 'axes': it is about one system; incremental_dynamic_analysis "
+            "takes them, and finds the critical scale of each combination as capacity_scale"
+        )
     return f"{function}() takes no {name!r}{meant(name, names)} It takes {', '.join(names)}"
 
 

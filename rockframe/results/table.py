@@ -1,5 +1,6 @@
 """Results as tables: a row for each run, for each sample or for each event."""
 
+import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from enum import StrEnum
 from typing import Any, Final, cast
@@ -63,7 +64,10 @@ def table(
         alone where there is no unit or it is 1. Flags are words, such as ``right``; truth
         values are True and False.
 
-        Index, of joined runs: their dimensions, one row for each combination. Of a single run,
+        Index, of joined runs: their dimensions, one row for each combination. Variables of unlike
+        dimensions, such as responses over the intensity and intensities over the response, have
+        rows of their own, one below the other, in which what the others go over is missing; to
+        have some alone give ``dataset[["name"]]``. Of a single run,
         or of several: the name of the motion where all have one, and coordinates without
         dimension; then the number of the run in the list, where these do not tell the runs
         apart. Histories add ``time [s]``, events their number.
@@ -169,6 +173,36 @@ def _rows(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
     if not names:
         msg = f"{_OWNER}: the dataset holds no {kind}; {_MISSING[kind]}"
         raise SchemaError(msg)
+    groups = _together(run, names)
+    frames = [_rows_of(run, kind, group) for group in groups]
+    if len(frames) == 1:
+        return frames[0]
+    below = pd.concat([frame.reset_index() for frame in frames], ignore_index=True)
+    heads = [_head(dim, run.variables[dim]) if dim in run.variables else dim
+             for dim in _dimensions(run, names)]  # fmt: skip
+    return below.set_index(heads)
+
+
+def _together(run: xr.Dataset, names: Sequence[str]) -> list[list[str]]:
+    """Divide variables into those whose dimensions lie within those of one of them.
+
+    One that fits to several goes where the rows are fewest.
+    """
+    dims = {name: frozenset(run.variables[name].dims) for name in names}
+    widest = [
+        one for one in dict.fromkeys(dims.values()) if not any(one < of for of in dims.values())
+    ]
+    found: dict[frozenset[Hashable], list[str]] = {one: [] for one in widest}
+    for name, own in dims.items():
+        around = [one for one in widest if own <= one]
+        found[min(around, key=lambda one: math.prod(run.sizes[dim] for dim in one))].append(name)
+    return list(found.values())
+
+
+def _rows_of(run: xr.Dataset, kind: Contents, names: list[str]) -> pd.DataFrame:
+    """Give the rows of variables that go together."""
+    import pandas as pd
+
     dims = _dimensions(run, names)
     variables = run.variables
     if not dims:

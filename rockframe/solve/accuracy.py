@@ -127,7 +127,11 @@ def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
         near = nearest(choice, map(str, AccuracyLevel))
         msg = f"accuracy must be {known}, got {shown(choice)}{near}"
         if isinstance(choice, str) and choice == "screen":
-            msg += "; sweeps, and analyses made of them, screen"
+            msg += (
+                "; sweeps, and analyses made of them, screen, such as "
+                "incremental_dynamic_analysis, which finds critical scales: here give "
+                f"'{AccuracyLevel.STANDARD}'"
+            )
         raise SolverError(msg) from None
 
 

@@ -1,5 +1,6 @@
 """Axes of an analysis that follows lines of scales: a line for each of their combinations."""
 
+import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
@@ -38,14 +39,25 @@ class LineAxes:
             for axis, places in zip(self.axes, grid, strict=True)
         }
 
+    def beside(self, rows: Mapping[str, tuple[Generic, str]]) -> dict[str, tuple[Generic, str]]:
+        """Give rows of a table in each of their combinations, which are fastest."""
+        count, own = math.prod(self.sizes.values()), self.columns
+        found = {name: (np.repeat(each, count), unit) for name, (each, unit) in rows.items()}
+        repeats = max((len(each) for each, _ in rows.values()), default=1)
+        return found | {name: (np.tile(each, repeats), unit) for name, (each, unit) in own.items()}
+
+    @property
+    def labels(self) -> dict[str, xr.Variable]:
+        """Their values, by their names."""
+        return {
+            axis.name: xr.Variable(axis.name, axis.values, axis.attributes()) for axis in self.axes
+        }
+
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
         """Give what runs over the rows of the table the dimensions of the axes."""
         if not self.axes:
             return runs
-        labels = {
-            axis.name: xr.Variable(axis.name, axis.values, axis.attributes()) for axis in self.axes
-        }
-        return over_rows(runs, self.sizes, labels)
+        return over_rows(runs, self.sizes, self.labels)
 
 
 def over_rows(
@@ -64,9 +76,14 @@ def over_rows(
 
 
 def read_line_axes(
-    given: object, scene: SweptScene, *, owner: str, others: Sequence[str]
+    given: object,
+    scene: SweptScene,
+    *,
+    owner: str,
+    others: Sequence[str],
+    beside: Sequence[Axis] = (),
 ) -> LineAxes:
-    """Read the axes of an analysis; `others` are names of its arguments."""
+    """Read the axes of an analysis; `others` are names of its arguments, `beside` its own axes."""
     if given is None:
         return LineAxes()
     if not isinstance(given, Mapping):
@@ -84,7 +101,7 @@ def read_line_axes(
             argument = nearest(name, others)
             faults += [one if argument in one else f"{one}{argument}" for one in told]
     faults += _faults(found)
-    faults += scene.faults(found)
+    faults += scene.faults([*beside, *found])
     if faults:
         raise StudyError(*faults)
     return LineAxes(tuple(found))

@@ -1,7 +1,7 @@
 """Spectra of rocking and of overturning: motions and blocks of all sizes."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, Unpack
 
 import numpy as np
@@ -11,13 +11,14 @@ from rockframe.comparison.models import check_system
 from rockframe.components import Block
 from rockframe.errors import ComponentError, StudyError, collected_warnings, shown
 from rockframe.results.dataset import build_dataset
+from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import POWERS, Intensity, of_motions, of_study, unscaled_motions
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.line_axes import over_rows
+from rockframe.studies.line_axes import over_rows, read_line_axes
 from rockframe.studies.lines import (
     CAPACITY,
     SCALE,
@@ -33,6 +34,7 @@ from rockframe.studies.lines import (
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.motions import MotionsLike, named_motions
+from rockframe.studies.sweeps.scenes import scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Unit
 
@@ -48,7 +50,9 @@ class BlockSizes:
     Its attribute ``system`` is that system, with the block told by its shape factor.
     """
 
-    def __init__(self, system: System, periods: Any, slenderness: Any, *, owner: str) -> None:
+    def __init__(
+        self, system: System, periods: Any, slenderness: Any, axes: object = None, *, owner: str
+    ) -> None:
         self.system = _by_shape_factor(system, _block(system, owner))
         si = self.system.parts.the_block
         self.periods = _above_zero(periods, PERIOD, "periods", owner)
@@ -61,12 +65,20 @@ class BlockSizes:
         angle = np.arctan(1.0 / self.slenderness)
         self.width = 2.0 * np.sin(angle)[:, None] * radius
         self.height = 2.0 * np.cos(angle)[:, None] * radius
+        scene = scene_of(self.system)
+        own = [scene.axis(name, each) for name, each in self._sizes.items()]
+        self._axes = read_line_axes(axes, scene, owner=owner, others=_ARGUMENTS, beside=own)
 
     @property
-    def columns(self) -> dict[str, tuple[Array, str]]:
+    def _sizes(self) -> dict[str, tuple[Generic, str]]:
         """Sizes, in rows of a table: slenderness by slenderness."""
         unit = str(LENGTH.unit)
         return {"width": (self.width.ravel(), unit), "height": (self.height.ravel(), unit)}
+
+    @property
+    def columns(self) -> dict[str, tuple[Generic, str]]:
+        """The same in each combination of further axes."""
+        return self._axes.beside(self._sizes)
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
         """Give what runs over the rows of the table the dimensions of the sizes."""
@@ -74,7 +86,8 @@ class BlockSizes:
             {"slenderness": self.slenderness, "rocking_period": self.periods}, {}
         )
         sizes = {"slenderness": len(self.slenderness), "rocking_period": len(self.periods)}
-        return over_rows(runs, sizes, {str(name): labels[name].variable for name in labels.coords})
+        named = {str(name): labels[name].variable for name in labels.coords}
+        return over_rows(runs, sizes | self._axes.sizes, named | self._axes.labels)
 
 
 def _by_shape_factor(system: System, block: Block) -> System:
@@ -130,15 +143,20 @@ def _above_zero(given: Any, measure: Measure, name: str, owner: str) -> Array:
 _ROCKING: Final = "rocking_spectrum"
 _OVERTURNING: Final = "overturning_spectrum"
 _MOST_SCALES: Final = 100_000
+_ARGUMENTS: Final = (
+    *SweepArguments.__annotations__, "periods", "slenderness", "scale", "intensity", "period",
+    "resolution", "bracket_width",
+)  # fmt: skip
 
 
-@takes(SweepArguments)
+@takes(SweepArguments, further="axes")
 def rocking_spectrum(
     system: System,
     motions: MotionsLike | None = None,
     *,
     periods: Any,
     slenderness: Any = None,
+    axes: Mapping[str, Any] | None = None,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Run blocks of all sizes under motions: what a response spectrum is to oscillators.
@@ -154,11 +172,15 @@ def rocking_spectrum(
         2 pi over the frequency parameter p of the block: ``([2, 4, 8], "s")`` [s].
     slenderness : values, optional
         Height over width; that of the block unless given [1].
+    axes : mapping of str to values, optional
+        What else varies, as for :func:`rockframe.incremental_dynamic_analysis`.
+    **more_axes : values
+        Axes whose names a keyword can have.
 
     Returns
     -------
     xarray.Dataset
-        The sweep over ``slenderness``, ``rocking_period`` [s] and ``motion``, whose
+        The sweep over ``slenderness``, ``rocking_period`` [s], the axes and ``motion``, whose
         ``peak_relative_rotation`` is the rocking spectrum; with ``width`` and ``height`` [m] of
         the blocks. :func:`rockframe.case` gives any case back.
 
@@ -185,7 +207,7 @@ def rocking_spectrum(
     {'slenderness': 1, 'rocking_period': 3, 'motion': 1}
     """
     check_system(system, _ROCKING)
-    sizes = BlockSizes(system, periods, slenderness, owner=_ROCKING)
+    sizes = BlockSizes(system, periods, slenderness, axes, owner=_ROCKING)
     heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
     runs = sweep(
         sizes.system,
@@ -196,7 +218,7 @@ def rocking_spectrum(
     return sizes.arranged(runs).assign_attrs(title="Rocking spectrum")
 
 
-@takes(SweepArguments)
+@takes(SweepArguments, further="axes")
 def overturning_spectrum(
     system: System,
     motions: MotionsLike | None = None,
@@ -208,6 +230,7 @@ def overturning_spectrum(
     period: QuantityLike | None = None,
     resolution: RatioLike = 0.02,
     bracket_width: RatioLike = 1e-3,
+    axes: Mapping[str, Any] | None = None,
     **run: Unpack[SweepArguments],
 ) -> xr.Dataset:
     """Find the least intensity of motions that overturns blocks of all sizes.
@@ -226,13 +249,17 @@ def overturning_spectrum(
         As for :func:`rockframe.incremental_dynamic_analysis` [1].
     bracket_width : float, optional
         Width of a bracket, over its upper scale [1].
+    axes : mapping of str to values, optional
+        What else varies, as for :func:`rockframe.incremental_dynamic_analysis`.
+    **more_axes : values
+        Axes whose names a keyword can have.
 
     Returns
     -------
     xarray.Dataset
-        Over ``slenderness``, ``rocking_period`` [s] and ``motion``: ``capacity_scale`` [1] and
-        ``capacity_intensity``, the least found to overturn, infinite if none did, and
-        ``capacity_resolution``;
+        Over ``slenderness``, ``rocking_period`` [s], the axes and ``motion``:
+        ``capacity_scale`` [1] and ``capacity_intensity``, the least found to overturn, infinite if
+        none did, and ``capacity_resolution``;
         ``left_out_count``, how many runs of the first row have no verdict;
         ``flip_count``, and over ``flip`` too ``scale_below``, ``scale_above`` and
         ``exceeds_above``.
@@ -261,7 +288,7 @@ def overturning_spectrum(
     'm s^-2'
     """
     check_system(system, _OVERTURNING)
-    sizes = BlockSizes(system, periods, slenderness, owner=_OVERTURNING)
+    sizes = BlockSizes(system, periods, slenderness, axes, owner=_OVERTURNING)
     scales = read_scales(scale, owner=_OVERTURNING, most=_MOST_SCALES)
     share = read_width(bracket_width, owner=_OVERTURNING)
     finest = read_resolution(resolution, owner=_OVERTURNING)

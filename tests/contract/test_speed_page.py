@@ -1,4 +1,4 @@
-"""What the page "Speed and accuracy" says that parts cost is what was measured."""
+"""What the page "Speed and accuracy" says that parts and histories cost is what was measured."""
 
 import json
 
@@ -28,3 +28,18 @@ def test_a_slack_restrainer_adds_no_steps():
     for ground in ("rigid ground", "pads"):
         for level in MEASURED[f"restrainer, slack, {ground}"].values():
             assert 0 <= level["steps with"] - level["steps without"] <= most
+
+
+def test_what_histories_cost_is_what_was_measured():
+    columns = ("the loop [ms]", "samples [ms]", "steps [ms]", "peaks [ms]", "dataset [ms]")
+    head = "| | the loop [ms] | without histories | with histories | " + " | ".join(columns[1:])
+    keys = (
+        "loop [ms]", "without histories, ratio", "with histories, ratio", *columns[1:],
+    )  # fmt: skip
+    measured = json.loads((DOCS / "data" / "one_run.json").read_text(encoding="utf-8"))
+    rows = {name: cells for name, *cells in table(PAGE, f"{head} |")}
+    assert len(rows) == sum(map(len, measured.values()))
+    for scene, levels in measured.items():
+        for level, one in levels.items():
+            cells = map(float, rows[f'{scene}, `"{level}"`'])
+            assert [*cells] == pytest.approx([one[key] for key in keys], abs=0.006)

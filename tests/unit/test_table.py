@@ -180,6 +180,26 @@ def test_other_answers_are_tables_too():
     assert ratio.iloc[1] == 2.0 * ratio.iloc[0]
 
 
+def test_what_has_other_dimensions_has_rows_of_its_own():
+    """Rows are added, and not multiplied by dimensions that have nothing to do with them."""
+    labels = {"quantile": [0.1, 0.9], "scale": np.arange(5.0), "response_level": [0.1, 0.2, 0.3]}
+    curves = xr.Dataset(
+        {
+            "response_fractile": (("quantile", "scale"), np.ones((2, 5))),
+            "overturned_count": ("scale", np.arange(5)),
+            "intensity_fractile": (("quantile", "response_level"), np.ones((2, 3))),
+        },
+        labels,
+    )
+    table = rf.table(curves)
+    assert len(table) == 2 * 5 + 2 * 3
+    assert set(table.index.names) == {"quantile", "scale", "response_level"}
+    counts = table["overturned_count"].dropna()
+    assert counts.groupby("scale").first().tolist() == list(range(5))
+    alone = rf.table(curves[["intensity_fractile"]])
+    assert alone.index.names == ["quantile", "response_level"]
+
+
 def test_what_makes_no_table(runs, study):
     for given, options, words in (
         ("run.nc", (), "open a file with xr.open_dataset first"),

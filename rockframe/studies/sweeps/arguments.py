@@ -21,8 +21,8 @@ class CourseArguments(TypedDict, total=False):
             AccuracyLevel.STANDARD,
             HOW_ACCURATE.kind.replace('"reference"', '"reference", "screen"'),
             f'{HOW_ACCURATE.words} ``"screen"`` runs all cases at ``"fast"``, and those near a '
-            'flip of their verdict again at ``"standard"``, :eq:`eq-screened`; on rigid ground all '
-            'at ``"standard"``, which costs less there.',
+            'flip of their verdict again at ``"standard"``, :eq:`eq-screened`; all at '
+            '``"standard"`` where that costs less, as on rigid ground and under pulses.',
         ),
     ]
     overturning: CourseLike

@@ -52,6 +52,7 @@ from rockframe.studies.sweeps.scenes import (
     own_motion,
     scene_of,
 )
+from rockframe.studies.sweeps.screening import pays_to_screen
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
@@ -215,10 +216,8 @@ def plan_study(
         del asked["initial"]
     level = asked.get("accuracy")
     screened = isinstance(level, str) and level == SCREEN
-    handed_over = screened and isinstance(made, SystemScene) and not made.pays_to_screen
     if screened:
-        asked["accuracy"] = AGAIN if handed_over else FIRST
-        screened = not handed_over
+        asked["accuracy"] = FIRST
     outputs = asked.setdefault("outputs", None)
     arguments = tried(lambda: read_arguments(faults, **asked), None)
     none: dict[str, GroundMotion | None] = {NO_MOTION: None}
@@ -242,6 +241,12 @@ def plan_study(
     seconds = tried(lambda: _period(period, [*rows, *grid_axes]), None)
     if arguments is None or faults:
         raise StudyError(*faults)
+    handed_over = False
+    if screened and isinstance(made, SystemScene):
+        handed_over = not pays_to_screen(made.assembly, given.values(), arguments)
+        screened = not handed_over
+    if handed_over:
+        arguments = read_arguments(faults, **{**asked, "accuracy": AGAIN})
     grid = Grid(tuple(grid_axes), tuple(rows), len(given), of_case)
     if not 0 < grid.count <= MOST_CASES:
         faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")

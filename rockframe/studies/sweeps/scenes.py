@@ -88,11 +88,6 @@ class SystemScene:
 
     assembly: Assembly  # its parts and options, as they are where no axis changes them
 
-    @property
-    def pays_to_screen(self) -> bool:
-        """Whether runs by fixed steps, made twice, cost less than one by tolerance."""
-        return self.assembly.setting.steps_cost_most
-
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names the motion's scale, an option, or a parameter of a part."""
         name = full_name(name)

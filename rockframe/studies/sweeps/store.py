@@ -1,8 +1,8 @@
 """The folder of a study: what has been planned, and what has been run so far.
 
 ``study.json`` says what the study is; ``labels.arrays`` holds axes and motions; each chunk has a
-file. Files appear whole or not at all. Several processes may work on one study: they write the
-same bytes, and none runs what it finds done.
+file, in one of several folders where there are very many. Files appear whole or not at all. Several
+processes may work on one study: they write the same bytes, and none runs what it finds done.
 """
 
 import hashlib
@@ -130,10 +130,15 @@ def _little(values: Generic) -> Generic:
 
 
 FORMAT: Final = 3
+IN_FOLDERS: Final = 4
+"""Format of studies whose chunks stand in folders of their own, since they are many."""
+FILES_OF_A_FOLDER: Final = 1000
+"""Most chunks of a folder; file systems, and what lists folders, are slow with far more."""
 _WITHOUT_ORDER: Final = (1, 2)
 """Formats that read motions in another order, and whose digests left out what functions use."""
 _STUDY: Final = "study.json"
 _LABELS: Final = "labels.arrays"
+_FOLDERS: Final = "chunks-*/"
 _LEFT_OVER: Final = 3600.0
 """Age from which on a half-written file belongs to a process that was killed [s]."""
 _COLUMN: Final = "motion of case"
@@ -153,6 +158,7 @@ class Store:
     chunk: int  # cases of a chunk
     history: str  # when the study was begun, for the history of its dataset
     version: str  # of rockframe, whose numbers these are
+    in_folders: bool  # whether chunks stand in folders of their own
 
     @classmethod
     def of_study(cls, path: Path, study: Study, chunk: int) -> "Store":
@@ -184,7 +190,7 @@ class Store:
     def _of_head(cls, path: Path, kept: Mapping[str, Any]) -> "Store":
         return cls(
             path, kept["study_sha256"], kept["cases"], kept["cases_of_a_chunk"], kept["history"],
-            kept["rockframe_version"],
+            kept["rockframe_version"], kept["format"] == IN_FOLDERS,
         )  # fmt: skip
 
     def provenance(self) -> dict[str, str]:
@@ -215,6 +221,7 @@ class Store:
             **{f"{_HISTORY}{name}": each for name, each in sorted(rows.histories.items())},
         }
         try:
+            self._file(chunk).parent.mkdir(exist_ok=True)
             write_arrays(self._file(chunk), self._described(chunk) | {"texts": rows.texts}, arrays)
         except OSError as problem:
             msg = (
@@ -261,7 +268,7 @@ class Store:
 
     def contents(self) -> tuple[dict[str, tuple[int, ...]], int]:
         """Give the scalars and histories that are there, with shapes beside cases; count chunks."""
-        files = [*self.folder.glob("chunk-*.arrays")]
+        files = [*self.folder.glob(f"{_FOLDERS if self.in_folders else ''}chunk-*.arrays")]
         found: dict[str, tuple[int, ...]] = {}
         for file in files:
             for name, shape in read_shapes(file).items():
@@ -299,7 +306,10 @@ class Store:
         }
 
     def _file(self, chunk: Chunk) -> Path:
-        return self.folder / f"chunk-{chunk.number:06d}.arrays"
+        file = f"chunk-{chunk.number:06d}.arrays"
+        if not self.in_folders:
+            return self.folder / file
+        return self.folder / f"chunks-{chunk.number // FILES_OF_A_FOLDER:04d}" / file
 
     def _described(self, chunk: Chunk) -> dict[str, Any]:
         return {
@@ -337,8 +347,9 @@ def _make(path: Path, study: Study, chunk: int) -> None:
                 held[what] = None
         described["motions"].append((name, one))
     write_arrays(path / _LABELS, described, arrays)
+    many = study.grid.count > FILES_OF_A_FOLDER * chunk
     head = {
-        "format": FORMAT,
+        "format": IN_FOLDERS if many else FORMAT,
         "rockframe_version": __version__,
         "history": dated("begun"),
         "study_sha256": study.digest,
@@ -398,13 +409,14 @@ def _read_head(path: Path) -> dict[str, Any]:
     except (ValueError, KeyError, TypeError) as problem:
         msg = f"{file}: damaged: {problem}"
         raise StudyError(msg) from problem
-    if form != FORMAT:
+    if form not in (FORMAT, IN_FOLDERS):
         why = "which this version cannot read"
         if form in _WITHOUT_ORDER:
             why = "which does not tell for certain whose results it holds"
         msg = (
             f"{path}: found a study of rockframe {version} (format {form}), {why}; this is "
-            f"rockframe {__version__} (format {FORMAT}): run the study again, in another folder"
+            f"rockframe {__version__} (formats {FORMAT} and {IN_FOLDERS}): run the study again, in "
+            "another folder"
         )
         raise StudyError(msg)
     if not whole:
@@ -423,7 +435,7 @@ def _difference(path: Path, kept: Any, asked: Any) -> str:
 
 
 def _remove_left_over(path: Path) -> None:
-    for part in path.glob(".*.part"):
+    for part in (*path.glob(".*.part"), *path.glob(f"{_FOLDERS}.*.part")):
         with suppress(OSError):
             if time.time() - part.stat().st_mtime > _LEFT_OVER:
                 part.unlink()

@@ -11,6 +11,7 @@ import rockframe as rf
 from rockframe.errors import ModelWarning, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies.sweeps import case as of_cases
+from rockframe.studies.sweeps import store
 from rockframe.studies.sweeps.store import read_arrays, write_arrays, write_whole
 from rockframe.version import __version__
 
@@ -35,6 +36,24 @@ def test_what_is_kept_is_what_is_given(whole):
     assert time.perf_counter() - begun < 5.0
     assert files(folder) == before
     assert not list(folder.glob(".*"))
+
+
+def test_many_chunks_stand_in_folders_of_their_own(tmp_path, monkeypatch):
+    folder, plain = tmp_path / "study", the_sweep()
+    monkeypatch.setattr(store, "FILES_OF_A_FOLDER", 4)
+    assert as_bytes(the_sweep(folder)) == as_bytes(plain)
+    assert not list(folder.glob("chunk-*"))
+    folders = sorted(folder.glob("chunks-*"))
+    counts = [len(list(one.iterdir())) for one in folders]
+    assert set(counts[:-1]) == {4}
+    assert 1 <= counts[-1] <= 4
+    (folders[1] / "chunk-000005.arrays").unlink()
+    left = folders[1] / ".chunk-000005.arrays.1.part"
+    left.write_bytes(b"")
+    os.utime(left, (0, 0))
+    assert as_bytes(the_sweep(folder)) == as_bytes(plain)
+    assert not left.exists()
+    assert as_bytes(rf.open_study(folder)) == as_bytes(plain)
 
 
 def test_it_can_be_read_while_it_runs(tmp_path):
@@ -125,8 +144,8 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
     keep, plain = head.read_text(), chunk.read_bytes()
     for kept, words in (
         (
-            keep.replace('"format": 3', '"format": 4'),
-            r"\(format 4\), which this version cannot read",
+            keep.replace('"format": 3', '"format": 5'),
+            r"\(format 5\), which this version cannot read",
         ),
         (keep[:300], "study.json: damaged"),
         (keep.replace('"cases":', '"kases":'), "entries are missing"),
