@@ -14,6 +14,7 @@ from typing import Any
 os.environ["ROCKFRAME_COMPILE"] = "0"
 
 import rockframe as rf
+import rockframe.simulation.run  # what a run imports is there before it is walked through
 
 PACKAGE = str(Path(rf.__file__).parent) + os.sep
 CALLS: Counter[CodeType] = Counter()
