@@ -108,10 +108,10 @@ def _unknown(function: str, name: str, known: Iterable[str]) -> str:
             f"{function}() takes no 'axes': it is about one system; incremental_dynamic_analysis "
             "takes them, and finds the critical scale of each combination as capacity_scale"
         )
-    return f"{function}() takes no {name!r}{meant(name, names)} It takes {', '.join(names)}"
+    return f"{function}() takes no {name!r}{suggestion(name, names)} It takes {', '.join(names)}"
 
 
-def meant(name: str, known: Iterable[str]) -> str:
+def suggestion(name: str, known: Iterable[str]) -> str:
     """Ask whether a similar name was meant, at the end of a sentence; or end it."""
     return nearest(name, known) or "."
 

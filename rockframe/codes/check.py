@@ -27,8 +27,12 @@ def rocking_block(
     if system.parts.block is not None and level:
         if isinstance(setting, RigidGroundSetting):
             return setting
-        held = isinstance(setting, TiedSetting) and not setting.slides
-        if carries and held and not setting.ties:  # what is left of loads that are masses
+        if (
+            carries
+            and isinstance(setting, TiedSetting)
+            and not setting.slides
+            and not setting.ties  # what is left of loads that are masses
+        ):
             return setting
     carried = ", which may carry loads that are masses," if carries else ""
     msg = f"{owner}: the check is of a block on level rigid ground{carried} got {setting.model}"

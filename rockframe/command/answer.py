@@ -36,7 +36,7 @@ class Answer:
         self.data: bytes | None = None
         """A file that goes to the standard output."""
 
-    def about(self, label: str, words: str) -> None:
+    def subject(self, label: str, words: str) -> None:
         """Tell what was asked, such as the scene; beside the answer itself."""
         self._asked.append(len(self._lines))
         self._add(label, words, beside=True)
@@ -48,7 +48,7 @@ class Answer:
     def text(self, words: str, **named: Any) -> None:
         """Tell lines as they stand; programs get what is named instead."""
         self._lines.append((False, words))
-        self._told |= {name: _plain(value) for name, value in named.items()}
+        self._told |= {name: _as_json(value) for name, value in named.items()}
 
     def numbers(self, found: "xr.Dataset | Mapping[str, Any]") -> None:
         """Add numbers with their units: of a result all that are not along time."""
@@ -118,7 +118,7 @@ def _number(one: Any) -> dict[str, Any]:
 
     attributes = dict(getattr(one, "attrs", {}))
     values = np.asarray(one)
-    found: dict[str, Any] = {"value": _plain(_in_words(values, attributes))}
+    found: dict[str, Any] = {"value": _as_json(_in_words(values, attributes))}
     if "units" in attributes:
         found["unit"] = str(attributes["units"])
     if values.ndim:
@@ -139,14 +139,14 @@ def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
     return np.vectorize(lambda flag: words.get(flag), otypes=[object])(values)
 
 
-def _plain(value: Any) -> Any:
+def _as_json(value: Any) -> Any:
     """Give a value as JSON has it; what is no number, or infinite, is null."""
     if hasattr(value, "tolist"):  # of numpy
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
+        return [_as_json(one) for one in value]
     if isinstance(value, Mapping):
-        return {str(name): _plain(one) for name, one in value.items()}
+        return {str(name): _as_json(one) for name, one in value.items()}
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value if isinstance(value, str | int | bool | None) else str(value)

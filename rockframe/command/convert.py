@@ -54,7 +54,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         outputs.write(arguments.output, _NETCDF, "Motions", suite.to_dataset().to_netcdf)
     else:
         _write(_only(motions, arguments), form, arguments.output, outputs, arguments)
-    answer.about("Motions", _listed(motions))
+    answer.subject("Motions", _listed(motions))
     return 0
 
 

@@ -44,8 +44,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         given["progress"] = bar
         dataset = critical_scale(found.system, found.motion, **given)
     dataset = with_project(dataset, found.project)
-    answer.about("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
-    answer.about("Motion", motion_words(dataset.attrs))
+    answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
+    answer.subject("Motion", motion_words(dataset.attrs))
     answer.says("Verdict", dataset.attrs["verdict"])
     measure = dataset[dataset.attrs["intensity"]]
     if bool(measure.notnull()):

@@ -8,7 +8,7 @@ import xarray as xr
 
 from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES
-from rockframe.command.over_motions import SCALE, asked, scene_and_motions
+from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE, save
 from rockframe.command.shared import (
     Outputs,
@@ -41,7 +41,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs.check(arguments.output, _RESULT)
     outputs.check(arguments.picture, PICTURE)
     if found is None:
-        runs = _kept(arguments)
+        runs = _runs_of_study(arguments)
     else:
         given: dict[str, Any] = {"store": found.store, **found.arguments}
         if AXES not in given and CASES not in given:
@@ -53,15 +53,15 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
             except StudyError as problem:
                 raise found.at_lines(problem) from problem
         runs = with_project(runs, found.project)
-    dataset = fragility(runs, **asked(arguments, fragility))
+    dataset = fragility(runs, **typed_intensity(arguments, fragility))
     dataset = with_project(dataset, str(runs.attrs.get(ATTRIBUTE, "")))
     answer.says("Verdict", dataset.attrs["verdict"])
     if "median_intensity" in dataset and dataset["median_intensity"].dims == ("limit_state",):
         for state, row in dataset.groupby("limit_state", squeeze=False):
             answer.text(_line(str(state), row.squeeze("limit_state")))
     if found is not None:
-        answer.about("Scene", system_words(found.system))
-    answer.about("Runs", str(runs.attrs["verdict"]))
+        answer.subject("Scene", system_words(found.system))
+    answer.subject("Runs", str(runs.attrs["verdict"]))
     answer.numbers(dataset)
     outputs.result(arguments.output, _RESULT, dataset)
     if arguments.picture is not None:
@@ -69,7 +69,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     return 0
 
 
-def _kept(arguments: argparse.Namespace) -> xr.Dataset:
+def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
     """Read the runs of a study, from its file or its store."""
     more = (
         "records",

@@ -5,7 +5,7 @@ from typing import Any, Final
 
 from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES
-from rockframe.command.over_motions import SCALE, asked, scene_and_motions
+from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE, save
 from rockframe.command.shared import (
     Outputs,
@@ -50,7 +50,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         **taken_by(incremental_dynamic_analysis, found.arguments),
         **({SCALE: axes.pop(SCALE)} if SCALE in axes else {}),
         AXES: axes,
-        **asked(arguments, incremental_dynamic_analysis),
+        **typed_intensity(arguments, incremental_dynamic_analysis),
     }
     period = given_of(arguments, "period")
     with bar_for("ida", quiet=arguments.quiet) as bar:
@@ -58,7 +58,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         dataset = incremental_dynamic_analysis(found.system, found.motions, **given)
     dataset = with_project(dataset, found.project)
     answer.says("Verdict", dataset.attrs["verdict"])
-    answer.about("Scene", system_words(found.system))
+    answer.subject("Scene", system_words(found.system))
     fitted = fragility(dataset, dataset.attrs["intensity"], trials="capacities", **period)
     answer.says("Fit", fitted.attrs["verdict"])
     capacities = table(dataset[list(_SHOWN)].drop_vars("rotation_limit"))

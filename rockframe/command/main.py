@@ -50,13 +50,13 @@ def main(given: Sequence[str] | None = None) -> int:
     who = f"rockframe {arguments.command}"
     with _interrupts() as heard:
         try:
-            return _told(arguments, who, heard)
+            return _carried_out(arguments, who, heard)
         except KeyboardInterrupt:  # also while libraries are loaded
             tell(who, "interrupted")
             return INTERRUPTED
 
 
-def _told(arguments: "Namespace", who: str, heard: list[int]) -> int:
+def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:
     """Carry out a command, and print what it found once all of its files are written."""
     from rockframe.command.answer import Answer
 

@@ -24,7 +24,7 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS
 from rockframe.plot import overturning_map as draw
 from rockframe.reports.figures import figure_of
-from rockframe.shared_arguments import meant
+from rockframe.shared_arguments import suggestion
 from rockframe.studies import overturning_map
 
 _RESULT: Final = analysis_kind("a map of overturning", "impacts_before_overturning")
@@ -50,8 +50,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         dataset = overturning_map(found.system, pulse, **given)
     dataset = with_project(dataset, found.project)
     answer.says("Verdict", dataset.attrs["verdict"])
-    answer.about("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
-    answer.about("Pulse", words)
+    answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
+    answer.subject("Pulse", words)
     answer.text("\n".join(_lines(dataset)))
     answer.numbers(dataset)
     outputs.result(arguments.output, _RESULT, dataset)
@@ -64,7 +64,7 @@ def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
     """Give the pulse that was typed, else that of the scene, and what it is called."""
     known = [one for one in CONSTRUCTORS if _has_axes(one)]
     if name is not None and name not in known:
-        listed = f"{meant(name, known)} There are {', '.join(known)}"
+        listed = f"{suggestion(name, known)} There are {', '.join(known)}"
         msg = f"--pulse: no pulse of an amplitude and a frequency alone is {name!r}{listed}"
         raise ComponentError(msg)
     motion = found.motion

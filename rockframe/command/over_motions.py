@@ -45,7 +45,7 @@ def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
     return replace(found, arguments=given, store=store)
 
 
-def asked(arguments: argparse.Namespace, function: Callable[..., Any]) -> dict[str, Any]:
+def typed_intensity(arguments: argparse.Namespace, function: Callable[..., Any]) -> dict[str, Any]:
     """Give the intensity and the limit states that were typed."""
     given = given_of(arguments, "intensity", "period")
     if arguments.limits is not None:

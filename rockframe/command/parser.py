@@ -8,7 +8,7 @@ from typing import Any, Final, NoReturn
 from rockframe.command.arguments import EVERYWHERE, Command
 from rockframe.command.commands import COMMANDS
 from rockframe.errors import nearest
-from rockframe.shared_arguments import meant
+from rockframe.shared_arguments import suggestion
 from rockframe.version import __version__
 
 STREAM: Final = "-"
@@ -133,7 +133,7 @@ def _is_option(word: str, options: Sequence[str]) -> bool:
 
 def _no_option(word: str, command: Command | None, options: Sequence[str]) -> str:
     who = "rockframe" if command is None else f"rockframe {command.name}"
-    near = meant(word, [name for name in options if name.startswith("--")])
+    near = suggestion(word, [name for name in options if name.startswith("--")])
     also = [one.name for one in COMMANDS if word in _options(one)]
     if also:
         others = f"{', '.join(also)} {'takes' if len(also) == 1 else 'take'} it"
@@ -166,7 +166,7 @@ class _CommandParser(argparse.ArgumentParser):
             choices = [
                 choice for action in self._actions for choice in action.choices or ()
             ]  # those of this argument may not be told in the message
-            near = meant(found[1], [str(one) for one in choices])
+            near = suggestion(found[1], [str(one) for one in choices])
             message += near if near != "." else ""
         super().error(message)
 

@@ -18,8 +18,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs = Outputs(arguments, found.files, answer)
     outputs.check(arguments.output, RUN)
     response = simulated(found)
-    answer.about("Scene", f"{system_words(found.system)} ({response.attrs['model']})")
-    answer.about("Motion", motion_words(response.attrs))
+    answer.subject("Scene", f"{system_words(found.system)} ({response.attrs['model']})")
+    answer.subject("Motion", motion_words(response.attrs))
     answer.says("Verdict", response.attrs["verdict"])
     for name in ("certificate", "proof"):
         if name in response.attrs:

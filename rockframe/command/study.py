@@ -37,7 +37,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         words = "found no name of a folder after --store; expected one, such as --store kept"
         raise FileError(arguments.study, [(None, words)])
     store = found.store if arguments.store is None else Path(arguments.store).expanduser()
-    answer.about("Scene", system_words(found.system))
+    answer.subject("Scene", system_words(found.system))
     try:
         return _carried_out(found, store, arguments, outputs, answer)
     except KeyboardInterrupt:

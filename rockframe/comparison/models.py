@@ -47,7 +47,12 @@ _WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
 """Words of rungs, and the slots of the bases that they name."""
 
 
-_LINKS: Final = {Restrainer: "restrainers", Tendon: "tendons", Load: "loads", RearWall: "wall"}
+_LINKS: Final[dict[type, str]] = {
+    Restrainer: "restrainers",
+    Tendon: "tendons",
+    Load: "loads",
+    RearWall: "wall",
+}
 """Words for links; those of users' own are called by their classes."""
 
 

@@ -73,7 +73,7 @@ def recommend(
     if limit > 1.0:
         msg = (
             f"{_OWNER}: tolerance must be at most 1, the whole peak, got {shown(tolerance)}; "
-            f"for {_plain(limit, 3)} % write {_plain(0.01 * limit, 3)}"
+            f"for {_without_exponent(limit, 3)} % write {_without_exponent(0.01 * limit, 3)}"
         )
         raise ComponentError(msg)
     dataset = _checked(dataset)
@@ -94,13 +94,13 @@ def recommend(
     accuracy = str(dataset["accuracy"].to_numpy()[column])
     met = bool(good.any())
     rung = f"{model!r} at accuracy {accuracy!r}"
-    cost = f"{_plain(1e3 * times[row, column], 3)} ms a run"
+    cost = f"{_without_exponent(1e3 * times[row, column], 3)} ms a run"
     found = f"off by {_share(errors[row, column], 2)} in {_ERRORS[error]}"
     if met:
         slowest = float(np.max(times)) / float(times[row, column])
         sentence = (
             f"For an error of at most {_share(limit, 3)}, take {rung}: {found}, {cost}, "
-            f"{_plain(slowest, 3)} times faster than the slowest rung."
+            f"{_without_exponent(slowest, 3)} times faster than the slowest rung."
         )
     elif np.isfinite(errors[row, column]):
         within = _share(limit, 3)
@@ -125,10 +125,10 @@ def _share(value: float, digits: int) -> str:
     if 0.0 < value < _LEAST_PERCENTAGE:
         text = np.format_float_scientific(value, digits - 1, trim="-", exp_digits=1)
         return f"{text.replace('.e', 'e')} of the peak"
-    return f"{_plain(100.0 * value, digits)} %"
+    return f"{_without_exponent(100.0 * value, digits)} %"
 
 
-def _plain(value: float, digits: int) -> str:
+def _without_exponent(value: float, digits: int) -> str:
     """Write a number without an exponent, with all of its digits before the point."""
     if value >= 10.0 ** (digits - 1):
         return f"{value:.0f}"

@@ -138,7 +138,7 @@ def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None"
     try:
         if any(job.file is None for job in jobs):
             return None
-        order = pickle.dumps([_told(job) for job in jobs])
+        order = pickle.dumps([_description_of(job) for job in jobs])
         process = subprocess.Popen(
             [sys.executable, "-c", program, *sys.path], stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
@@ -179,7 +179,7 @@ def _jobs_in(order: bytes) -> list[Job]:
     return found
 
 
-def _told(job: Job) -> tuple[Any, ...]:
+def _description_of(job: Job) -> tuple[Any, ...]:
     function = job.function
     return function.__module__, function.__qualname__, job.structure, job.bound, job.in_lanes
 

@@ -69,7 +69,7 @@ def average_spectral_acceleration(
     >>> round(float(found.average_spectral_acceleration), 3)
     1.273
     """
-    seconds = checked_periods(_given(periods), owner=_OWNER)
+    seconds = checked_periods(_not_none(periods), owner=_OWNER)
     if not (seconds > 0.0).all():
         msg = f"{_OWNER}: periods must be above zero, whose logarithm is averaged"
         raise ComponentError(msg)
@@ -107,7 +107,7 @@ def average_spectral_acceleration(
     return dataset.assign_coords(motion=spectrum["motion"]) if several else dataset
 
 
-def _given(periods: object) -> object:
+def _not_none(periods: object) -> object:
     """Refuse None, for which spectra have periods of their own."""
     if periods is None:
         msg = f"{_OWNER}: periods must be given, for example (np.linspace(0.2, 3, 57), 's')"

@@ -76,7 +76,7 @@ class Inputs(Generic[Thing]):
         with ThreadPoolExecutor(workers) as pool:
             return [first, *pool.map(function, self.things[1:])]
 
-    def together(self, answers: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    def joined(self, answers: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
         """Put the values of all answers into arrays, or give those of the one."""
         rows = list(answers)
         if self.labels is None:

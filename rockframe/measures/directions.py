@@ -134,7 +134,7 @@ def rotated_spectrum(
 
     dataset = build_over(
         oscillator_axes(ratios, seconds),
-        looked.together(looked.each(spectra)),
+        looked.joined(looked.each(spectra)),
         {**looked.attributes, "directions": count},
         over=looked.over,
         title="Response spectra of two horizontal components",
@@ -180,7 +180,7 @@ def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Da
     """
     looked = _pairs(pair, owner=_AXES)
     dataset = build_dataset(
-        looked.together(looked.each(_axes)),
+        looked.joined(looked.each(_axes)),
         looked.attributes,
         over=looked.over,
         title="Principal axes of two horizontal components",

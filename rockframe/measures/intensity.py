@@ -125,7 +125,7 @@ def intensity_measures(
         return values
 
     dataset = build_dataset(
-        looked.together(looked.each(measured)),
+        looked.joined(looked.each(measured)),
         {
             **looked.attributes,
             "threshold": f"{level!r} {ACCELERATION.unit}",

@@ -116,7 +116,7 @@ def spectra_of(
         looked = replace(looked, things=[_refined(one, seconds) for one in looked.things])
     for signal in looked.things:
         check_cost(signal, seconds, owner=_OWNER)
-    values = looked.together(looked.each(lambda signal: _spectra(signal, seconds, ratios)))
+    values = looked.joined(looked.each(lambda signal: _spectra(signal, seconds, ratios)))
     dataset = build_over(
         oscillator_axes(ratios, seconds),
         values,

@@ -145,7 +145,7 @@ def sheet(
         given = cast("Figure", ax)
         return Sheet(Panels(np.ravel(make(given))), given)
     if ax is not None:
-        return Sheet(Panels(_given(ax, function, names)), None)
+        return Sheet(Panels(_checked_axes(ax, function, names)), None)
     from matplotlib import pyplot
 
     figure = pyplot.figure(figsize=size, layout="constrained")
@@ -157,7 +157,7 @@ def single(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
     return sheet(ax, function, ("the figure",), size, lambda figure: figure.subplots())
 
 
-def _given(ax: Any, function: str, names: Sequence[str]) -> "list[Axes]":
+def _checked_axes(ax: Any, function: str, names: Sequence[str]) -> "list[Axes]":
     from matplotlib.axes import Axes
 
     several = isinstance(ax, Sequence | np.ndarray) and not isinstance(ax, str | Axes)

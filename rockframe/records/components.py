@@ -263,7 +263,7 @@ def named(source: Source, component: FileComponent) -> Record:
         record, done, warned = _upwards(source, record, component)
     return replace(
         record,
-        metadata={**record.metadata, **_about(component)},
+        metadata={**record.metadata, **_metadata_of(component)},
         history=(*record.history, *done),
         warnings=(*record.warnings, *warned),
     )
@@ -284,7 +284,7 @@ def _alone(
     source: Source, request: Request, chosen: FileComponent, components: Sequence[FileComponent]
 ) -> Record:
     record = chosen.read()
-    metadata: Metadata = {**record.metadata, **_about(chosen)}
+    metadata: Metadata = {**record.metadata, **_metadata_of(chosen)}
     history = record.history
     warnings = record.warnings
     if len(components) > 1:
@@ -333,7 +333,7 @@ def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Reco
             steps.append(f"{label} component padded with {count - samples.size} zeros")
     metadata: Metadata = {
         **level.metadata,
-        **_about(across),
+        **_metadata_of(across),
         "vertical_component": upwards.name or "",
     }
     own = tuple(sentence for sentence in raised.history if sentence not in level.history)
@@ -373,7 +373,7 @@ def _upwards(
     return record, (), ()
 
 
-def _about(component: FileComponent) -> Metadata:
+def _metadata_of(component: FileComponent) -> Metadata:
     metadata: Metadata = {}
     if component.name is not None:
         metadata["component"] = component.name

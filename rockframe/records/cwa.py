@@ -29,7 +29,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import NOTHING, Keys, kept, needed, needed_rate
+from rockframe.records.headers import NOTHING, Keys, needed, needed_rate, renamed
 from rockframe.records.numbers import FixedWidth, one_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -167,7 +167,7 @@ def _size(printed: str) -> float:
 
 
 def _description(header: Keys) -> Metadata:
-    metadata = kept(header, _KEPT)
+    metadata = renamed(header, _KEPT)
     origin = header.get("origintime", NOTHING)[0]
     if origin:
         metadata["event"] = f"earthquake of {origin} (GMT+08)"

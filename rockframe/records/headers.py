@@ -76,6 +76,6 @@ def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float
     return time_step
 
 
-def kept(keys: Keys, names: Mapping[str, str]) -> Metadata:
+def renamed(keys: Keys, names: Mapping[str, str]) -> Metadata:
     """Give those values that go into the metadata, under their new names."""
     return {name: keys[key][0] for key, name in names.items() if keys.get(key, NOTHING)[0]}

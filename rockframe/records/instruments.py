@@ -63,17 +63,17 @@ class InstrumentResponses:
 
     def __init__(self, source: Source, request: Request) -> None:
         self._source = source
-        self._given = None if request.response is None else _given(request.response)
+        self._stated = None if request.response is None else _inventory_of(request.response)
         self._left = _LARGEST  # bytes, of all files together
         self._read: dict[Path, _Inventory | None] = {}
 
     def of(self, name: str, time: datetime) -> InstrumentResponse | None:
         """Find the response of a channel."""
-        if self._given is not None:
-            found = self._given.response(name, time)
+        if self._stated is not None:
+            found = self._stated.response(name, time)
             if found is None:
                 expected = f"the response of {name} at {time}"
-                raise self._given.file.refuse(found="StationXML without it", expected=expected)
+                raise self._stated.file.refuse(found="StationXML without it", expected=expected)
             return found
         station = ".".join(name.split(".")[:2])
         stem = Path(self._source.path).stem
@@ -159,7 +159,7 @@ def response_in(file: Source, name: str, time: datetime) -> InstrumentResponse |
     return None if inventory is None else inventory.response(name, time)
 
 
-def _given(response: str) -> _Inventory:
+def _inventory_of(response: str) -> _Inventory:
     file = read_source(response)
     if len(file.data) > _LARGEST:
         size = f"{len(file.data) / 2**20:.3g} MiB"

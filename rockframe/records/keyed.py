@@ -16,10 +16,10 @@ from rockframe.records.headers import (
     NOTHING,
     Keys,
     first_match,
-    kept,
     needed_count,
     needed_step,
     read_keys,
+    renamed,
 )
 from rockframe.records.numbers import (
     NUMBER,
@@ -76,7 +76,7 @@ def _read_esm(source: Source, request: Request) -> Record:
     unit_name, unit_line = header.get("UNITS", NOTHING)
     chosen = choose_unit(source, request, unit_name or None, unit_line or None)
     declared, count_line = needed_count(source, header, "NDATA")
-    metadata = kept(header, _ESM_KEPT)
+    metadata = renamed(header, _ESM_KEPT)
     day = header.get("EVENT_DATE_YYYYMMDD", NOTHING)[0]
     clock = header.get("EVENT_TIME_HHMMSS", NOTHING)[0]
     if day:
@@ -147,7 +147,7 @@ def _read_resorce(source: Source, request: Request) -> Record:
         raise source.refuse(found=found, expected=expected, line=1)
     unit_match, line = series
     chosen = choose_unit(source, request, unit_match[1], line)
-    metadata: Metadata = {**kept(header, _RESORCE_KEPT), "unit_as_read": chosen[1]}
+    metadata: Metadata = {**renamed(header, _RESORCE_KEPT), "unit_as_read": chosen[1]}
     code, _, place = header.get("Station Code / Name", NOTHING)[0].partition("/")
     if code.strip():
         metadata["station"] = code.strip()
@@ -207,7 +207,7 @@ def _read_afad(source: Source, request: Request) -> Record:
     names, first = _afad_columns(source)
     peaks, unit_name, peaks_line = _afad_peaks(header)
     chosen = choose_unit(source, request, unit_name, peaks_line)
-    metadata: Metadata = {**kept(header, _AFAD_KEPT), "unit_as_read": chosen[1]}
+    metadata: Metadata = {**renamed(header, _AFAD_KEPT), "unit_as_read": chosen[1]}
     if "event_time" in metadata:
         metadata["event"] = f"earthquake of {metadata['event_time']}"
 

@@ -227,7 +227,7 @@ def peer_table(source: Source) -> dict[str, Known] | None:
             found = f"{len(row)} fields"
             raise source.refuse(found=found, expected=f"{len(heads)}", line=place)
         fields = dict(zip(heads, (field.strip() for field in row), strict=False))
-        metadata = _about(fields, source, place)
+        metadata = _known_from(fields, source, place)
         for head, axis in _FILES.items():
             name = _filled(fields.get(head, ""))
             if name:
@@ -235,7 +235,7 @@ def peer_table(source: Source) -> dict[str, Known] | None:
     return known
 
 
-def _about(fields: dict[str, str], source: Source, line: int) -> Known:
+def _known_from(fields: dict[str, str], source: Source, line: int) -> Known:
     metadata: Known = {name: fields[head] for head, name in _TEXTS.items() if fields.get(head)}
     for head, (name, factor) in _NUMBERS.items():
         text = _filled(fields.get(head, ""))

@@ -29,7 +29,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import NOTHING, Keys, kept, needed, read_keys
+from rockframe.records.headers import NOTHING, Keys, needed, read_keys, renamed
 from rockframe.records.numbers import FixedWidth, one_number, rows_below, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -187,7 +187,7 @@ def _direction(said: str) -> tuple[str, Orientation]:
 
 
 def _description(header: Keys) -> Metadata:
-    metadata = kept(header, _KEPT)
+    metadata = renamed(header, _KEPT)
     day = header.get("FECHA DEL SISMO [GMT]", NOTHING)[0]
     clock = header.get("HORA EPICENTRO (GMT)", NOTHING)[0]
     if day:

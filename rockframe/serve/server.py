@@ -146,7 +146,7 @@ class _Handler(BaseHTTPRequestHandler):
             and self.headers.get("Sec-Fetch-Site") not in ("cross-site", "same-site")
         )
 
-    def _found(self, query: Mapping[str, str]) -> tuple[Tried, ToldOutcome | None, list[str]]:
+    def _tried(self, query: Mapping[str, str]) -> tuple[Tried, ToldOutcome | None, list[str]]:
         choice, faults = read_choice(query, self.server.record)
         if faults:
             return choice, None, faults
@@ -159,19 +159,19 @@ class _Handler(BaseHTTPRequestHandler):
             return choice, None, [f"The run failed: {PLEASE_REPORT}."]
 
     def _page(self, query: Mapping[str, str]) -> None:
-        choice, outcome, faults = self._found(query)
+        choice, outcome, faults = self._tried(query)
         part = page.refused(faults) if outcome is None else page.told(outcome, query)
         self._send(
             HTTPStatus.OK, _HTML, page.trial_page(choice, motions_with(self.server.record), part)
         )
 
     def _outcome(self, query: Mapping[str, str]) -> None:
-        _, outcome, faults = self._found(query)
+        _, outcome, faults = self._tried(query)
         part = page.refused(faults) if outcome is None else page.told(outcome, query)
         self._send(HTTPStatus.OK, _HTML, part)
 
     def _player(self, query: Mapping[str, str]) -> None:
-        _, outcome, faults = self._found(query)
+        _, outcome, faults = self._tried(query)
         if outcome is None:
             self._send(HTTPStatus.BAD_REQUEST, _HTML, page.refused(faults))
         else:

@@ -147,13 +147,13 @@ def start_of(beginning: Beginning) -> Start | Ending:
 def beginning_to_dict(beginning: Beginning) -> dict[str, Any]:
     """Give a beginning as plain values, fit for JSON."""
     if isinstance(beginning, Ending):
-        return {"type": "Continuation", "ending": _plain(beginning)}
+        return {"type": "Continuation", "ending": _as_json(beginning)}
     return beginning.to_dict()
 
 
 def end_attributes(ending: Ending) -> dict[str, str]:
     """Give the end of a run as an attribute that a later run can begin with."""
-    return {_ATTRIBUTE: json.dumps(_plain(ending))}
+    return {_ATTRIBUTE: json.dumps(_as_json(ending))}
 
 
 def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
@@ -188,7 +188,7 @@ def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
     return within and "status" in dataset and verdict_of(dataset) is False
 
 
-def _plain(ending: Ending) -> dict[str, Any]:
+def _as_json(ending: Ending) -> dict[str, Any]:
     return {
         "mode": ending.mode,
         "state": ending.state.tolist(),

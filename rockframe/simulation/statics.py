@@ -33,7 +33,9 @@ def equilibrium(system: Assembly) -> xr.Dataset:
         "overturning_angle": setting.overturning_angle,
         "uplift_angle": setting.uplift_angle,
     }
-    return build_dataset(values, _about(system), title="Rest", source="vertical equilibrium")
+    return build_dataset(
+        values, _attributes_of(system), title="Rest", source="vertical equilibrium"
+    )
 
 
 def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
@@ -56,7 +58,7 @@ def moment_rotation(system: Assembly, angles: object) -> xr.Dataset:
         if f"held_{name}" in SCHEMA:
             values[f"held_{name}"] = _column(state.reactions[name] for state in states)
     return build_dataset(
-        values, _about(system), title="Moment and rotation", source="vertical equilibrium"
+        values, _attributes_of(system), title="Moment and rotation", source="vertical equilibrium"
     )
 
 
@@ -85,11 +87,11 @@ def frequencies(system: Assembly) -> xr.Dataset:
     for row, name in enumerate(names):
         values[f"{name}_shape"] = shapes[:, row :: len(names)] if motion.bodies else shapes[:, row]
     return build_dataset(
-        values, _about(system), title="Modes of small motion", source="eigenvalues"
+        values, _attributes_of(system), title="Modes of small motion", source="eigenvalues"
     )
 
 
-def _about(system: Assembly) -> dict[str, str]:
+def _attributes_of(system: Assembly) -> dict[str, str]:
     return {
         "model": system.setting.model,
         "model_description": system.description,

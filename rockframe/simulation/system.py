@@ -173,7 +173,7 @@ class System(metaclass=Proposing):
         return hash(self._assembly)
 
     def __repr__(self) -> str:
-        parts = ", ".join(repr(part) for part in self.parts.given())
+        parts = ", ".join(repr(part) for part in self.parts.present())
         coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
         given = self.options.to_dict()
         others = "".join(

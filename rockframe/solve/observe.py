@@ -159,8 +159,10 @@ def observe_states(
     """
     wanted = np.arange(len(model.columns))
     out = np.empty((len(wanted), len(mode)))
+    moves, shows = _of(model.system, slope, observed)
     observe_rows(
-        *_of(model.system, slope, observed),
+        moves,
+        shows,
         mode,
         np.ascontiguousarray(state),
         memory,
@@ -181,8 +183,10 @@ def observe_steps(
     chosen = [i for i, one in enumerate(columns) if names is None or one.name in names]
     wanted = np.array(chosen, dtype=np.int64)
     out = np.empty((len(wanted), len(steps.time)))
+    moves, shows = _of(model.system, slope, observed)
     observe_kept(
-        *_of(model.system, slope, observed),
+        moves,
+        shows,
         int(steps.exact),
         steps.values,
         steps.codes,
@@ -220,8 +224,9 @@ def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
         Per unit mass [m^2 s^-2].
     """
     out = np.empty((len(trajectory.time), 4))
+    (stored,) = _of(model.system, energies)
     energy_rows(
-        *_of(model.system, energies),
+        stored,
         trajectory.mode,
         np.ascontiguousarray(trajectory.state),
         np.zeros(trajectory.state.shape[1]),

@@ -211,7 +211,7 @@ def rocking_spectrum(
     heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
     runs = sweep(
         sizes.system,
-        _given(motions, system, _ROCKING),
+        _checked_motions(motions, system, _ROCKING),
         cases=heads,
         **run,
     )
@@ -293,7 +293,7 @@ def overturning_spectrum(
     share = read_width(bracket_width, owner=_OVERTURNING)
     finest = read_resolution(resolution, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)
-    named = named_motions(_given(motions, system, _OVERTURNING))
+    named = named_motions(_checked_motions(motions, system, _OVERTURNING))
     lines = Lines(sizes.system, named, sizes.columns, run, _OVERTURNING)
     scan, seen, brackets = lines.followed(
         scales, lambda runs: overturns(runs).expand_dims(VERDICT), width=share, resolution=finest
@@ -333,7 +333,7 @@ def overturning_spectrum(
     )
 
 
-def _given(motions: object, system: System, owner: str) -> Any:
+def _checked_motions(motions: object, system: System, owner: str) -> Any:
     given = system.motion if motions is None else motions
     if given is None:
         msg = f"{owner}: there is no motion; give one"

@@ -68,8 +68,8 @@ def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
     remarks: list[str] = []
     names: set[str] = set()
     lonely: list[RecordedComponent] = []
-    for members in _together(held, _record_of):
-        for part in [members] if _is_one(members) else _together(members, _instrument):
+    for members in _sorted_by(held, _record_of):
+        for part in [members] if _is_one(members) else _sorted_by(members, _instrument):
             record = unique = _name_of(part[0])
             if record in names:
                 unique = f"{record}, {' '.join(_instrument(part[0]))}".rstrip(", ")
@@ -83,7 +83,7 @@ def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
             remarks += _assign(unique, part)
             level = [one for one in part if not one.vertical]
             lonely += level if len(level) == 1 else []
-    for members in _together(lonely, _event_and_station):
+    for members in _sorted_by(lonely, _event_and_station):
         remarks += _why_apart(members)
     return remarks
 
@@ -103,7 +103,7 @@ def pairs_of(
     }
 
 
-def _together(
+def _sorted_by(
     components: Iterable[RecordedComponent], key: Callable[[RecordedComponent], tuple[str, ...]]
 ) -> list[list[RecordedComponent]]:
     """Sort components by a key, and those of known starts by times that overlap."""

@@ -215,7 +215,7 @@ class Parts:
 
     def __iter__(self) -> Iterator[Component | GroundMotion]:
         """Give the parts, in a fixed order."""
-        return iter(self.given())
+        return iter(self.present())
 
     def __len__(self) -> int:
         return len(self.filled)
@@ -224,7 +224,7 @@ class Parts:
         """Give the parts with others in some slots."""
         return Parts.of({**dict(self.filled), **by_slot})
 
-    def given(self) -> list[Component | GroundMotion]:
+    def present(self) -> list[Component | GroundMotion]:
         """Give the parts that are there, in a fixed order."""
         return [part for _, part in self.filled]
 

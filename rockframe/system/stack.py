@@ -181,13 +181,13 @@ class StackSetting(Setting):
         found, numbers = list[StandingBody](), list["BaseNumbers"]()
         mass = self.body.mass
         for some in self.groups:
-            body, lowest = self._together(some), some[-1]
+            body, lowest = self._joined(some), some[-1]
             # how far its centre of mass is beside that of what it stands on
             beside = self.offsets[lowest] + body.eccentricity
             for below in self.groups:
                 if below[0] == lowest + 1:
                     shift = math.fsum(self.offsets[below[0] : below[-1]])
-                    beside += shift - self._together(below).eccentricity
+                    beside += shift - self._joined(below).eccentricity
             height = math.fsum(self.bodies[k].centre_height + self.tops[k] for k in some)
             law = BaseLoad(body, self.options).law(mass)
             carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
@@ -207,7 +207,7 @@ class StackSetting(Setting):
         for i, (body, (x, y)) in enumerate(zip((tie.on, tie.to), tie.ends, strict=True)):
             for number, some in enumerate(self.groups):
                 if body in some:
-                    one, (place, level) = self._together(some), self.base_of(some[-1])
+                    one, (place, level) = self._joined(some), self.base_of(some[-1])
                     which[i] = number
                     points[i] = (x - place - one.eccentricity, y - level - one.centre_height)
         return found._replace(on=which[0], on_point=points[0], to=which[1], to_point=points[1])
@@ -216,7 +216,7 @@ class StackSetting(Setting):
         """Give the middle of the base of an upright body from that of the lowest one [m]."""
         return base_of(k, self.bodies, self.tops, self.offsets)
 
-    def _together(self, some: range) -> SupportedBody:
+    def _joined(self, some: range) -> SupportedBody:
         """Give bodies that rigid bases make one."""
         first, last = some[0], some[-1] + 1
         if len(some) == 1:

@@ -60,7 +60,9 @@ def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion |
     component = table.get("component")
     if isinstance(component, list):  # TOML has no pairs
         table["component"] = tuple(component)  # pyright: ignore[reportUnknownArgumentType]
-    return made(file, where, lambda **rest: GroundMotion.read(file.beside(name), **rest), table)
+    return made(
+        file, where, lambda **rest: GroundMotion.read(file.path_beside(name), **rest), table
+    )
 
 
 def _constructed(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion | None:
@@ -280,7 +282,7 @@ def _import(file: TomlFile, name: str) -> None:
     if not name.endswith(".py"):
         import_module(name)
         return
-    path = file.beside(name)
+    path = file.path_beside(name)
     stem = path.stem
     if stem in sys.modules:
         return

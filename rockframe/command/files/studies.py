@@ -109,7 +109,7 @@ def _scene_of(file: TomlFile) -> Described | None:
         file.fault((SCENE,), f"scene must be the path of a file, got {shown(name)}")
         return None
     try:
-        scene = read_scene(file.beside(name))
+        scene = read_scene(file.path_beside(name))
     except FileError as problem:
         file.fault((SCENE,), f"the scene is not sound\n{problem}")
         return None
@@ -156,7 +156,7 @@ def _axes_of(file: TomlFile) -> dict[str, Any]:
     if CASES in file.values:
         name = file.values[CASES]
         try:
-            found[CASES] = pd.read_csv(file.beside(str(name)), comment="#")
+            found[CASES] = pd.read_csv(file.path_beside(str(name)), comment="#")
         except (OSError, ValueError) as problem:
             file.fault((CASES,), f"{name}: the table cannot be read ({problem})")
     return found

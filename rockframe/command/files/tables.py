@@ -148,7 +148,7 @@ class TomlFile:
             raise FileError(str(place), [(line, words + hint)]) from problem
         return cls(place, values, lines_of(text))
 
-    def beside(self, name: str) -> Path:
+    def path_beside(self, name: str) -> Path:
         """Give the path of a file to be read, which is named relative to the folder of this one."""
         self.files.append(self.path_of(name))
         return self.files[-1]

@@ -228,7 +228,7 @@ def _of_component(
 
 def _of_parameter(name: str, one: Declared[Any, Any]) -> Iterator[str]:
     must = "must be given: " if one.default is REQUIRED else ""
-    yield from _commented(f"# {name} = {_example(one)}", f"{must}{_plain(one.words)}")
+    yield from _commented(f"# {name} = {_example(one)}", f"{must}{_without_markup(one.words)}")
 
 
 def _example(one: Declared[Any, Any]) -> str:
@@ -328,10 +328,10 @@ def _meanings(documented: object) -> dict[str, str]:
     found: dict[str, str] = {}
     for names, words in _ENTRY.findall(section[1] if section else ""):
         for name in names.split(","):
-            found[name.strip(" *")] = _plain(" ".join(words.split()))
+            found[name.strip(" *")] = _without_markup(" ".join(words.split()))
     return found
 
 
-def _plain(words: str) -> str:
+def _without_markup(words: str) -> str:
     """Take the marks of reStructuredText away."""
     return re.sub(r":\w+:`[~.]?([^`]*)`", r"\1", words).replace("``", "").replace("`", "")

@@ -84,6 +84,10 @@ class Linkable:
             """Give the number of coordinates."""
             raise NotImplementedError
 
+        def moving_in(self, mode: int) -> int:
+            """Give the number of coordinates that move in a mode."""
+            raise NotImplementedError
+
         def places(self) -> Vector:
             """Give the room for places, speeds, loads and accelerations of all bodies."""
             raise NotImplementedError

@@ -140,7 +140,7 @@ def matched(
         samples = found.scale_factor * scaled.samples
         scaled = replace(scaled, samples=samples, polynomials=None)
     changed = changes(scaled, found.signal, goal)
-    added = {**_about(motion, target, found), "target_reached": int(reached), **changed}
+    added = {**_attributes_of(motion, target, found), "target_reached": int(reached), **changed}
     if not reached:
         worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
         msg = (
@@ -225,7 +225,7 @@ def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
     say_coarse([replace(signal, polynomials=None)], shortest, owner=owner)
 
 
-def _about(motion: Any, target: Target, found: Matched) -> dict[str, str | float | int]:
+def _attributes_of(motion: Any, target: Target, found: Matched) -> dict[str, str | float | int]:
     before = motion.metadata.get("scale_factor")
     factor = found.scale_factor * (before if isinstance(before, int | float) else 1.0)
     return {

@@ -78,7 +78,9 @@ def to_at2(
     printed_step = usual if float(usual) == step else repr(step)
     event = str(motion.metadata.get("event", motion.name))
     station = str(motion.metadata.get("station", ""))
-    parts = [" ".join(_plain(part).replace(",", " ").split()) for part in (event, station, named)]
+    parts = [
+        " ".join(_as_ascii(part).replace(",", " ").split()) for part in (event, station, named)
+    ]
     samples = [f"{value:15.7E}" for value in (signal.samples / STANDARD_GRAVITY).tolist()]
     rows = [samples[k : k + _PER_LINE] for k in range(0, len(samples), _PER_LINE)]
     lines = [
@@ -105,6 +107,6 @@ def _is_source(motion: MotionValue, path: str | os.PathLike[str], content: bytes
     return there != content and sha256(there).hexdigest() == digest
 
 
-def _plain(text: str) -> str:
+def _as_ascii(text: str) -> str:
     """Keep what every program reads: printable ASCII."""
     return text.encode("ascii", "replace").decode("ascii")

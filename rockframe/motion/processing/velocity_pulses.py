@@ -169,7 +169,7 @@ def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int,
     left = velocity.copy()
     wavelets: list[tuple[int, float]] = []
     for _ in range(WAVELETS):
-        coefficients = _about(left, around, wavelet)
+        coefficients = _coefficients_about(left, around, wavelet)
         top = int(np.argmax(np.abs(coefficients)))
         wavelets.append((around[top], float(coefficients[top])))
         left -= sum_of([wavelets[-1]], wavelet, 0, velocity.size)
@@ -219,7 +219,7 @@ def _reached(velocity: Array, share: float) -> int:
     return int(np.searchsorted(grown, share * grown[-1]))
 
 
-def _about(velocity: Array, samples: range, wavelet: Array) -> Array:
+def _coefficients_about(velocity: Array, samples: range, wavelet: Array) -> Array:
     """Give the coefficients of a wavelet about some samples that follow one another."""
     from scipy import signal as module
 
@@ -232,4 +232,6 @@ def _about(velocity: Array, samples: range, wavelet: Array) -> Array:
 
 def _at(velocities: Array, sample: int, wavelet: Array) -> Array:
     """Give the coefficient of a wavelet about a sample, of each component."""
-    return np.array([_about(one, range(sample, sample + 1), wavelet)[0] for one in velocities])
+    return np.array(
+        [_coefficients_about(one, range(sample, sample + 1), wavelet)[0] for one in velocities]
+    )

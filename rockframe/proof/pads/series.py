@@ -215,7 +215,7 @@ def course(
     left_out = Series(
         *(_last(one) if isinstance(one, tuple) or len(one) > count else 0.0 for one, count in grown)
     )
-    _kept(sizes, most, left_out, swing, least_inertia - low)
+    _confirm_bounds(sizes, most, left_out, swing, least_inertia - low)
     return PadCourse(h, ground[1], found, left_out)
 
 
@@ -272,7 +272,9 @@ def _last(one: Any) -> Any:
     return float(one[-1]) * UPWARDS if one else 0.0
 
 
-def _kept(sizes: list[Any], most: list[Any], left_out: Series, swing: float, low: float) -> None:
+def _confirm_bounds(
+    sizes: list[Any], most: list[Any], left_out: Series, swing: float, low: float
+) -> None:
     """Show that no bound was reached, from which all of them hold."""
     firsts = zip(sizes, most, left_out, strict=True)
     pairs = [one for i, one in enumerate(firsts) if i in (0, 1, 2, 3, 5)]

@@ -109,7 +109,7 @@ class PadWay:
         shaking = self.shaking
         last = shaking.count + self.patience / shaking.still_step
         while self.overturning is None:
-            if self.k >= shaking.count and self._kept():
+            if self.k >= shaking.count and self._stands_for_ever():
                 return False
             if self.k > last:
                 msg = "the motion after the record goes on for too long"
@@ -319,7 +319,7 @@ class PadWay:
         ]
         return times(beside, times(slope, beside))
 
-    def _kept(self) -> bool:
+    def _stands_for_ever(self) -> bool:
         """Prove by energy that the block stands for ever, :eq:`eq-proof-pads-energy`."""
         pads, state = self.pads, self.states.box(self.weights)
         rotation, rate, height, speed, sway = state

@@ -66,7 +66,7 @@ def numbers_of(given: object, measure: Measure, name: str) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
     if measure.unit == Unit.ONE:
         example = measure.example
-        items = _items(_plain(_ratios(given)))
+        items = _items(_as_python(_ratios(given)))
         floats = all(type(one) is float and math.isfinite(one) for one in items)
         found = (
             items
@@ -75,7 +75,7 @@ def numbers_of(given: object, measure: Measure, name: str) -> Generic:
         )
     else:
         _refuse_bare(given, measure, name)
-        found = to_si_values(_plain(given), measure, owner=OWNER, name=name)
+        found = to_si_values(_as_python(given), measure, owner=OWNER, name=name)
     return np.array(found, dtype=np.float64)
 
 
@@ -102,7 +102,7 @@ def free_values(given: object, name: str) -> tuple[Generic, str | None]:
     if unit is not None:
         measure = _measure_of(unit, name)
         return numbers_of(given, measure, name), str(measure.unit)
-    items = _plain(_items(given))
+    items = _as_python(_items(given))
     array = np.array(items)
     if array.ndim != 1 or array.dtype.kind not in "iufbU":
         msg = f"{OWNER}: {name} needs numbers, words or quantities in a row, got {shown(given)}"
@@ -173,7 +173,7 @@ def _items(given: object) -> list[Any]:
     return list(cast("Iterable[Any]", given))
 
 
-def _plain(given: Any) -> Any:
+def _as_python(given: Any) -> Any:
     """Give numbers of numpy and pandas as Python's."""
     if hasattr(given, "to_numpy"):
         given = given.to_numpy()

@@ -191,7 +191,7 @@ def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
     if faults:
         msg = f"{_OWNER}: {'; '.join(faults)}"
         raise StudyError(msg)
-    found = {name: _found(dataset[name], name, value) for name, value in labels.items()}
+    found = {name: _position_of(dataset[name], name, value) for name, value in labels.items()}
     return {name: found.get(name, 0) for name in dims}
 
 
@@ -203,7 +203,7 @@ def _float(number: float | np.number[Any]) -> float:
         return math.inf
 
 
-def _found(labels: xr.DataArray, name: str, wanted: Any) -> int:
+def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
     values = np.atleast_1d(labels.to_numpy())
     if name == MOTION:
         return motion_number(wanted, values.tolist(), owner=_OWNER)

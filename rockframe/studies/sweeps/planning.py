@@ -246,7 +246,8 @@ def plan_study(
         handed_over = not pays_to_screen(made.assembly, given.values(), arguments)
         screened = not handed_over
     if handed_over:
-        arguments = read_arguments(faults, **{**asked, "accuracy": AGAIN})
+        asked["accuracy"] = AGAIN
+        arguments = read_arguments(faults, **asked)
     grid = Grid(tuple(grid_axes), tuple(rows), len(given), of_case)
     if not 0 < grid.count <= MOST_CASES:
         faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")

@@ -14,7 +14,7 @@ from rockframe.components.parameters import Choice, Count, Declared, Text
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
-from rockframe.shared_arguments import meant
+from rockframe.shared_arguments import suggestion
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.arguments import OF_A_SWEEP
 from rockframe.studies.sweeps.axes import (
@@ -204,7 +204,7 @@ class SystemScene:
         known = [*TARGETS, *_OPTIONS, *STARTS]
         known += [one for part in self._parts().values() for one in part.varied()]
         listed = ", ".join(dict.fromkeys(known))
-        question = meant(parameter, [*known, *OF_A_SWEEP])
+        question = suggestion(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"
 
 
@@ -234,7 +234,7 @@ class FunctionScene:
             self._signature().bind(**given)
         except TypeError as problem:
             unknown = [name for name in given if name not in self._signature().parameters]
-            question = meant(unknown[0], OF_A_SWEEP).removesuffix(".") if unknown else ""
+            question = suggestion(unknown[0], OF_A_SWEEP).removesuffix(".") if unknown else ""
             return [f"the axes do not fit the arguments of {self.name}: {problem}{question}"]
         return []
 
