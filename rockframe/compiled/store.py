@@ -15,8 +15,8 @@ from types import ModuleType
 from typing import Any, Final
 
 PACKAGE: Final = Path(__file__).parent.parent
-_SOURCES: Final = ("constants.py", "compiled/*.py", "signals/*.py",
-                   "dynamics/**/*.py", "solve/**/*.py")  # fmt: skip
+_SOURCES: Final = ("constants.py", "compiled/*.py", "signals/*.py", "dynamics/**/*.py",
+                   "solve/**/*.py", "results/along_steps.py")  # fmt: skip
 """Files of the package that machine code depends on."""
 
 _NAME: Final = __name__.partition(".")[0]

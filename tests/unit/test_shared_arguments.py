@@ -102,6 +102,9 @@ def test_rows_that_a_docstring_has_stay_and_all_follow_the_signature():
     assert documented_by(Some)(bare).__doc__ == ""
 
 
+WITH_AXES = (rf.incremental_dynamic_analysis, rf.rocking_spectrum, rf.overturning_spectrum)
+
+
 @pytest.mark.parametrize("function", TAKEN, ids=lambda one: one.__name__)
 def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
     kind, names = TAKEN[function]
@@ -109,7 +112,7 @@ def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
     assert list(declared) == names
     own = inspect.signature(function).parameters
     further = [one.name for one in own.values() if one.kind is one.VAR_KEYWORD]
-    assert further == (["more_axes"] if function is rf.incremental_dynamic_analysis else [])
+    assert further == (["more_axes"] if function in WITH_AXES else [])
     for name in names:
         usual = DEFAULTS.get(name)
         if function is rf.overturning_map and name == "overturning":
@@ -123,8 +126,10 @@ def test_each_analysis_has_the_names_and_defaults_that_it_had(function):
         if further  # any other name may be that of an axis
         else (TypeError, rf"{function.__name__}\(\) takes no 'acuracies'")
     )
+    needed = {"periods": ([2.0], "s"), "scale": [1.0, 2.0]} if further else {}
+    needed = {name: one for name, one in needed.items() if name in own}
     with pytest.raises(refused[0], match=refused[1]):
-        function(SYSTEM, acuracies="fast")
+        function(SYSTEM, **needed, acuracies="fast")
     assert pickle.loads(pickle.dumps(function)) is function  # noqa: S301
 
 
@@ -167,6 +172,6 @@ def test_values_are_checked_in_one_place():
 
 
 def test_the_width_of_a_bracket_is_told_from_that_of_a_block():
-    for analysis in (rf.critical_scale, rf.overturning_spectrum, rf.overturning_map):
+    for analysis in (rf.critical_scale, rf.overturning_map):
         with pytest.raises(TypeError, match="the width of a bracket is 'bracket_width'"):
             analysis(width=0.01)

@@ -243,7 +243,7 @@ def plan_study(
         raise StudyError(*faults)
     handed_over = False
     if screened and isinstance(made, SystemScene):
-        handed_over = not pays_to_screen(made.assembly, given.values(), arguments)
+        handed_over = not pays_to_screen(made.assembly, given.values())
         screened = not handed_over
     if handed_over:
         asked["accuracy"] = AGAIN

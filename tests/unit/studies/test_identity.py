@@ -62,6 +62,8 @@ SWEEP_CHANGES = {
 SIZES = {"system": SYSTEM, "motions": MOTIONS, "periods": ([2, 4], "s"), "slenderness": [3, 4]}
 OF_SIZES = {
     "system": OTHER, "motions": TURNED, "periods": ([2, 5], "s"), "slenderness": [3, 5],
+    "axes": {"gravity": ["9 m/s^2", "10 m/s^2"]},
+    "more_axes": ({"gravity": ["9 m/s^2"]}, {"gravity": ["10 m/s^2"]}),
 }  # fmt: skip
 SPECTRAL = tuple({"intensity": "SA", "period": period} for period in ("0.5 s", "2 s"))
 SPREAD = {"scale": ("lognormal", 1.5, 0.4), "gravity": ("uniform", "9 m/s^2", "10 m/s^2")}
