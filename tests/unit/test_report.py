@@ -136,7 +136,12 @@ def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_pat
     assert "verturned" in words  # of a block that may slide: did not slide, overturned
     assert "Certificate: the verdict" in words
     assert "No certificate" not in words
-    coarse = rf.System(*scenes[parts]).simulate(record, **given, output_step="0.1 s")
+
+
+def test_a_run_of_coarse_samples_asks_for_its_motion(tmp_path):
+    shaking = 9.0 * np.sin(np.linspace(0.0, 30.0, 400)) * np.linspace(0.2, 1.0, 400)
+    record = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
+    coarse = rf.System(BLOCK, PADS).simulate(record, free_vibration="9 s", output_step="0.1 s")
     said = words_of(rf.report(coarse, tmp_path / "out.html"))
     assert "does not hold its motion, sample by sample; hand it in, with motion=" in said
 

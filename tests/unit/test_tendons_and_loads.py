@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from plainly import plainly
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
+from rockframe.compiled.bound import structure_of
 from rockframe.errors import AssemblyError, ComponentError, StudyError
 
 WEIGHT, GRAVITY = 1e6, 9.80665
@@ -63,6 +65,31 @@ def test_a_load_has_its_moment_and_its_energy():
     run = rf.System(BLOCK, LOAD).simulate(PULSE, free_vibration="1 s", outputs=("energy",))
     assert float(run.energy_residual) < 1e-8
     assert "restrainer" not in run.dims
+
+
+@pytest.mark.parametrize("base", [(), (PADS,)], ids=["rigid", "pads"])
+def test_links_of_any_laws_run_by_the_same_machine_code(base):
+    tie = rf.Restrainer(on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m")
+    load = rf.Load(at=("0 m", "4 m"), horizontal="1 kN")
+    wall = rf.RearWall(side="left", stiffness="2 MN/m", gap="5 mm")
+    systems = [
+        rf.System(BLOCK, *base, *links).assembly.model.system
+        for links in ((tie,), (load,), (wall,), (wall, load, tie))
+    ]
+    assert len({structure_of(system) for system in systems}) == 1
+    # each has the states of its own law: four of a tie, two of a wall, one of a load
+    assert [one.modes() / systems[1].modes() for one in systems] == [4, 1, 2, 8]
+
+
+def test_the_work_of_a_load_is_gravity_beside_restrainers_too():
+    slack = rf.Restrainer(on=("-1 m", "6 m"), to=("-3 m", "6 m"), stiffness="1 MN/m", slack="9 m")
+    with plainly():
+        alone, beside = (
+            rf.System(BLOCK, LOAD, *links).simulate(PULSE, duration="0.8 s", outputs=("energy",))
+            for links in ((), (slack,))
+        )
+    assert float(abs(alone.potential_energy).max()) > 1.0
+    np.testing.assert_allclose(beside.potential_energy, alone.potential_energy, atol=1e-6)
 
 
 def test_a_mass_at_a_point_is_a_part_of_the_body():

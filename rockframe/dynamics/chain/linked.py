@@ -30,7 +30,7 @@ from rockframe.dynamics.chain.link_rows import (
     room_of_states,
 )
 from rockframe.dynamics.chain.rows import PLACES
-from rockframe.dynamics.links import GUARDS, kinds_of, one_of
+from rockframe.dynamics.links import GUARDS
 from rockframe.dynamics.protocol import (
     LAST_EVENT,
     LINK_LOSS,
@@ -40,6 +40,7 @@ from rockframe.dynamics.protocol import (
     Guards,
     Slope,
 )
+from rockframe.dynamics.several_laws import kinds_of, one_of
 from rockframe.errors import AssemblyError
 
 

@@ -1,0 +1,126 @@
+"""Links of several laws in one scene, each of which follows its own."""
+
+from collections.abc import Sequence
+from typing import Any, Final, NamedTuple
+
+from rockframe.compiled import Vector, part_of
+from rockframe.dynamics.links import (
+    Bumper,
+    LinkEvent,
+    SteadyForce,
+    Stretch,
+    Tie,
+    link_law,
+)
+
+
+@link_law
+class OneOfTwo(NamedTuple):
+    """One of two laws: what links of several laws follow, each its own."""
+
+    which: float  # 0 for the first
+    first: Any
+    second: Any
+
+    def force(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give the force of the law."""
+        if self.which == 0.0:
+            return self.first.force(state, stretch, own)
+        return self.second.force(state, stretch, own)
+
+    def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give its energy."""
+        if self.which == 0.0:
+            return self.first.energy(state, stretch, own)
+        return self.second.energy(state, stretch, own)
+
+    def power(self, state: int, stretch: Stretch, own: Vector) -> float:
+        """Give what it dissipates."""
+        if self.which == 0.0:
+            return self.first.power(state, stretch, own)
+        return self.second.power(state, stretch, own)
+
+    def variables(self) -> int:
+        """Give the number of variables, of either law."""
+        return max(self.first.variables(), self.second.variables())
+
+    def rates(self, state: int, stretch: Stretch, own: Vector, out: Vector) -> None:
+        """Write the rates of its variables; what it has not stays."""
+        for i in range(len(out)):
+            out[i] = 0.0
+        if self.which == 0.0:
+            self.first.rates(state, stretch, own, out)
+        else:
+            self.second.rates(state, stretch, own, out)
+
+    def states(self) -> int:
+        """Give the number of states, of either law."""
+        return max(self.first.states(), self.second.states())
+
+    def starting(self, stretch: Stretch, own: Vector) -> int:
+        """Give its state at the start."""
+        if self.which == 0.0:
+            return self.first.starting(stretch, own)
+        return self.second.starting(stretch, own)
+
+    def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
+        """Give its guard."""
+        if self.which == 0.0:
+            return self.first.guard(which, state, stretch, own)
+        return self.second.guard(which, state, stretch, own)
+
+    def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
+        """Give what happens to it."""
+        if self.which == 0.0:
+            return self.first.switch(which, state, stretch, own)
+        return self.second.switch(which, state, stretch, own)
+
+    def shown(self, state: int) -> int:
+        """Give the state of it that users see."""
+        if self.which == 0.0:
+            return self.first.shown(state)
+        return self.second.shown(state)
+
+    def idles(self, state: int) -> bool:
+        """Whether it does nothing in a state."""
+        return self.first.idles(state) if self.which == 0.0 else self.second.idles(state)
+
+    def number_count(self) -> int:
+        """Give how many numbers both have."""
+        return 1 + self.first.number_count() + self.second.number_count()
+
+    def with_numbers(self, numbers: Vector) -> Any:
+        """Give the law with other numbers, from an array."""
+        behind = 1 + self.first.number_count()
+        return OneOfTwo(
+            numbers[0],
+            self.first.with_numbers(part_of(numbers, 1)),
+            self.second.with_numbers(part_of(numbers, behind)),
+        )
+
+
+def one_of(laws: Sequence[Any], own: Any) -> Any:
+    """Give a law that may be any of several, of different classes, and is one's own."""
+    first, *others = laws
+    if not others:
+        return own
+    if type(own) is type(first):
+        return OneOfTwo(0.0, own, one_of(others, others[0]))
+    return OneOfTwo(1.0, first, one_of(others, own))
+
+
+SHIPPED: Final = (Tie(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Bumper(0.0, 0.0, 0.0), SteadyForce(0.0))
+"""A law of each class that restrainers, tendons, walls and loads follow."""
+
+
+def kinds_of(laws: Sequence[Any]) -> list[Any]:
+    """Give a law of each class that links of these laws may follow.
+
+    All that parts follow are there as soon as one of them is, so that links of any of them run by
+    the same machine code.
+    """
+    found = {type(law): law for law in laws}
+    if any(type(law) in found for law in SHIPPED):
+        own = [law for kind, law in found.items() if kind not in map(type, SHIPPED)]
+        return [*SHIPPED, *own]
+    return list(found.values())
