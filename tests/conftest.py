@@ -57,6 +57,14 @@ def closed_figures() -> Iterator[None]:
         sys.modules["matplotlib.pyplot"].close("all")
 
 
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave figures of reports undrawn, most of the time of one, where a test reads its words."""
+    from rockframe.reports import page
+
+    monkeypatch.setattr(page, "_drawn", lambda figure, kind: b"<svg/>")
+
+
 def pytest_configure(config: pytest.Config) -> None:
     from rockframe.compiled import COMPILED
 

@@ -18,7 +18,7 @@ from rockframe.reports.limits import LIMITS
 from rockframe.results.schema import SCHEMA
 from rockframe.simulation.certify import certificate
 
-pytestmark = pytest.mark.unit
+pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
 
 class Page(HTMLParser):

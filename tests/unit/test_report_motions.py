@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError
 from rockframe.reports import motions as in_reports
 from rockframe.results.schema import SCHEMA
 
-pytestmark = pytest.mark.unit
+pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
 BLOCK = rf.System(rf.Block(width="0.6 m", height="2.4 m", mass="1 t"))
 TARGET = rf.TargetSpectrum.eurocode_8("0.2 g_0", "B")
