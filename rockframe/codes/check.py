@@ -34,7 +34,7 @@ def rocking_block(
             and not setting.ties  # what is left of loads that are masses
         ):
             return setting
-    carried = ", which may carry loads that are masses," if carries else ""
+    carried = ", which may carry loads that are masses," if carries else ","
     msg = f"{owner}: the check is of a block on level rigid ground{carried} got {setting.model}"
     raise ComponentError(msg)
 

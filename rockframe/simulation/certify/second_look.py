@@ -60,12 +60,7 @@ def second_look(system: Assembly, plan: Plan) -> Plan:
     """Give the same run with more steps in each interval of the motion, by at least one."""
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
     given = max(substeps_of(plan.accuracy, system.model, interval), 1)
-    return replace(plan.bare(), accuracy=Accuracy(substeps=more_steps(given)))
-
-
-def more_steps(substeps: int) -> int:
-    """Give the number of steps in each interval by which a run is made once more."""
-    return substeps + math.ceil(MORE * substeps)
+    return replace(plan.bare(), accuracy=Accuracy(substeps=given + math.ceil(MORE * given)))
 
 
 def is_sure(first: Look, second: Look) -> bool:

@@ -52,8 +52,9 @@ from rockframe.studies.sweeps.scenes import (
     own_motion,
     scene_of,
 )
-from rockframe.studies.sweeps.screening import pays_to_screen
 from rockframe.studies.sweeps.study import Histories, Study
+from rockframe.system.alone import AloneSetting
+from rockframe.system.assembly import Assembly
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
 
 _FLOAT: Final = 8.0
@@ -243,7 +244,7 @@ def plan_study(
         raise StudyError(*faults)
     handed_over = False
     if screened and isinstance(made, SystemScene):
-        handed_over = not pays_to_screen(made.assembly, given.values())
+        handed_over = not _pays_to_screen(made.assembly, given.values())
         screened = not handed_over
     if handed_over:
         asked["accuracy"] = AGAIN
@@ -267,6 +268,20 @@ def plan_study(
         made, grid, given, arguments, seconds, histories, screened=screened,
         handed_over=handed_over, lazy=bool(too_large),
     )  # fmt: skip
+
+
+def _pays_to_screen(system: Assembly, motions: Iterable[GroundMotion | None]) -> bool:
+    """Tell whether two runs by fixed steps cost less than one by tolerance.
+
+    On rigid ground there are no more steps by tolerance. Under pulses in closed form there are
+    few of either kind, so that a second run costs what surrounds the steps; those of several
+    bodies are dear enough.
+    """
+    if not system.setting.steps_cost_most:
+        return False
+    return not isinstance(system.setting, AloneSetting) or any(
+        one is None or one.recipe is None for one in motions
+    )
 
 
 def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool) -> str:
