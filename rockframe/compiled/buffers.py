@@ -18,6 +18,7 @@ from rockframe.compiled import language
 numba: Final[Any] = import_module("numba")
 extending: Final[Any] = import_module("numba.extending")
 cgutils: Final[Any] = import_module("numba.core.cgutils")
+templates: Final[Any] = import_module("numba.core.typing.templates")
 
 
 _INTO_CALLERS: Final = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -59,27 +60,6 @@ def buffer_of(_: Any, array: Any) -> Any:
         return made._getvalue()
 
     return BufferType(array.dtype, array.ndim, array.mutable)(array), code
-
-
-@extending.intrinsic
-def _load(_: Any, address: Any, offset: Any) -> Any:
-    """Read the element at an offset, in compiled code."""
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return builder.load(builder.gep(values[0], [values[1]]))
-
-    return address.dtype(address, numba.intp), code
-
-
-@extending.intrinsic
-def _store(_: Any, address: Any, offset: Any, value: Any) -> Any:
-    """Write the element at an offset, in compiled code."""
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        builder.store(values[2], builder.gep(values[0], [values[1]]))
-        return context.get_dummy_value()
-
-    return numba.void(address, numba.intp, address.dtype), code
 
 
 @extending.intrinsic
@@ -196,33 +176,75 @@ def _integers_of(array: Any) -> Callable[..., Any]:
     return lambda array: _as_integers(array)
 
 
-@extending.overload(operator.getitem, strict=False, jit_options=_INTO_CALLERS)
-def _get(kept: Any, place: Any) -> Callable[..., Any] | None:
-    if not (isinstance(kept, BufferType) and _is_place(place)):
+@templates.infer_global(operator.getitem)
+class _Get(templates.AbstractTemplate):
+    """The type of an element of a buffer."""
+
+    def generic(self, arguments: Any, keywords: Any) -> Any:
+        kept, place = arguments
+        if isinstance(kept, BufferType) and (found := _place_in(kept, place)):
+            return kept.dtype(kept, found)
         return None
-    if kept.dimensions == 1:
-        stride = kept.stride
-        return lambda kept, place: _load(kept.address, place * stride)
-    return lambda kept, place: _load(kept.address, place[0] * kept.shape[1] + place[1])
 
 
-@extending.overload(operator.setitem, strict=False, jit_options=_INTO_CALLERS)
-def _set(kept: Any, place: Any, value: Any) -> Callable[..., Any] | None:
-    if not (isinstance(kept, BufferType) and kept.writeable and _is_place(place)):
+@extending.lower_builtin(operator.getitem, BufferType, numba.types.Any)
+def _load(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    return builder.load(_address_of(context, builder, signature, values))
+
+
+@templates.infer_global(operator.setitem)
+class _Set(templates.AbstractTemplate):
+    """What may be written to an element of a buffer."""
+
+    def generic(self, arguments: Any, keywords: Any) -> Any:
+        kept, place, _ = arguments
+        if isinstance(kept, BufferType) and kept.writeable and (found := _place_in(kept, place)):
+            return numba.void(kept, found, kept.dtype)
         return None
+
+
+@extending.lower_builtin(operator.setitem, BufferType, numba.types.Any, numba.types.Any)
+def _store(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    builder.store(values[2], _address_of(context, builder, signature, values))
+    return context.get_dummy_value()
+
+
+@templates.infer_global(len)
+class _Length(templates.AbstractTemplate):
+    """The type of the number of elements, or rows, of a buffer."""
+
+    def generic(self, arguments: Any, keywords: Any) -> Any:
+        (kept,) = arguments
+        return numba.intp(kept) if isinstance(kept, BufferType) else None
+
+
+@extending.lower_builtin(len, BufferType)
+def _length(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    given = cgutils.create_struct_proxy(signature.args[0])(context, builder, value=values[0])
+    return builder.extract_value(given.shape, 0)
+
+
+def _address_of(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    """Give the address of an element of a buffer."""
+    kept = signature.args[0]
+    given = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
     if kept.dimensions == 1:
-        stride = kept.stride
-        return lambda kept, place, value: _store(kept.address, place * stride, value)
-    return lambda kept, place, value: _store(
-        kept.address, place[0] * kept.shape[1] + place[1], value
+        offset = builder.mul(values[1], context.get_constant(numba.intp, kept.stride))
+    else:
+        row, column = (builder.extract_value(values[1], i) for i in range(2))
+        offset = builder.add(builder.mul(row, builder.extract_value(given.shape, 1)), column)
+    return builder.gep(given.address, [offset])
+
+
+def _place_in(kept: BufferType, place: Any) -> Any:
+    """Give the type of an index of an element; none of slices, which are not known."""
+    if kept.dimensions == 1:
+        return numba.intp if isinstance(place, numba.types.Integer) else None
+    numbers = place if isinstance(place, numba.types.BaseTuple) else ()
+    whole = len(numbers) == kept.dimensions and all(
+        isinstance(number, numba.types.Integer) for number in numbers
     )
-
-
-@extending.overload(len, strict=False, jit_options=_INTO_CALLERS)
-def _length(kept: Any) -> Callable[..., Any] | None:
-    if not isinstance(kept, BufferType):
-        return None
-    return lambda kept: kept.shape[0]
+    return numba.types.UniTuple(numba.intp, kept.dimensions) if whole else None
 
 
 @extending.overload(language.constant, strict=False, jit_options=_INTO_CALLERS)
@@ -252,12 +274,6 @@ def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
         )
     lines = [f"out[first + {i}] = numbers[{i}]" for i in range(len(numbers))]
     return _written("numbers, first, out", "; ".join(lines) or "pass")
-
-
-def _is_place(place: Any) -> bool:
-    """Whether an index is a number, or one for each dimension; slices are not known."""
-    numbers = place if isinstance(place, numba.types.BaseTuple) else (place,)
-    return all(isinstance(number, numba.types.Integer) for number in numbers)
 
 
 def _written(arguments: str, line: str, **names: Any) -> Callable[..., Any]:

@@ -15,14 +15,15 @@ from rockframe.compiled.language import KERNELS, is_method
 numba: Final[Any] = import_module("numba")
 extending: Final[Any] = import_module("numba.extending")
 ir: Final[Any] = import_module("llvmlite.ir")
+imputils: Final[Any] = import_module("numba.core.imputils")
 templates: Final[Any] = import_module("numba.core.typing.templates")
 
 OPTIONS: Final = {"error_model": "numpy"}
 HELPER: Final = OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Division by zero gives infinities and NaN, as numpy's, and is not checked for."""
 
-_known: Final[set[Callable[..., Any]]] = set()
-"""Functions and methods that numba has been told of."""
+_known: Final[dict[Callable[..., Any], Any]] = {}
+"""Functions and methods that numba has been told of, and its compiled ones, which it keeps not."""
 _ANYTHING: Final = numba.types.VarArg(numba.types.Any)
 _methods: Final[dict[Callable[..., Any], Any]] = {}
 """How numba finds the types of a method's call."""
@@ -32,18 +33,43 @@ def register_kernels() -> None:
     """Make all functions and methods known that were marked since the last time."""
     for function, into_caller in list(KERNELS.items()):
         if function not in _known:
-            _known.add(function)
-            extending.register_jitable(**HELPER, forceinline=into_caller)(function)
+            _register(function, into_caller)
             if is_method(function):
                 _register_method(function)
 
 
 def register_inlined(function: Callable[..., Any]) -> Callable[..., Any]:
     """Make one more function known, which is compiled into its callers."""
-    registered: Callable[..., Any] = extending.register_jitable(**HELPER, forceinline=True)(
-        function
-    )
-    return registered
+    _register(function, True)
+    return function
+
+
+class _Compiled(numba.types.Dispatcher):
+    """numba's type of a compiled function, to which all numbers of a kind are alike."""
+
+    def get_call_type(self, context: Any, arguments: Any, keywords: Any) -> Any:
+        """Give the types of a call, not that of each constant that it is called with."""
+        alike = [numba.types.unliteral(each) for each in arguments]
+        named = {name: numba.types.unliteral(each) for name, each in keywords.items()}
+        return super().get_call_type(context, alike, named)
+
+
+extending.register_model(_Compiled)(extending.models.OpaqueModel)
+
+
+@imputils.lower_constant(_Compiled)
+def _no_value(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """Hand over, for a function that is an argument, nothing: its type says which it is."""
+    return context.get_dummy_value()
+
+
+def _register(function: Callable[..., Any], into_caller: bool) -> None:
+    """Let calls of a function mean its compiled one: one for all callers.
+
+    numba's ``register_jitable`` compiles it anew for callers with other options.
+    """
+    _known[function] = numba.njit(**HELPER, forceinline=into_caller)(function)
+    templates.infer_global(function, _Compiled(_known[function]))
 
 
 def _register_method(function: Callable[..., Any]) -> None:

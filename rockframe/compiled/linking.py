@@ -27,7 +27,7 @@ IS_KNOWN: Final[bool] = TRIED[0] <= tuple(numba.version_info[:2]) <= TRIED[1] an
     hasattr(_codegen.JITCodeLibrary, name)
     for name in (
         "add_linking_library", "finalize", "get_pointer_to_function", "codegen",
-        "_get_module_for_linking",
+        "_get_module_for_linking", "_optimize_functions",
     )
 )  # fmt: skip
 """Whether numba's libraries can wait."""
@@ -69,10 +69,15 @@ class _Waiting(_codegen.JITCodeLibrary):
         """Put the library together from its own code and all that it calls."""
         self._linking_libraries = _callers_first(self)
         super().finalize()
+        self._shared_module = None  # what was linked before called what this holds now
         for library in (self, *self._linking_libraries):
             for name, environment in getattr(library, "_environments", ()):
                 if self._codegen._engine.is_symbol_defined(name):
                     self._codegen.set_env(name, environment)
+
+    def _optimize_functions(self, module: Any) -> None:
+        """Leave functions as they are written: they are optimised with what calls them."""
+        module.data_layout = self._codegen._data_layout
 
     def _get_module_for_linking(self) -> Any:
         if self._finalized:
