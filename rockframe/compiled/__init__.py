@@ -31,6 +31,7 @@ from rockframe.compiled.language import kernel as kernel
 from rockframe.compiled.language import lane_of as lane_of
 from rockframe.compiled.language import part_of as part_of
 from rockframe.compiled.language import put as put
+from rockframe.compiled.language import seldom_called as seldom_called
 from rockframe.compiled.language import stretch as stretch
 from rockframe.compiled.language import widest_registers as widest_registers
 from rockframe.compiled.language import with_numbers as with_numbers

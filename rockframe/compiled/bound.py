@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from rockframe.compiled.language import Vector, tuple_from
+from rockframe.compiled.called_back import CalledBack
+from rockframe.compiled.language import SELDOM, Vector, tuple_from
 
 
 def numbers_in(bundle: Any) -> Vector:
@@ -63,6 +64,8 @@ class Source:
         self.code: Any = None  # once it has been compiled
         self.address = 0  # of that
         self.failed = False  # to be compiled
+        self.is_seldom_called = function in SELDOM and not in_lanes
+        self.seconds_called_back = 0.0
 
     @cached_property
     def signature(self) -> Signature:
@@ -75,15 +78,25 @@ class Source:
 class Bound:
     """A function bound to a tuple: plain Python, and what entries call in its place."""
 
-    __slots__ = ("_bundle", "source")
+    __slots__ = ("_bundle", "_called_back", "source")
 
     def __init__(self, source: Source, bundle: Any) -> None:
         self.source = source
         self._bundle = _own(bundle)
+        self._called_back: CalledBack | None = None
 
     def call(self, *arguments: Any) -> Any:
         """Call the function with the tuple in place of its numbers, the last argument."""
         return self.source.function(self._bundle, *arguments[:-1])
+
+    @property
+    def address(self) -> int:
+        """The address of the machine code, or, where there is none, of what calls Python back."""
+        if self.source.address:
+            return self.source.address
+        if self._called_back is None:
+            self._called_back = CalledBack(self)
+        return self._called_back.address
 
 
 def bound(functions: tuple[Callable[..., Any], ...], bundle: Any) -> tuple[Bound, ...]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar, cast
 import numpy as np
 
 from rockframe.compiled.bound import Bound, Source
+from rockframe.compiled.called_back import raising
 from rockframe.compiled.language import NEEDED_BY, Vector, inlined
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ COMPILED: Final = _ASKED != "0" and _HAS_NUMBA
 """Whether functions are compiled."""
 WAITS: Final = _ASKED == "wait"
 """Whether all entries wait for their machine code."""
+CALLED_BACK: Final = 1.0
+"""Time in functions that are called back in Python from which on they are compiled [s]."""
 PATIENCE: Final = 3.0
 """Length of a run in plain Python from which on compilation is spoken of [s]."""
 _said_slow: Final[list[bool]] = []
@@ -123,16 +126,42 @@ class Entry:
         sources: list[Source] = []
         structure = tuple(_structure_of(argument, words, sources) for argument in arguments)
         routine = self._routines.get(structure)
-        if routine is None or not all(source.address for source in sources):
-            with _lock:
-                meanwhile = None if self._waits else self._meanwhile(structure, sources)
-                ready = meanwhile is None or meanwhile.is_over()
-                routine = self._compiled(structure, sources) if ready else None
-            if routine is None:
-                with meanwhile or nullcontext():
-                    return self._plain(*arguments)
-            words = [word.address if isinstance(word, Source) else word for word in words]
-        return routine(*words)
+        if routine is not None and all(source.address for source in sources):
+            return routine(*words)
+        seldom = [source for source in _missing(sources) if source.is_seldom_called]
+        needed = [source for source in sources if source not in seldom]
+        with _lock:
+            meanwhile = None if self._waits else self._meanwhile(structure, needed)
+            ready = meanwhile is None or meanwhile.is_over()
+            routine = self._compiled(structure, needed) if ready else None
+            if routine is not None:
+                self._catch_up(seldom)
+        if routine is None:
+            with meanwhile or nullcontext():
+                return self._plain(*arguments)
+        words = [word.address if isinstance(word, Bound) else word for word in words]
+        return raising(routine, words)
+
+    def _catch_up(self, sources: list[Source]) -> None:
+        """Compile what has been called back in Python for long, or take what was kept of it."""
+        from rockframe.compiled.jobs import Job
+        from rockframe.compiled.parallel import Meanwhile, NotCompiledError, make_all
+
+        for source in sources:
+            job = Job(source.function, source.structure, True)
+            try:
+                if not job.is_stored and source.seconds_called_back < CALLED_BACK:
+                    continue
+                if not WAITS:
+                    meanwhile = self._awaited.setdefault(id(source), Meanwhile([job]))
+                    if not meanwhile.is_over(at_once=True):
+                        continue
+                (source.code,) = make_all([job])
+            except NotCompiledError as found:
+                _could_not(job.function, found.problem)
+                source.failed, source.is_seldom_called = True, False
+            else:
+                source.address = source.code.address
 
     def is_compiled_within(self, patience: float, arguments: tuple[Any, ...]) -> bool:
         """See :func:`compiled_within`."""
@@ -230,7 +259,7 @@ def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any
     if isinstance(argument, Bound):
         source = argument.source
         sources.append(source)
-        words.append(source.address or source)
+        words.append(source.address or argument)
         return ("function", source.signature)
     words.append(argument)
     if isinstance(argument, np.ndarray):

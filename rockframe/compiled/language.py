@@ -48,6 +48,16 @@ def inlined(function: Function) -> Function:
     return function
 
 
+SELDOM: Final[set[Callable[..., Any]]] = set()
+"""Functions that compiled code may call back in Python until they are worth compiling."""
+
+
+def seldom_called(function: Function) -> Function:
+    """Mark a function to be bound that is called so seldom that it may run as plain Python."""
+    SELDOM.add(function)
+    return function
+
+
 def is_method(function: Callable[..., Any]) -> bool:
     """Whether a marked function was defined in the body of a class."""
     holder = function.__qualname__.rpartition(".")[0]

@@ -16,6 +16,7 @@ from rockframe.compiled import (
     kernel,
     numbers_in,
     put,
+    seldom_called,
 )
 from rockframe.dynamics.protocol import Energies, Equations, Ground
 from rockframe.solve.accuracy import STABLE
@@ -45,6 +46,7 @@ def guards_of_state(
     guards_at(system, mode, state, slope, Ground(ground_x, ground_y), limits, out)
 
 
+@seldom_called
 @kernel
 def switched(
     system: Equations, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
@@ -124,8 +126,13 @@ def runs_as_python(equations: BoundEquations) -> bool:
 
 
 def has_machine_code(equations: BoundEquations) -> bool:
-    """Whether the functions of a system are there as machine code."""
+    """Whether the functions of a system are there as machine code, those called at events too."""
     return all(one.source.address for one in equations if isinstance(one, Bound))
+
+
+def steps_as_machine_code(equations: BoundEquations) -> bool:
+    """Whether what each step calls is there as machine code."""
+    return bool(equations.march.source.address)
 
 
 class KnownMode(NamedTuple):

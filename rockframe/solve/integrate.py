@@ -25,7 +25,13 @@ from rockframe.solve import layout as at
 from rockframe.solve.accuracy import Accuracy, substeps_of
 from rockframe.solve.bookkeeping import ON_SAMPLE, ROUNDING
 from rockframe.solve.driver import FIXED_STEPS, advance
-from rockframe.solve.equations import BoundEquations, equations_of, has_machine_code, runs_as_python
+from rockframe.solve.equations import (
+    BoundEquations,
+    equations_of,
+    has_machine_code,
+    runs_as_python,
+    steps_as_machine_code,
+)
 from rockframe.solve.layout import Status
 from rockframe.solve.schemes import STAGES
 from rockframe.solve.trajectory import Events, Steps, Trajectory, run_counts, steps_of
@@ -301,7 +307,7 @@ def integrate(
             events,
             workspace,
         )
-        if not has_machine_code(equations):
+        if not steps_as_machine_code(equations):
             as_python += perf_counter() - began
         if result not in (at.MORE_ROOM, at.PAUSED):
             break

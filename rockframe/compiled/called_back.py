@@ -1,0 +1,91 @@
+"""Functions in Python that machine code calls, as long as they are not worth compiling.
+
+What is called at events only may take half of all the time to compile, and a thousandth of that of
+a run. Compiled code calls it like any bound function, by an address: a buffer is handed over as
+its address and its lengths, one after the other.
+"""
+
+import ctypes
+import inspect
+import threading
+from collections.abc import Callable
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Final, get_type_hints
+
+from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector
+
+if TYPE_CHECKING:
+    from rockframe.compiled.bound import Bound
+
+_WORD: Final = ctypes.c_int64
+_NUMBERS: Final[dict[Any, Any]] = {int: _WORD, float: ctypes.c_double, type(None): None}
+"""What numbers, and nothing, are handed over as."""
+_BUFFERS: Final[dict[Any, tuple[Any, str, int]]] = {
+    Vector: (ctypes.c_double, "d", 1),
+    Integers: (_WORD, "q", 1),
+    ReadOnlyMatrix: (ctypes.c_double, "d", 2),
+}
+"""Kind of the elements of buffers, its letter, and the number of dimensions."""
+
+
+class _Raised(threading.local):
+    """What functions raised that machine code called in this thread."""
+
+    first: BaseException | None = None
+
+
+_raised: Final = _Raised()
+
+
+class CalledBack:
+    """A bound function at an address at which it runs as plain Python."""
+
+    def __init__(self, bound: "Bound") -> None:
+        source, call = bound.source, bound.call
+        hints = get_type_hints(source.function, include_extras=True)
+        names = [*inspect.signature(source.function).parameters][1:]
+        kinds = [*(hints[name] for name in names), Vector]
+        words: list[Any] = []
+        for kind in kinds:
+            words += [_NUMBERS[kind]] if kind in _NUMBERS else [_WORD] * (1 + _BUFFERS[kind][2])
+
+        def called(*words: Any) -> Any:
+            began = perf_counter()
+            try:
+                return call(*_arguments(kinds, words))
+            except BaseException as raised:  # machine code knows no exceptions: raised behind it
+                _raised.first = _raised.first or raised
+                return 0
+            finally:
+                source.seconds_called_back += perf_counter() - began
+
+        self._kept = ctypes.CFUNCTYPE(_NUMBERS[hints["return"]], *words)(called)
+        self.address = ctypes.cast(self._kept, ctypes.c_void_p).value or 0
+
+
+def _arguments(kinds: list[Any], words: tuple[Any, ...]) -> list[Any]:
+    """Give the arguments of a call, arrays as memory views."""
+    arguments: list[Any] = []
+    place = 0
+    for kind in kinds:
+        if kind in _NUMBERS:
+            arguments.append(words[place])
+            place += 1
+            continue
+        element, letter, dimensions = _BUFFERS[kind]
+        address, *lengths = words[place : place + 1 + dimensions]
+        place += 1 + dimensions
+        count = lengths[0] if dimensions == 1 else lengths[0] * lengths[1]
+        memory: Any = memoryview((element * count).from_address(address)).cast("B")
+        arguments.append(memory.cast(letter) if dimensions == 1 else memory.cast(letter, lengths))
+    return arguments
+
+
+def raising(routine: Callable[..., Any], words: list[Any]) -> Any:
+    """Run machine code, and raise what a function raised that it called back."""
+    _raised.first = None
+    result = routine(*words)
+    raised, _raised.first = _raised.first, None
+    if raised is not None:
+        raise raised
+    return result

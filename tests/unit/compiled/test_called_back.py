@@ -1,0 +1,144 @@
+"""What is called seldom runs as plain Python until it is worth compiling, and gives the same."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from rockframe.compiled import (
+    COMPILED,
+    Bound,
+    Integers,
+    ReadOnlyMatrix,
+    Vector,
+    bound,
+    entry,
+    kernel,
+    numbers_in,
+    seldom_called,
+)
+from rockframe.compiled import entries as machinery
+
+pytestmark = [
+    pytest.mark.unit,
+    pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
+]
+
+
+class Scale(NamedTuple):
+    factor: float
+    table: Any
+
+
+@seldom_called
+@kernel
+def gathered(
+    scale: Scale, row: int, x: float, out: Vector, counts: Integers, table: ReadOnlyMatrix,
+    y: float, more: Vector, last: int,
+) -> int:  # fmt: skip
+    """Take as many arguments as registers do not hold."""
+    if row < 0:
+        raise ValueError("no such row")  # noqa: EM101
+    out[0] = scale.factor * (x + 10.0 * y) * scale.table[row] + table[row, last]
+    out[1] = float(len(out) + len(more)) + more[1]
+    counts[0] += 7 * row
+    return last + counts[0]
+
+
+class Handed(NamedTuple):
+    function: Bound
+    numbers: Vector
+
+
+@entry
+def through(
+    handed: Handed, row: int, out: Vector, counts: Integers, table: ReadOnlyMatrix, more: Vector
+) -> int:
+    result = 0
+    for _ in range(2):
+        result = handed.function.call(row, 0.5, out, counts, table, -0.25, more, 1, handed.numbers)
+    return result
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
+
+
+def arguments(row, own=0.0):
+    scale = Scale(3.0 + own, np.array([1.0, 2.0, 4.0]))
+    (function,) = bound((gathered,), scale)
+    table = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 7.0]])
+    table.setflags(write=False)
+    handed = Handed(function, numbers_in(scale))
+    return handed, row, np.zeros(3), np.array([5, 6]), table, np.array([0.25, 0.75])
+
+
+def result_of(given):
+    code = through(*given)
+    return code, given[2].tolist(), given[3].tolist()
+
+
+EXPECTED = (1 + 5 + 28, [3.0 * (0.5 - 2.5) * 4.0 + 7.0, 5.75, 0.0], [33, 6])
+
+
+def test_python_machine_code_and_what_calls_back_give_the_same(monkeypatch):
+    given = arguments(2)
+    source = given[0].function.source
+    source.address, source.seconds_called_back = 0, 0.0
+    assert result_of(given) == EXPECTED
+    assert source.address == 0
+    assert source.seconds_called_back > 0.0
+    monkeypatch.setattr(machinery, "CALLED_BACK", 0.0)
+    assert result_of(arguments(2)) == EXPECTED
+    assert source.address != 0
+    # what was kept is taken at once
+    monkeypatch.setattr(machinery, "CALLED_BACK", 1e9)
+    source.address = 0
+    assert result_of(arguments(2)) == EXPECTED
+    assert source.address != 0
+
+
+@seldom_called
+@kernel
+def interrupted(scale: Scale, out: Vector) -> int:
+    """Be left by a key."""
+    raise KeyboardInterrupt("by hand")  # noqa: EM101
+
+
+def test_what_it_raises_arrives(monkeypatch):
+    monkeypatch.setattr(machinery, "CALLED_BACK", 1e9)
+    given = arguments(-1)
+    given[0].function.source.address = 0
+    with pytest.raises(ValueError, match="no such row"):
+        through(*given)
+    (function,) = bound((interrupted,), Scale(1.0, np.zeros(1)))
+    with pytest.raises(KeyboardInterrupt, match="by hand"):
+        call(Handed(function, np.zeros(2)), np.zeros(1))
+    # and does not come again
+    assert result_of(arguments(2)) == EXPECTED
+
+
+@seldom_called
+@kernel
+def hopeless(scale: Scale, out: Vector) -> int:
+    """Do what is not compiled."""
+    out[0] = eval("1.0") * scale.factor  # noqa: S307
+    return 3
+
+
+@entry
+def call(handed: Handed, out: Vector) -> int:
+    return handed.function.call(out, handed.numbers)
+
+
+def test_what_cannot_be_compiled_goes_on_as_python(monkeypatch, fallbacks):
+    monkeypatch.setattr(machinery, "CALLED_BACK", 0.0)
+    scale = Scale(1.0, np.zeros(1))
+    (function,) = bound((hopeless,), scale)
+    out = np.zeros(1)
+    for _ in range(3):
+        assert call(Handed(function, numbers_in(scale)), out) == 3
+    assert out[0] == 1.0
+    assert len(fallbacks) == 1
+    fallbacks.clear()
