@@ -6,10 +6,10 @@ these some hundred names in the navigation of every page would take most of the 
 """
 
 import re
-from collections import namedtuple
+from collections import Counter, namedtuple
 from collections.abc import Callable
 from pathlib import Path
-from types import BuiltinFunctionType, MethodDescriptorType
+from types import BuiltinFunctionType, FunctionType, MethodDescriptorType
 from typing import Any
 
 from docutils import nodes
@@ -62,6 +62,43 @@ def share_navigation(
         context["toctree"] = once
 
 
+_MOST_PAGES = 6
+_CODE = re.compile(r"^```\{?(?:python|code-block)[^\n]*\n(.*?)^```", re.DOTALL | re.MULTILINE)
+_USED = re.compile(r"\brf\.(\w+(?:\.\w+)?)")
+_pages: dict[str, list[str]] = {}
+
+
+def find_uses(app: Sphinx) -> None:
+    """Find, for each name of the package, the pages of the manual whose code has it."""
+    found: dict[str, Counter[str]] = {}
+    manual, gallery = Path(app.srcdir), Path(app.srcdir).parent / "examples" / "gallery"
+    codes = {
+        f"/{folder}/{file.stem}": "\n".join(_CODE.findall(file.read_text(encoding="utf-8")))
+        for folder in ("guide", "recipes")
+        for file in (manual / folder).glob("*.md")
+    }
+    for file in gallery.glob("*/*.py"):
+        codes[f"/gallery/{file.parent.name}/{file.stem}"] = file.read_text(encoding="utf-8")
+    for page, code in codes.items():
+        for used in _USED.findall(code):
+            first, _, second = used.partition(".")
+            for name in {first, used if second else first}:
+                found.setdefault(f"rockframe.{name}", Counter())[page] += 1
+    _pages.clear()
+    for name, counts in found.items():
+        most = sorted(counts, key=lambda page: (-counts[page], page))[:_MOST_PAGES]
+        _pages[name] = sorted(most, key=lambda page: (page.startswith("/gallery"), page))
+
+
+def list_uses(
+    app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]
+) -> None:
+    """List the pages that use what has a page of its own."""
+    if isinstance(obj, type | FunctionType) and name in _pages:
+        lines += ["", ".. rubric:: Pages that use it", ""]
+        lines += [*(f"* :doc:`{page}`" for page in _pages[name]), ""]
+
+
 def write_as_read(
     app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]
 ) -> None:
@@ -108,7 +145,9 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("builder-inited", remove_old_pages, priority=50)
     app.add_directive("autosummary", ObjectList, override=True)
     app.connect("html-page-context", share_navigation, priority=400)
+    app.connect("builder-inited", find_uses)
     app.connect("autodoc-process-docstring", write_as_read)
+    app.connect("autodoc-process-docstring", list_uses)
     app.connect("autodoc-process-signature", write_defaults)
     app.connect("autodoc-skip-member", skip_foreign)
     return {"parallel_read_safe": True}

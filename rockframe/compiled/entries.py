@@ -43,7 +43,7 @@ COMPILED: Final = _ASKED != "0" and _HAS_NUMBA
 """Whether functions are compiled."""
 WAITS: Final = _ASKED == "wait"
 """Whether all entries wait for their machine code."""
-CALLED_BACK: Final = 1.0
+CALLED_BACK: Final = 2.0
 """Time in functions that are called back in Python from which on they are compiled [s]."""
 PATIENCE: Final = 3.0
 """Length of a run in plain Python from which on compilation is spoken of [s]."""
