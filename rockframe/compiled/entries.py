@@ -43,8 +43,6 @@ COMPILED: Final = _ASKED != "0" and _HAS_NUMBA
 """Whether functions are compiled."""
 WAITS: Final = _ASKED == "wait"
 """Whether all entries wait for their machine code."""
-CALLED_BACK: Final = 2.0
-"""Time in functions that are called back in Python from which on they are compiled [s]."""
 PATIENCE: Final = 3.0
 """Length of a run in plain Python from which on compilation is spoken of [s]."""
 _said_slow: Final[list[bool]] = []
@@ -118,6 +116,7 @@ class Entry:
         self._waits = waits
         self._routines: dict[tuple[Any, ...], Callable[..., Any] | None] = {}
         self._awaited: dict[Any, Meanwhile] = {}
+        self._seldom: dict[Source, Job] = {}
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Any) -> Any:
@@ -128,8 +127,7 @@ class Entry:
         routine = self._routines.get(structure)
         if routine is not None and all(source.address for source in sources):
             return routine(*words)
-        seldom = [source for source in _missing(sources) if source.is_seldom_called]
-        needed = [source for source in sources if source not in seldom]
+        needed, seldom = _needed(sources)
         with _lock:
             meanwhile = None if self._waits else self._meanwhile(structure, needed)
             ready = meanwhile is None or meanwhile.is_over()
@@ -143,17 +141,22 @@ class Entry:
         return raising(routine, words)
 
     def _catch_up(self, sources: list[Source]) -> None:
-        """Compile what has been called back in Python for long, or take what was kept of it."""
+        """Compile what has been called back in Python for long, or take what was kept of it.
+
+        For as long as compiling takes, where this waits, and else for a moment, as another process
+        compiles it.
+        """
         from rockframe.compiled.jobs import Job
-        from rockframe.compiled.parallel import Meanwhile, NotCompiledError, make_all
+        from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, NotCompiledError, make_all
 
         for source in sources:
-            job = Job(source.function, source.structure, True)
+            job = self._seldom.setdefault(source, Job(source.function, source.structure, True))
             try:
-                if not job.is_stored and source.seconds_called_back < CALLED_BACK:
+                patience = job.seconds if WAITS else WORTHWHILE
+                if source.seconds_called_back < patience and not job.is_stored:
                     continue
                 if not WAITS:
-                    meanwhile = self._awaited.setdefault(id(source), Meanwhile([job]))
+                    meanwhile = self._awaited.setdefault(source, Meanwhile([job]))
                     if not meanwhile.is_over(at_once=True):
                         continue
                 (source.code,) = make_all([job])
@@ -169,6 +172,7 @@ class Entry:
 
         sources: list[Source] = []
         structure = tuple(_structure_of(argument, [], sources) for argument in arguments)
+        sources, _ = _needed(sources)
         with _lock:
             if time_for(self._jobs(structure, sources)) > patience:
                 return False
@@ -232,6 +236,12 @@ class Entry:
 
 def _missing(sources: list[Source]) -> list[Source]:
     return [*{id(source): source for source in sources if not source.address}.values()]
+
+
+def _needed(sources: list[Source]) -> tuple[list[Source], list[Source]]:
+    """Give the sources without which no machine code runs, and those that may be called back."""
+    seldom = [source for source in _missing(sources) if source.is_seldom_called]
+    return [source for source in sources if source not in seldom], seldom
 
 
 def compiled_within(

@@ -28,7 +28,7 @@ from rockframe.compiled.calls import (
     register_inlined,
     register_kernels,
 )
-from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector, part_of
+from rockframe.compiled.language import KERNELS, Integers, ReadOnlyMatrix, Vector, part_of
 from rockframe.compiled.linking import linked_once
 
 VECTOR: Final = BufferType(numba.float64, 1, True)
@@ -103,14 +103,11 @@ class Writer:
 _logger = logging.getLogger("rockframe")
 _said: Final[set[str]] = set()
 
-_SECONDS_BOUND: Final = 0.07
-_SECONDS_IN_LANES: Final = 0.15
-_SECONDS_OF_ENTRY: Final = 0.1
-"""Time to compile, for each number of a system, in lanes too, and for each word of an entry [s].
+_SECONDS_OF_BYTE: Final = 2e-4
+"""Time to compile a byte of Python's own code, of all that a function calls [s].
 
-Measured with numba 0.62 for a block on rigid ground, on pads, on soil and stacked, and scaled by
-what :mod:`rockframe.compiled.linking` saves with 0.68: the sums for a kind of scene are from half
-to twice those measured.
+Measured with numba 0.68 for blocks on rigid ground, pads and soil, coupled, and in stacks: each
+kind took from two thirds to one and a half times as long.
 """
 
 
@@ -169,9 +166,10 @@ class Job:
     @cached_property
     def seconds(self) -> float:
         """About how long it takes to compile [s]."""
-        if not self.bound:
-            return _SECONDS_OF_ENTRY * len(self._written[2].args)
-        return (_SECONDS_IN_LANES if self.in_lanes else _SECONDS_BOUND) * _count(self.structure)
+        kinds = classes_in(self.structure) if self.bound else set[type]()
+        return _SECONDS_OF_BYTE * sum(
+            len(f.__code__.co_code) for f in called_by(self.function, kinds)
+        )
 
     @property
     def is_stored(self) -> bool:
@@ -228,9 +226,25 @@ def without_collection() -> Generator[None]:
             gc.enable()
 
 
-def _count(structure: tuple[Any, ...]) -> int:
-    """Give the number of numbers in a tuple and in the tuples in it."""
-    return sum(_count(part) if isinstance(part, tuple) else 1 for part in structure[1:])
+def classes_in(structure: tuple[Any, ...]) -> set[type]:
+    """Give the classes of a tuple and of the tuples in it."""
+    kind, *parts = structure
+    found = {kind} if isinstance(kind, type) else set[type]()
+    return found.union(*(classes_in(part) for part in parts if isinstance(part, tuple)))
+
+
+def called_by(function: Any, kinds: set[type]) -> set[Any]:
+    """Give a function and all marked ones that it may call: methods of these classes by name."""
+    found, waiting = set[Any](), [function]
+    while waiting:
+        caller = waiting.pop()
+        if caller in found:
+            continue
+        found.add(caller)
+        for name in caller.__code__.co_names:
+            named = [caller.__globals__.get(name), *(getattr(kind, name, None) for kind in kinds)]
+            waiting += [each for each in named if inspect.isfunction(each) and each in KERNELS]
+    return found
 
 
 def _say_once(text: str) -> None:

@@ -17,7 +17,6 @@ from rockframe.compiled import (
     numbers_in,
     seldom_called,
 )
-from rockframe.compiled import entries as machinery
 
 pytestmark = [
     pytest.mark.unit,
@@ -63,6 +62,7 @@ def through(
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
+    through._seldom.clear()  # and with it what it knows of another folder
 
 
 def arguments(row, own=0.0):
@@ -82,19 +82,18 @@ def result_of(given):
 EXPECTED = (1 + 5 + 28, [3.0 * (0.5 - 2.5) * 4.0 + 7.0, 5.75, 0.0], [33, 6])
 
 
-def test_python_machine_code_and_what_calls_back_give_the_same(monkeypatch):
+def test_python_machine_code_and_what_calls_back_give_the_same():
     given = arguments(2)
     source = given[0].function.source
     source.address, source.seconds_called_back = 0, 0.0
     assert result_of(given) == EXPECTED
     assert source.address == 0
     assert source.seconds_called_back > 0.0
-    monkeypatch.setattr(machinery, "CALLED_BACK", 0.0)
+    source.seconds_called_back = 1e9
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
     # what was kept is taken at once
-    monkeypatch.setattr(machinery, "CALLED_BACK", 1e9)
-    source.address = 0
+    source.address, source.seconds_called_back = 0, 0.0
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
 
@@ -106,10 +105,10 @@ def interrupted(scale: Scale, out: Vector) -> int:
     raise KeyboardInterrupt("by hand")  # noqa: EM101
 
 
-def test_what_it_raises_arrives(monkeypatch):
-    monkeypatch.setattr(machinery, "CALLED_BACK", 1e9)
+def test_what_it_raises_arrives():
     given = arguments(-1)
-    given[0].function.source.address = 0
+    source = given[0].function.source
+    source.address, source.seconds_called_back = 0, 0.0
     with pytest.raises(ValueError, match="no such row"):
         through(*given)
     (function,) = bound((interrupted,), Scale(1.0, np.zeros(1)))
@@ -132,10 +131,10 @@ def call(handed: Handed, out: Vector) -> int:
     return handed.function.call(out, handed.numbers)
 
 
-def test_what_cannot_be_compiled_goes_on_as_python(monkeypatch, fallbacks):
-    monkeypatch.setattr(machinery, "CALLED_BACK", 0.0)
+def test_what_cannot_be_compiled_goes_on_as_python(fallbacks):
     scale = Scale(1.0, np.zeros(1))
     (function,) = bound((hopeless,), scale)
+    function.source.seconds_called_back = 1e9
     out = np.zeros(1)
     for _ in range(3):
         assert call(Handed(function, numbers_in(scale)), out) == 3
