@@ -177,6 +177,7 @@ CAPABILITIES = (
 )  # fmt: skip
 
 
+@pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize("capability", CAPABILITIES, ids=lambda one: one.__name__)
 @pytest.mark.parametrize("name", list(SCENES))
 def test_a_part_has_what_every_scene_has(name, capability, tmp_path):
