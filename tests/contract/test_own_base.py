@@ -157,7 +157,7 @@ class TestDataset:
             np.testing.assert_array_equal(repeated[name], response[name], err_msg=name)
 
     def test_a_run_goes_on_with_its_sets(self, system, response):
-        first = system.simulate(PULSE, duration="1.2 s")
+        first = system.simulate(PULSE, duration="1.5 s")
         rest = system.simulate(initial=first, duration="1 s")
         for name in SETS:
             assert rest[name].values[0] == first[name].values[-1] > 0.0
@@ -247,7 +247,7 @@ class TestMechanics:
         difference = np.abs(ours.rotation - elastic.rotation).max()
         assert difference <= 1e-12 * float(elastic.overturning_angle)
         assert int(ours.impact_count) == int(elastic.impact_count)
-        assert elastic.sizes["event"] > 3
+        assert elastic.sizes["event"] > 2
         for name in SETS:
             assert (ours[name] == 0.0).all()
 
