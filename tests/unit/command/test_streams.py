@@ -167,9 +167,7 @@ def test_a_terminal_is_spared_what_it_cannot_show(typed, monkeypatch):
 
 
 def test_nothing_is_lost_where_nobody_reads_on(folder, uncompiled):
-    scene = Path("scene.toml").read_text()
-    Path("scene.toml").write_text(scene.replace('free_vibration = "5 s"', 'duration = "1 s"'))
-    for command in ("run scene.toml -o out.nc", "critical scene.toml --runs 2 -o out.nc --json"):
+    for command in ("run scene.toml -o out.nc", "run scene.toml -o out.nc --json"):
         Path("out.nc").unlink(missing_ok=True)
         with subprocess.Popen(
             [sys.executable, "-m", "rockframe", *command.split()],
