@@ -15,6 +15,7 @@ from rockframe.measures import (
     intensity_measures,
     response_spectrum,
 )
+from rockframe.measures.intensity import measure_of_ground
 from rockframe.measures.response import checked_periods
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
@@ -147,12 +148,11 @@ class Intensity:
         if self.period is not None:
             found = response_spectrum(motion, [quantity(self.period, PERIOD)])[self.name]
             return float(found.squeeze())
-        if self.name == "peak_ground_acceleration":  # without the spectra that others need
-            return float(motion.peak_acceleration.m_as(SCHEMA[self.name].attributes()["units"]))
-        measures = intensity_measures(motion)
         if self.name == RATIO:
-            return float(measures["peak_ground_velocity"] / measures["peak_ground_acceleration"])
-        return float(measures[self.name])
+            names = "peak_ground_velocity", "peak_ground_acceleration"
+            velocity, acceleration = (measure_of_ground(motion, one) for one in names)
+            return velocity / acceleration
+        return measure_of_ground(motion, self.name)
 
     def attributes(self) -> dict[str, Any]:
         """Give the CF attributes of its values."""

@@ -25,8 +25,7 @@ def through_file(dataset, folder, **options):
         return again.load()
 
 
-def it_comes_back_identical(response, tmp_path):
-    again = through_file(response, tmp_path)
+def it_comes_back_identical(response, again):
     xr.testing.assert_identical(again, response)
     for name, variable in response.variables.items():
         assert again[name].dtype == variable.dtype, name
@@ -36,16 +35,12 @@ def it_comes_back_identical(response, tmp_path):
     assert ((again.contact_state.cf == "full") == (response.contact_state.cf == "full")).all()
 
 
-def writing_leaves_the_dataset_alone(response, tmp_path):
-    before = response.copy(deep=True)
-    response.to_netcdf(tmp_path / "one.nc")
-    response.to_netcdf(tmp_path / "two.nc")
+def writing_leaves_the_dataset_alone(response, before, path):
     xr.testing.assert_identical(before, response)
+    response.to_netcdf(path.with_name("two.nc"))
 
 
-def the_file_itself_is_clean(response, tmp_path):
-    path = tmp_path / "response.nc"
-    response.to_netcdf(path)
+def the_file_itself_is_clean(path):
     with netCDF4.Dataset(path) as file:
         for name, variable in file.variables.items():
             attributes = variable.ncattrs()
@@ -63,8 +58,7 @@ def the_file_itself_is_clean(response, tmp_path):
         assert "coordinates" not in file.ncattrs()
 
 
-def it_rebuilds_the_system_and_the_bits(scene, motion_name, response, tmp_path):
-    again = through_file(response, tmp_path)
+def it_rebuilds_the_system_and_the_bits(scene, motion_name, again):
     system = rf.System.from_dataset(again)
     assert system.assembly.to_dict() == SCENES[scene]().to_dict()
     motion = system.motion
@@ -92,8 +86,10 @@ CHECKS = (
 
 
 def test_every_file(subtests, scene, motion_name, response, tmp_path):
+    before = response.copy(deep=True)
     known = {
-        "scene": scene, "motion_name": motion_name, "response": response, "tmp_path": tmp_path,
+        "scene": scene, "motion_name": motion_name, "response": response, "before": before,
+        "again": through_file(response, tmp_path), "path": tmp_path / "response.nc",
     }  # fmt: skip
     for function in CHECKS:
         with subtests.test(function.__name__):

@@ -2,9 +2,6 @@
 
 import json
 import math
-import os
-import subprocess
-import sys
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -163,6 +160,7 @@ class TestRun:
         certified = system.simulate(PULSE, **RUN, certify=rf.Certification(runs=60))
         assert bool(certified.verdict_converged)
 
+    @pytest.mark.usefixtures("no_pictures")
     def test_report_and_figures(self, response, system, tmp_path):
         text = rf.report(response, tmp_path / "run.html").read_text(encoding="utf-8")
         assert "slide-rock" in text
@@ -212,37 +210,13 @@ class TestStudies:
         ]  # fmt: skip
 
 
-PLAIN = """
-import json, sys
-import rockframe as rf
-
-sys.path.insert(0, sys.argv[1])
-import own_scene
-system = rf.System.from_dict(json.loads(sys.argv[2]))
-response = system.simulate(duration="1.5 s")
-print(json.dumps([float(response[name][-1]) for name in ("rotation", "slip")]
-                 + [float(response.peak_rotation)]))
-"""
-
-
-@pytest.mark.skipif(
-    os.environ.get("ROCKFRAME_COMPILE") == "0", reason="this run does without compilation"
-)
-def test_compiled_and_plain_agree(ground):
-    pytest.importorskip("numba")
-    system = rf.System(BLOCK, ground, PULSE)
+@pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
+def test_compiled_and_plain_agree(system):
+    compiled = system.simulate(PULSE, duration="1.5 s")
     with plainly():
-        response = system.simulate(duration="1.5 s")
-    compiled = [float(response[name][-1]) for name in ("rotation", "slip")]
-    compiled.append(float(response.peak_rotation))
-    done = subprocess.run(
-        [sys.executable, "-c", PLAIN, str(SCENE_FILE.parent), json.dumps(system.to_dict())],
-        env=os.environ | {"ROCKFRAME_COMPILE": "0"},
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    np.testing.assert_allclose(compiled, json.loads(done.stdout), rtol=1e-9, atol=1e-12)
+        plain = system.simulate(PULSE, duration="1.5 s")
+    for name in ("rotation", "slip", "peak_rotation"):
+        np.testing.assert_allclose(compiled[name], plain[name], rtol=1e-9, atol=1e-12)
 
 
 class Wedge(ext.Component):

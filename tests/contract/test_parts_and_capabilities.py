@@ -113,7 +113,7 @@ def ladder_and_tradeoff(name, folder):
 
 
 def certificate(name, folder):
-    run = scene(name).simulate(PULSE, certify=True, accuracy="fast", **PLAN)
+    run = scene(name).simulate(PULSE, certify=rf.Certification(runs=60), accuracy="fast", **PLAN)
     assert "certificate" in " ".join(run.attrs)
 
 
@@ -177,6 +177,7 @@ CAPABILITIES = (
 )  # fmt: skip
 
 
+@pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize("capability", CAPABILITIES, ids=lambda one: one.__name__)
 @pytest.mark.parametrize("name", list(SCENES))
 def test_a_part_has_what_every_scene_has(name, capability, tmp_path):

@@ -1,6 +1,7 @@
 """Reports: what stands in them, and that they need no other file."""
 
 import datetime
+import inspect
 import re
 import subprocess
 from html.parser import HTMLParser
@@ -17,8 +18,16 @@ from rockframe.reports import cases, sections
 from rockframe.reports.limits import LIMITS
 from rockframe.results.schema import SCHEMA
 from rockframe.simulation.certify import certificate
+from rockframe.simulation.run_arguments import FEWEST_RUNS
 
 pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
+
+
+@pytest.fixture(autouse=True)
+def short_certificates(monkeypatch):
+    """Have certificates that a report makes try as few runs as they may."""
+    defaults = inspect.unwrap(rf.Certification.__init__).__kwdefaults__
+    monkeypatch.setitem(defaults, "runs", FEWEST_RUNS)
 
 
 class Page(HTMLParser):

@@ -158,8 +158,8 @@ def test_sweeps_of_rigid_stacks():
     def scene(height):
         return on_rigid(STATUE.replace(height=f"{height} m"), PLINTH)
 
-    runs = rf.sweep(scene, motions=[PULSE], height=[1.5, 1.8], accuracy="fast", duration="1 s")
-    alone = [scene(h).simulate(PULSE, duration="1 s", accuracy="fast", second_look=False)
+    runs = rf.sweep(scene, motions=[PULSE], height=[1.5, 1.8], duration="1 s")
+    alone = [scene(h).simulate(PULSE, duration="1 s", second_look=False)
              for h in (1.5, 1.8)]  # fmt: skip
     found = runs.peak_rotation.to_numpy().ravel().tolist()
     assert found == [float(one.peak_rotation) for one in alone]

@@ -1,6 +1,7 @@
 """A folder with a scene, records and studies, and commands that are carried out in it."""
 
 import io
+import os
 import sys
 from types import SimpleNamespace
 
@@ -9,6 +10,12 @@ import pytest
 import rockframe as rf
 from rockframe.command.files.templates import TEMPLATES
 from rockframe.command.main import main
+
+
+@pytest.fixture
+def uncompiled():
+    """Give the environment of processes whose single short run is no matter for a compiler."""
+    return os.environ | {"ROCKFRAME_COMPILE": "0"}
 
 
 @pytest.fixture(autouse=True)

@@ -23,6 +23,7 @@ from rockframe.studies.sweeps import execution
 pytestmark = pytest.mark.unit
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_run_from_the_template_to_the_report(typed, folder):
     code, told, _ = typed("template")
     assert (code, told) == (0, TEMPLATES["block"])
@@ -61,6 +62,7 @@ def test_a_table_without_a_unit_is_asked_for_the_option(typed, folder):
     assert code == 0
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_scaled_motion_is_told_with_its_factor(typed, folder):
     typed("template")
     code, told, _ = typed("run", "scene.toml", "-o", "out.nc", "--scale", "3")
@@ -189,6 +191,7 @@ def test_a_table_of_cases_is_read(typed, folder):
         assert np.isfinite(runs.peak_rotation).all()
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_the_report_of_a_study_is_that_of_all_or_of_a_case(typed, folder):
     (folder / "study.toml").write_text(
         'scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\nwidth = ["0.7 m", "0.8 m"]\n'
@@ -212,6 +215,7 @@ def test_the_report_of_a_study_is_that_of_all_or_of_a_case(typed, folder):
     assert "The worst case in full" in (folder / "runs.html").read_text()
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_the_report_of_a_study_takes_its_records_a_target_and_checks(typed, folder, monkeypatch):
     (folder / "records").mkdir()
     for seed in (1, 2):
@@ -255,6 +259,7 @@ def test_the_report_of_a_study_takes_its_records_a_target_and_checks(typed, fold
         assert (code, said in err) == (2, True), err
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, folder):
     scene = (folder / "scene.toml").read_text()
     project = '[project]\nobject = "Tower"\ndate = 2026-11-24\n'

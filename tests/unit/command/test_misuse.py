@@ -209,10 +209,10 @@ def test_files_of_other_editors_are_read(typed):
 @pytest.mark.parametrize(
     ("words", "code"), [("run scene.toml >&-", 0), ("run - <&-", 2), ("run scene.toml 2>&-", 0)]
 )
-def test_closed_streams_are_no_tracebacks(words, code, folder):
+def test_closed_streams_are_no_tracebacks(words, code, folder, uncompiled):
     done = subprocess.run(
         [shutil.which("sh"), "-c", f"{sys.executable} -m rockframe {words}"],
-        capture_output=True, text=True, check=False, cwd=folder,
+        capture_output=True, text=True, check=False, cwd=folder, env=uncompiled,
     )  # fmt: skip
     assert done.returncode == code, done
     assert "Traceback" not in done.stderr

@@ -60,9 +60,9 @@ def paths(motion):
 
 
 FULL = [
-    ("loma-prieta", EUROCODE, ("0.1 s", "2 s")),
+    ("loma-prieta", EUROCODE, ("0.2 s", "2 s")),
     ("waipukurau", ASCE, ("0.2 s", "2 s")),
-    ("NIS090.AT2", EUROCODE, ("0.1 s", "2 s")),
+    ("NIS090.AT2", EUROCODE, ("0.1 s", "1 s")),
     ("PEERSMD_IMPVALL_IELC180.AT2", ASCE, ("0.1 s", "2 s")),
     ("RSN763_LOMAP_GIL067.AT2", EUROCODE, ("0.2 s", "1 s")),
 ]

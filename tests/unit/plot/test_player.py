@@ -5,11 +5,13 @@ import json
 import re
 import subprocess
 import zlib
+from contextlib import nullcontext
 from shutil import which
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from plainly import plainly
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError
@@ -35,7 +37,8 @@ SCENES = {
 
 
 def run_of(scene, **options):
-    return rf.System(*SCENES[scene]).simulate(PULSE, free_vibration="1 s", **options)
+    with plainly() if scene == "stack" else nullcontext():
+        return rf.System(*SCENES[scene]).simulate(PULSE, free_vibration="1 s", **options)
 
 
 def read(page):
