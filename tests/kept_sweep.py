@@ -14,8 +14,8 @@ RECORD = rf.GroundMotion.from_arrays(
     (2.0 * np.random.default_rng(3).normal(size=400), "m/s^2"), "0.01 s", name="noise"
 )
 PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
-SCALES = np.linspace(0.1, 3.0, 60)
-CASES = 240
+SCALES = np.linspace(0.1, 3.0, 30)
+CASES = 120
 CHILD = """
 import sys
 sys.path.insert(0, {tests!r})
@@ -28,7 +28,7 @@ TESTS = str(Path(__file__).resolve().parent)
 
 
 def the_sweep(store=None, **changes):
-    """Run 240 cases, in 80 chunks; half of them cannot be assembled."""
+    """Run 120 cases, in 40 chunks; half of them cannot be assembled."""
     options = {"chunk": 3, "accuracy": "reference", "outputs": ["rotation"], **changes}
     return rf.sweep(
         SYSTEM, {"noise": RECORD, "pulse": PULSE}, scale=options.pop("scale", SCALES),
