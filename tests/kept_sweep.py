@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import rockframe as rf
+from rockframe.studies.sweeps.study import Study
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
 SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
@@ -19,7 +20,7 @@ CASES = 120
 CHILD = """
 import sys
 sys.path.insert(0, {tests!r})
-from kept_sweep import the_sweep
+from kept_sweep import note_cases, the_sweep
 {first}
 the_sweep(sys.argv[1])
 print("done")
@@ -49,6 +50,18 @@ def child(folder, first=""):
         stderr=subprocess.PIPE,
         text=True,
     )
+
+
+def note_cases(log):
+    """Have this process write down the first case of each chunk that it runs."""
+    plain = Study.job
+
+    def job(self, cases):
+        with Path(log).open("a") as noted:
+            noted.write(f"{cases[0]}\n")
+        return plain(self, cases)
+
+    Study.job = job
 
 
 def as_bytes(dataset):

@@ -9,7 +9,7 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from kept_sweep import CASES, as_bytes, child, files, the_sweep
+from kept_sweep import CASES, as_bytes, child, files, note_cases, the_sweep
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -20,15 +20,6 @@ from rockframe.studies.sweeps.study import Study
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 
-COUNTED = """
-from rockframe.studies.sweeps.study import Study
-plain = Study.job
-def job(self, cases):
-    with open({log!r}, "a") as log:
-        log.write(f"{{cases[0]}}\\n")
-    return plain(self, cases)
-Study.job = job
-"""
 KNOWS_PROCESSES = module._begun(os.getpid()) is not None
 
 
@@ -38,16 +29,11 @@ def whole(tmp_path_factory):
     return folder, the_sweep(folder)
 
 
-def counted(tmp_path, number):
-    """Give words of a program that notes the first case of each chunk that it runs."""
-    return COUNTED.format(log=str(tmp_path / f"log {number}"))
-
-
 @pytest.fixture
 def another(tmp_path):
     """Start another job on the study, and wait until it has run some chunks."""
-    job = child(tmp_path / "study", counted(tmp_path, 0))
     log = tmp_path / "log 0"
+    job = child(tmp_path / "study", f"note_cases({str(log)!r})")
     while job.poll() is None and not (log.exists() and len(log.read_text()) > 20):
         time.sleep(0.005)
     return job
@@ -57,7 +43,7 @@ def another(tmp_path):
 def this(tmp_path, monkeypatch):
     """Run the study in this process too, noting its chunks."""
     monkeypatch.setattr(Study, "job", Study.job)  # to be put back
-    exec(counted(tmp_path, 1), {})
+    note_cases(tmp_path / "log 1")
     return lambda: the_sweep(tmp_path / "study")
 
 
