@@ -417,9 +417,7 @@ def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(nam
 
 def test_an_overturning_spectrum_is_a_dynamic_analysis_of_each_block():
     scales, suite = [0.5, 1.0, 2.0, 4.0, 8.0], dict([*motions().items()][:2])
-    found = rf.overturning_spectrum(
-        SYSTEM, suite, periods=(["2 s", "4 s"]), scale=scales, **FAST
-    )
+    found = rf.overturning_spectrum(SYSTEM, suite, periods=(["2 s", "4 s"]), scale=scales, **FAST)
     for place in range(2):
         sizes = found.isel(slenderness=0, rocking_period=place)
         width, height = (f"{sizes[name].item()!r} m" for name in ("width", "height"))
