@@ -43,9 +43,10 @@ def estimates(demand, size, limit, count, seeds=SEEDS):
     return np.array(rows).T
 
 
-@pytest.mark.parametrize("size", [1, 20])
-@pytest.mark.parametrize("probability", [1e-3, 1e-6])
-@pytest.mark.parametrize("demand", [one_side, two_sides])
+@pytest.mark.parametrize(
+    ("demand", "size", "probability"),
+    [(one_side, 1, 1e-3), (one_side, 20, 1e-6), (two_sides, 20, 1e-3), (two_sides, 1, 1e-6)],
+)
 def test_probabilities_and_their_variation_are_those_of_normal_numbers(demand, size, probability):
     limit = norm.isf(probability if demand is one_side else 0.5 * probability)
     found, stated, lower, upper = estimates(demand, size, limit, 1000)
