@@ -26,6 +26,14 @@ def pool():
     return tuple(cases(COUNT, seed=1))
 
 
+@lru_cache
+def certified(number):
+    """Give a scene of these, the scale at which its verdict is in doubt, and its run."""
+    case = pool()[number]
+    scale = strength(case)
+    return case, scale, case.certified(scale)
+
+
 def cascade(width, height, mass, cap, stiffness, ratio, amplitude, frequency):
     """Give a slender frame on a light cap, whose pads bounce on what the soil carries over."""
     system = rf.System(
@@ -80,9 +88,7 @@ def test_the_error_of_a_peak_is_not_hidden_by_what_all_tolerances_share(name, ac
 
 @pytest.mark.parametrize("number", range(COUNT))
 def test_an_estimate_is_at_most_ten_times_too_small(number):
-    case = pool()[number]
-    scale = strength(case)
-    run = case.certified(scale)
+    case, scale, run = certified(number)
     if not bool(run.overturned):
         assert not flattered(*peak_error(case, scale, run))
 
@@ -90,9 +96,7 @@ def test_an_estimate_is_at_most_ten_times_too_small(number):
 @pytest.mark.parametrize("number", range(COUNT))
 def test_clean_certificates_keep_their_word(number):
     """Against nudges inside what is stated, and scales inside the margin."""
-    case = pool()[number]
-    scale = strength(case)
-    run = case.certified(scale)
+    case, scale, run = certified(number)
     if not clean(run):
         return
     fell, margin = bool(run.overturned), float(run.verdict_margin)

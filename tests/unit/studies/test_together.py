@@ -108,7 +108,7 @@ def assert_same(together, alone):
 
 @pytest.mark.parametrize(
     ("name", "accuracy"),
-    # two bases by fixed steps are those of tests of lanes
+    # fixed steps of two bases in lanes are tested beside single runs
     [(name, by) for name in STUDIES for by in ("fast", "standard") if (name, by) != TWICE],
 )
 def test_random_studies_have_the_bits_of_scenes_on_their_own(monkeypatch, name, accuracy):
