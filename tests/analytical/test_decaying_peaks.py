@@ -61,7 +61,7 @@ def test_intervals_of_peaks_with_noise():
     times = times_of(peaks, theta)
     system = rigid_block(theta, rotation="small")
     inside = []
-    for seed in range(24):
+    for seed in range(12):
         random = np.random.default_rng(seed)
         noisy = peaks + 1e-3 * theta * random.normal(size=7)
         given = (noisy, "rad")

@@ -93,7 +93,7 @@ def test_restitution_of_pads_is_found_with_their_other_parameters():
 
 def test_intervals_hold_the_true_values_as_often_as_they_say():
     system, rotation = rf.System(BLOCK), on_rigid_ground()
-    fits = [read_back(system, rotation, "restitution", 1e-3, seed) for seed in range(40)]
+    fits = [read_back(system, rotation, "restitution", 1e-3, seed) for seed in range(24)]
     scores = np.array([errors(found, [0.9]) for found in fits])
     inside = np.mean(np.abs(scores) < 1.976, axis=0)  # of 147 degrees of freedom
     assert (inside >= 0.875).all()

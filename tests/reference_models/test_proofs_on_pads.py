@@ -21,7 +21,7 @@ from rockframe.proof.pads.verdict import way_of
 from rockframe.proof.problem import Undecided
 from rockframe.simulation.plan import plan_run, start_of
 
-STEP, KNOTS, DIGITS, BITS = 0.01, 48, 50, 106
+STEP, KNOTS, DIGITS, BITS = 0.01, 32, 50, 106
 COLUMNS = 12
 TOUCHES, RELAXES, CLEAR, LEAVES = "touches", "relaxes", "clear", "leaves"
 MP = mpmath.mp

@@ -20,8 +20,8 @@ SCENES = (2, 4, 8, 11, 15, 21, 33)
 ON_BASES = (1, 2, 8, 10, 13, 18, 20)
 
 
-# with ties that become taut and slack, yield and break, preloaded ones and bars
-TIED = (0, 7, 16, 30)
+# with ties that become taut and slack, yield and break; those that take longest stand apart
+TIED = (16, 22, 30)
 TIED_ON_BASES = (1, 2, 3)
 
 
@@ -36,7 +36,7 @@ def test_random_scenes_with_ties_on_pads_and_beds(number):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("number", [5, 12, 14, 18, 20, 22, 24])
+@pytest.mark.parametrize("number", [0, 5, 7, 12, 14, 18])
 def test_more_random_scenes_with_ties(number):
     check(compare(draw_tied(np.random.default_rng([40, number]))))
 

@@ -111,7 +111,7 @@ def shaken(model):
     samples = 6.0 * np.sin(2.0 * np.pi * np.arange(101) / 100.0)
     motion = Motion.of_samples(0.01, samples, np.zeros(101))
     return integrate(
-        model, Start(), motion, accuracy_of("reference"), duration=1.5, output_step=0.01
+        model, Start(), motion, accuracy_of("reference"), duration=0.8, output_step=0.01
     )
 
 

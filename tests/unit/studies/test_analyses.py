@@ -1,6 +1,7 @@
 """Dynamic analysis, maps, spectra, probabilities, ensembles: labels, brute force, files."""
 
 import itertools
+from functools import cache
 
 import numpy as np
 import pytest
@@ -22,10 +23,15 @@ FAST = {"accuracy": "fast", "free_vibration": "4 s", **QUIET}
 
 
 def motions(sign=1.0):
+    return {name: one.scaled(sign) for name, one in made().items()}
+
+
+@cache
+def made():
     return {
         f"seed {k}": rf.GroundMotion.stochastic(
             6.6, "5 km", seed=k, stress_drop="20 MPa", source="one corner"
-        ).scaled(sign)
+        )
         for k in range(4)
     }
 
@@ -103,7 +109,7 @@ def test_the_period_of_a_spectral_intensity_is_kept_and_told():
     measure = "pseudo_spectral_acceleration"
     asked = {"intensity": measure, "period": "1.7 s"}
     suite = motions()
-    some = {"scale": np.arange(0.5, 4.1, 0.5), **FAST}
+    some = {"scale": [0.5, 1.5, 4.0], **FAST}
     analysis = rf.incremental_dynamic_analysis(SYSTEM, suite, **asked, **some)
     critical = rf.critical_scale(SYSTEM, suite["seed 0"], scales=20, runs=30, **asked, **QUIET)
     found = rf.fragility(analysis, "SA", period="1.7 s")
@@ -171,7 +177,14 @@ def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
         xr.testing.assert_identical(one.drop_attrs(), plain.drop_attrs())
 
 
-@pytest.mark.parametrize("after", [0, 1, 2, 3])
+@cache
+def uninterrupted(resolution):
+    return rf.incremental_dynamic_analysis(
+        SYSTEM, motions(), scale=[1.0, 2.0, 4.0], resolution=resolution, **FAST
+    ).drop_attrs()
+
+
+@pytest.mark.parametrize("after", [0, 1, 2])
 @pytest.mark.parametrize("kind", ["in a round", "between rounds"])
 def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, after, kind):
     # at a resolution of one brackets are narrowed at once
@@ -207,9 +220,7 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
         apart = (found.scale_above - found.scale_below).max().item()
         assert apart == pytest.approx(2.0 / 2**after)
     whole = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
-    options["store"] = None
-    plain = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
-    xr.testing.assert_identical(whole.drop_attrs(), plain.drop_attrs())
+    xr.testing.assert_identical(whole.drop_attrs(), uninterrupted(some["resolution"]))
     assert "interrupted" not in whole.verdict
 
 
@@ -235,9 +246,9 @@ def test_capacities_hang_neither_on_the_first_row_nor_on_its_step():
         step: rf.incremental_dynamic_analysis(
             SYSTEM, suite, scale=np.arange(0.5, 4.1, step), resolution=finest, **FAST
         ).sel(limit_state="overturning")
-        for step, finest in ((0.5, 0.02), (0.01, 1.0), (3.5, 0.02))
+        for step, finest in ((0.5, 0.02), (0.02, 1.0), (3.5, 0.02))
     }
-    truth = rf.sweep(SYSTEM, suite, scale=np.arange(0.5, 4.0, 0.0025), **FAST).overturned == 1.0
+    truth = rf.sweep(SYSTEM, suite, scale=np.arange(0.5, 4.0, 0.005), **FAST).overturned == 1.0
     for one in found.values():
         assert one.attrs["capacity"] == "least scale found to exceed"
         for name in suite:
@@ -396,6 +407,7 @@ def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(nam
         assert block.shape_factor == pytest.approx(body.shape_factor, rel=1e-12)
         assert block.mass == body.si.mass
         assert case.system.options == system.options
+    sizes = {"periods": ([3.0], "s"), "slenderness": [5]}
     least = rf.overturning_spectrum(system, motion, **sizes, scale=[1.0, 4.0, 16.0], **FAST)
     plain = rf.Block(width="0.5 m", height="2 m", mass="1 t", shape_factor=body.shape_factor)
     same = rf.System(plain, gravity="9.7 m/s^2", inclination="0.5 deg", rotation="small")
@@ -404,17 +416,15 @@ def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(nam
 
 
 def test_an_overturning_spectrum_is_a_dynamic_analysis_of_each_block():
-    scales = [0.5, 1.0, 2.0, 4.0, 8.0]
-    found = rf.overturning_spectrum(
-        SYSTEM, motions(), periods=(["2 s", "4 s"]), scale=scales, **FAST
-    )
+    scales, suite = [0.5, 1.0, 2.0, 4.0, 8.0], dict([*motions().items()][:2])
+    found = rf.overturning_spectrum(SYSTEM, suite, periods=(["2 s", "4 s"]), scale=scales, **FAST)
     for place in range(2):
         sizes = found.isel(slenderness=0, rocking_period=place)
         width, height = (f"{sizes[name].item()!r} m" for name in ("width", "height"))
         system = rf.System(BLOCK.replace(width=width, height=height))
-        one = rf.incremental_dynamic_analysis(system, motions(), scale=scales, **FAST)
+        one = rf.incremental_dynamic_analysis(system, suite, scale=scales, **FAST)
         assert np.array_equal(sizes.capacity_scale, one.capacity_scale[0], equal_nan=True)
-    pga = [one.peak_acceleration.m_as("m/s^2") for one in motions().values()]
+    pga = [one.peak_acceleration.m_as("m/s^2") for one in suite.values()]
     assert found.capacity_intensity.units == "m s^-2"
     xr.testing.assert_allclose(
         found.capacity_intensity, found.capacity_scale * xr.DataArray(pga, dims="motion")

@@ -9,25 +9,17 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from kept_sweep import CASES, as_bytes, child, files, the_sweep
+from kept_sweep import CASES, as_bytes, child, files, note_cases, the_sweep
 
 import rockframe as rf
 from rockframe.errors import StudyError
 from rockframe.studies.sweeps import claims as module
 from rockframe.studies.sweeps.claims import Claims
 from rockframe.studies.sweeps.execution import workers_of
+from rockframe.studies.sweeps.study import Study
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 
-COUNTED = """
-from rockframe.studies.sweeps.study import Study
-plain = Study.job
-def job(self, cases):
-    with open({log!r}, "a") as log:
-        log.write(f"{{cases[0]}}\\n")
-    return plain(self, cases)
-Study.job = job
-"""
 KNOWS_PROCESSES = module._begun(os.getpid()) is not None
 
 
@@ -38,13 +30,21 @@ def whole(tmp_path_factory):
 
 
 @pytest.fixture
-def jobs(tmp_path):
-    """Start jobs on one study, which count the cases that they run."""
+def another(tmp_path):
+    """Start another job on the study, and wait until it has run some chunks."""
+    log = tmp_path / "log 0"
+    job = child(tmp_path / "study", f"note_cases({str(log)!r})")
+    while job.poll() is None and not (log.exists() and len(log.read_text()) > 20):
+        time.sleep(0.005)
+    return job
 
-    def start(number):
-        return child(tmp_path / "study", COUNTED.format(log=str(tmp_path / f"log {number}")))
 
-    return start
+@pytest.fixture
+def this(tmp_path, monkeypatch):
+    """Run the study in this process too, noting its chunks."""
+    monkeypatch.setattr(Study, "job", Study.job)  # to be put back
+    note_cases(tmp_path / "log 1")
+    return lambda: the_sweep(tmp_path / "study")
 
 
 def run_by(tmp_path):
@@ -61,27 +61,25 @@ def is_whole(folder, whole, *, killed=False):
     assert left == {path.name for path in whole[0].iterdir()}
 
 
-def test_two_jobs_run_each_case_once(whole, tmp_path, jobs):
-    both = [jobs(number) for number in range(2)]
-    for one in both:
-        out, err = one.communicate(timeout=300)
-        assert out.strip() == "done", err  # each gives the whole
+def test_two_jobs_run_each_case_once(whole, tmp_path, another, this):
+    assert as_bytes(this()) == as_bytes(whole[1])  # each gives the whole
+    out, err = another.communicate(timeout=300)
+    assert out.strip() == "done", err
     is_whole(tmp_path / "study", whole)
     assert run_by(tmp_path) == Counter(range(0, CASES, 3))
     assert len([*tmp_path.glob("log *")]) == 2  # both have had a part
 
 
 @pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
-def test_the_chunks_of_a_job_that_is_killed_go_to_another(whole, tmp_path, jobs):
-    both = [jobs(number) for number in range(2)]
-    log = tmp_path / "log 0"
-    while both[0].poll() is None and not (log.exists() and len(log.read_text()) > 40):
-        time.sleep(0.005)
-    both[0].kill()
-    both[0].communicate()
-    begun = time.monotonic()
-    out, err = both[1].communicate(timeout=300)
-    assert out.strip() == "done", err
+def test_the_chunks_of_a_job_that_is_killed_go_to_another(whole, tmp_path, another, this):
+    with ThreadPoolExecutor(1) as pool:
+        going_on = pool.submit(this)
+        while not (going_on.done() or (tmp_path / "log 1").exists()):
+            time.sleep(0.005)
+        another.kill()
+        another.communicate()
+        begun = time.monotonic()
+        going_on.result(timeout=300)
     assert time.monotonic() - begun < 0.5 * module._SILENCE  # it does not wait for the dead
     is_whole(tmp_path / "study", whole, killed=True)
     run = run_by(tmp_path)
@@ -166,12 +164,12 @@ def test_a_living_job_says_so(tmp_path, monkeypatch):
 
 @pytest.mark.skipif(not KNOWS_PROCESSES, reason="the system does not tell of processes")
 def test_a_process_that_has_ended_is_dead_at_once(tmp_path):
-    words = (
-        "import sys; from pathlib import Path; from rockframe.studies.sweeps.claims import Claims\n"
-        "assert Claims(Path(sys.argv[1])).take(7)"
-    )
-    subprocess.run([sys.executable, "-c", words, str(tmp_path)], check=True)
+    running = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    its = {"process": running.pid, "begun": module._begun(running.pid)}
+    claim(tmp_path, module._this_job() | its)
     one, other = Claims(tmp_path), Claims(tmp_path)
+    assert not one.take(7)
+    running.communicate(b"\n")
     assert one.take(7)
     assert not other.take(7)
     # a later process of the same number is another one

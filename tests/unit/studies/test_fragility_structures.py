@@ -9,7 +9,7 @@ from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.results.variables.runs import RunStatus
 
 SYSTEM = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
-HOW = {"free_vibration": "3 s", "progress": False}
+HOW = {"accuracy": "fast", "free_vibration": "3 s", "progress": False}
 SCALES = [0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0]
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from plainly import plainly
 
 import rockframe as rf
 from rockframe.dynamics.events import LINK_BREAKS
@@ -69,12 +70,13 @@ def stacked() -> rf.System:
 @pytest.mark.parametrize("scene", [frame, stacked])
 def test_what_is_broken_at_the_end_are_the_breaks_of_a_run(scene):
     motion = rf.GroundMotion.type_a_pulse("1.2 m/s", "1.6 s") if scene is frame else PULSE
-    scales = [0.3, 0.8, 1.3333]  # PULSE is then one of 4 m/s^2
-    runs = rf.sweep(scene(), motion, scale=scales, overturning="continue", **FOUR)
-    for scale, count in zip(scales, runs.broken_restrainer_count.values.ravel(), strict=True):
-        alone = scene().simulate(motion.scaled(scale), overturning="continue", **FOUR)
-        assert count == int((alone.event_kind == LINK_BREAKS).sum())
-    assert runs.broken_restrainer_count.max() == 1
+    scales = [0.3, 1.3333]  # PULSE is then one of 4 m/s^2
+    asked = {"accuracy": "fast", "overturning": "continue", "free_vibration": "0.1 s"}
+    with plainly():  # nothing else compiles the equations of rigid bodies that are tied
+        runs = rf.sweep(scene(), motion, scale=scales, **asked)
+        alone = [scene().simulate(motion.scaled(scale), **asked) for scale in scales]
+    counts = runs.broken_restrainer_count.values.ravel().tolist()
+    assert counts == [int((one.event_kind == LINK_BREAKS).sum()) for one in alone] == [0, 1]
 
 
 def test_a_broken_tie_is_a_limit_state(broken):

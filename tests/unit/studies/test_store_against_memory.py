@@ -81,7 +81,7 @@ ANALYSES = {
     "rocking_spectrum": [lambda **run: rf.rocking_spectrum(SYSTEM, MOTIONS, **SIZES, **run)],
     "overturning_spectrum": [
         lambda **run: rf.overturning_spectrum(
-            SYSTEM, MOTIONS, scale=[0.5, 1, 2], bracket_width=0.05, **SIZES, **run
+            SYSTEM, MOTIONS, scale=[0.5, 1, 2], bracket_width=0.05, periods=([2, 4], "s"), **run
         )
     ],
     "probability_of_overturning": [

@@ -98,21 +98,21 @@ def test_probabilities_are_those_of_brute_force(limit, scale):
         "correlation": {("width", "scale"): 0.3},
     }
     plain = rf.probability_of_overturning(
-        SYSTEM, cases=20_000, sampling="random", seed=1, **asked, **FAST
+        SYSTEM, cases=10_000, sampling="random", seed=1, **asked, **FAST
     )
     (state, *_) = limit_states([limit], owner="here")
     count = int(exceeds(plain, state).sum())
-    assert 15 < count < 600  # from 1e-3 to 3e-2
-    low, high = stats.binomtest(count, 20_000).proportion_ci(0.999, method="exact")
+    assert 15 < count < 300  # to 3e-2
+    low, high = stats.binomtest(count, 10_000).proportion_ci(0.999, method="exact")
     held, every = 0, []
-    for seed in range(6):
+    for seed in range(4):
         one = simulated(cases=400, limit=limit, seed=seed, **asked)
         ends = [float(one[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")]
         held += ends[0] <= high
         held += ends[1] >= low
         every.append(float(one.exceedance_probability))
-    assert held >= 11
-    error = 4.0 * np.std(every, ddof=1) / np.sqrt(6)
+    assert held >= 7
+    error = 4.0 * np.std(every, ddof=1) / np.sqrt(4)
     assert low - error < np.mean(every) < high + error
 
 
