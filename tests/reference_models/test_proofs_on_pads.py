@@ -22,7 +22,7 @@ from rockframe.proof.problem import Undecided
 from rockframe.simulation.plan import plan_run, start_of
 
 STEP, KNOTS, DIGITS, BITS = 0.01, 32, 50, 106
-COLUMNS = 12
+COLUMNS, ROUGH_DIGITS, ROUGH_COLUMNS = 12, 18, 5
 TOUCHES, RELAXES, CLEAR, LEAVES = "touches", "relaxes", "clear", "leaves"
 MP = mpmath.mp
 
@@ -116,10 +116,10 @@ class ExactRun:
         share = time / MP.mpf(STEP)
         return [one[k] + (one[k + 1] - one[k]) * share for one in (self.across, self.up)]
 
-    def moved(self, k, begin, length):
+    def moved(self, k, begin, length, columns=COLUMNS):
         """Extrapolate the midpoint rule (Gragg) to a step of no length."""
         rows = []
-        for column in range(1, COLUMNS + 1):
+        for column in range(1, columns + 1):
             n = 2 * column
             h = length / n
             old = self.state
@@ -175,16 +175,25 @@ class ExactRun:
         return self
 
     def root(self, k, begin, length, guard):
-        """Find where a guard falls to zero, by the secant rule within a bracket."""
+        """Find where a guard falls to zero: within a bracket, roughly, then by the secant rule."""
 
-        def value(at):
-            return self.guards(self.moved(k, begin, at))[guard]
+        def value(at, columns=COLUMNS):
+            return self.guards(self.moved(k, begin, at, columns))[guard]
 
         low, high = MP.mpf(0), length
         if value(low) <= 0:  # it was zero at the start, and rose first
             low = length / 1024
-        at = mpmath.findroot(value, (low, high), solver="anderson", tol=1e-90, maxsteps=60)
-        return at, guard
+        with mpmath.workdps(ROUGH_DIGITS):
+            at = mpmath.findroot(
+                lambda at: value(at, ROUGH_COLUMNS), (low, high), solver="anderson",
+                tol=1e-16, maxsteps=60, verify=False,
+            )  # fmt: skip
+        beside = at + length * MP.mpf("1e-10")
+        before, now = value(at), value(beside)
+        while abs(beside - at) > length * MP.mpf("1e-40"):
+            at, beside = beside, beside - now * (beside - at) / (now - before)
+            before, now = now, value(beside)
+        return beside, guard
 
     def switch(self, guard, ground):
         """Change the contact; give the guards that are zero now."""
