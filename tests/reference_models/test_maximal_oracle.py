@@ -20,7 +20,8 @@ from reference_models.maximal.scene import GRAVITY, KINDS, Scene, mirrored, pace
 from reference_models.maximal.simulate import Excitation, simulate
 from reference_models.maximal.starting import start
 
-pytestmark = pytest.mark.reference_models
+# its own code takes half a minute to compile, and the other programs are there in quick runs
+pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 SCENES = 8
 SLOW = os.environ.get("ROCKFRAME_COMPILE") == "0"
