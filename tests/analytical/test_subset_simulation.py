@@ -139,7 +139,10 @@ def critical_amplitude():
 # of few families too the bounds must hold
 @pytest.mark.filterwarnings("ignore:.*hardly known:rockframe.errors.ModelWarning")
 # of 1e-3 and 1e-6
-@pytest.mark.parametrize(("dispersion", "cases", "seeds"), [(0.1, 300, 6), (0.065, 500, 4)])
+@pytest.mark.parametrize(
+    ("dispersion", "cases", "seeds"),
+    [(0.1, 300, 6), pytest.param(0.065, 500, 4, marks=pytest.mark.long)],
+)
 def test_a_block_under_a_pulse_of_random_size(dispersion, cases, seeds):
     probability = norm.sf(math.log(critical_amplitude() / 4.0) / dispersion)
     rows = []

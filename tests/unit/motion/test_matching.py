@@ -68,7 +68,11 @@ FULL = [
 ]
 
 
-@pytest.mark.parametrize(("name", "target", "periods"), FULL, ids=lambda one: str(one)[:20])
+@pytest.mark.parametrize(
+    ("name", "target", "periods"),
+    [*FULL[:2], *(pytest.param(*one, marks=pytest.mark.long) for one in FULL[2:])],
+    ids=lambda one: str(one)[:20],
+)
 def test_records_reach_the_spectra_of_codes_and_stay_themselves(name, target, periods):
     motion = (
         rf.GroundMotion.read(record_path(name)) if "." in name else rf.GroundMotion.example(name)

@@ -113,6 +113,7 @@ def test_bounds_by_jackknife_are_those_of_its_definition():
             assert np.log(bound) == pytest.approx(middle + sign * error, abs=2e-4), (name, end)
 
 
+@pytest.mark.long
 def test_bounds_by_jackknife_hold_with_few_motions():
     """Of five motions, and of the samples of them that an intensity separates."""
     rng, samples = np.random.default_rng(9), []

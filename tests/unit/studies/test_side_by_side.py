@@ -77,8 +77,9 @@ def assert_same_bits(lanes, alone):
         ((PADS,), {}),
         ((PADS,), {"restraint": "leading-corner"}),
         ((PADS,), {"rotation": "small"}),
-        ((SOIL,), {}),
-        ((PADS, CAP, SOIL), {}),
+        # whose lanes nothing else compiles
+        pytest.param((SOIL,), {}, marks=pytest.mark.long),
+        pytest.param((PADS, CAP, SOIL), {}, marks=pytest.mark.long),
     ],
     ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
 )
@@ -93,7 +94,7 @@ def test_lanes_give_what_single_runs_give(monkeypatch, parts, options):
         ((PADS,), {}),
         ((PADS,), {"restraint": "leading-corner"}),
         ((PADS,), {"rotation": "small"}),
-        ((SOIL,), {}),
+        pytest.param((SOIL,), {}, marks=pytest.mark.long),
     ],
     ids=lambda given: "-".join(str(one).split("(")[0] for one in given) or "none",
 )

@@ -89,7 +89,11 @@ def test_a_seed_makes_the_same_again(found):
 
 
 @pytest.mark.parametrize(
-    ("limit", "scale"), [("overturning", 1.0), (("peak_relative_rotation", 0.1), 0.8)]
+    ("limit", "scale"),
+    [
+        pytest.param("overturning", 1.0, marks=pytest.mark.long),
+        (("peak_relative_rotation", 0.1), 0.8),
+    ],
 )
 def test_probabilities_are_those_of_brute_force(limit, scale):
     asked = {
