@@ -143,8 +143,8 @@ class Entry:
     def _catch_up(self, sources: list[Source]) -> None:
         """Compile what has been called back in Python for long, or take what was kept of it.
 
-        For as long as compiling takes, where this waits, and else for a moment, as another process
-        compiles it.
+        For a third of what compiling takes, where this waits, and else for a moment, as another
+        process compiles it.
         """
         from rockframe.compiled.jobs import Job
         from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, NotCompiledError, make_all
@@ -152,7 +152,7 @@ class Entry:
         for source in sources:
             job = self._seldom.setdefault(source, Job(source.function, source.structure, True))
             try:
-                patience = job.seconds if WAITS else WORTHWHILE
+                patience = job.seconds / 3.0 if WAITS else WORTHWHILE
                 if source.seconds_called_back < patience and not job.is_stored:
                     continue
                 if not WAITS:
