@@ -62,8 +62,13 @@ def entry(function: Function) -> Function:
 
 
 def entry_at_once(function: Function) -> Function:
-    """Mark an entry that runs as plain Python, which gives the same, until it is compiled."""
-    return cast("Function", Entry(function, WAITS) if COMPILED else _as_python(function))
+    """Mark an entry that runs as plain Python, which gives the same, until it is compiled.
+
+    It returns now and then, and may call back in Python what is called seldom.
+    """
+    if not COMPILED:
+        return cast("Function", _as_python(function))
+    return cast("Function", Entry(function, WAITS, calls_back=True))
 
 
 def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -110,10 +115,13 @@ def say_slow(seconds: float) -> None:
 class Entry:
     """A compiled function: the machine code for each structure of arguments."""
 
-    def __init__(self, function: Callable[..., Any], waits: bool = True) -> None:
+    def __init__(
+        self, function: Callable[..., Any], waits: bool = True, calls_back: bool = False
+    ) -> None:
         self.source = inlined(function)
         self._plain = _as_python(function)
         self._waits = waits
+        self._calls_back = calls_back
         self._routines: dict[tuple[Any, ...], Callable[..., Any] | None] = {}
         self._awaited: dict[Any, Meanwhile] = {}
         self._seldom: dict[Source, Job] = {}
@@ -127,7 +135,7 @@ class Entry:
         routine = self._routines.get(structure)
         if routine is not None and all(source.address for source in sources):
             return routine(*words)
-        needed, seldom = _needed(sources)
+        needed, seldom = self._needed(sources)
         with _lock:
             meanwhile = None if self._waits else self._meanwhile(structure, needed)
             ready = meanwhile is None or meanwhile.is_over()
@@ -139,6 +147,13 @@ class Entry:
                 return self._plain(*arguments)
         words = [word.address if isinstance(word, Bound) else word for word in words]
         return raising(routine, words)
+
+    def _needed(self, sources: list[Source]) -> tuple[list[Source], list[Source]]:
+        """Give what must be compiled before this runs, and what may be called back meanwhile."""
+        seldom: list[Source] = []
+        if self._calls_back:
+            seldom = [source for source in _missing(sources) if source.is_seldom_called]
+        return [source for source in sources if source not in seldom], seldom
 
     def _catch_up(self, sources: list[Source]) -> None:
         """Compile what has been called back in Python for long, or take what was kept of it.
@@ -172,7 +187,7 @@ class Entry:
 
         sources: list[Source] = []
         structure = tuple(_structure_of(argument, [], sources) for argument in arguments)
-        sources, _ = _needed(sources)
+        sources, _ = self._needed(sources)
         with _lock:
             if time_for(self._jobs(structure, sources)) > patience:
                 return False
@@ -236,12 +251,6 @@ class Entry:
 
 def _missing(sources: list[Source]) -> list[Source]:
     return [*{id(source): source for source in sources if not source.address}.values()]
-
-
-def _needed(sources: list[Source]) -> tuple[list[Source], list[Source]]:
-    """Give the sources without which no machine code runs, and those that may be called back."""
-    seldom = [source for source in _missing(sources) if source.is_seldom_called]
-    return [source for source in sources if source not in seldom], seldom
 
 
 def compiled_within(

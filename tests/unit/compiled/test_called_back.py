@@ -13,6 +13,7 @@ from rockframe.compiled import (
     Vector,
     bound,
     entry,
+    entry_at_once,
     kernel,
     numbers_in,
     seldom_called,
@@ -49,7 +50,7 @@ class Handed(NamedTuple):
     numbers: Vector
 
 
-@entry
+@entry_at_once
 def through(
     handed: Handed, row: int, out: Vector, counts: Integers, table: ReadOnlyMatrix, more: Vector
 ) -> int:
@@ -126,7 +127,7 @@ def hopeless(scale: Scale, out: Vector) -> int:
     return 3
 
 
-@entry
+@entry_at_once
 def call(handed: Handed, out: Vector) -> int:
     return handed.function.call(out, handed.numbers)
 
@@ -141,3 +142,26 @@ def test_what_cannot_be_compiled_goes_on_as_python(fallbacks):
     assert out[0] == 1.0
     assert len(fallbacks) == 1
     fallbacks.clear()
+
+
+@entry
+def at_length(handed: Handed, out: Vector) -> int:
+    return handed.function.call(out, handed.numbers)
+
+
+@seldom_called
+@kernel
+def plain(scale: Scale, out: Vector) -> int:
+    """Do little."""
+    out[0] = scale.factor
+    return 5
+
+
+def test_what_does_not_return_for_long_calls_nothing_back():
+    scale = Scale(2.0, np.zeros(1))
+    (function,) = bound((plain,), scale)
+    out = np.zeros(1)
+    assert at_length(Handed(function, numbers_in(scale)), out) == 5
+    assert out[0] == 2.0
+    assert function.source.address != 0
+    assert function.source.seconds_called_back == 0.0
