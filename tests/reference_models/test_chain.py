@@ -138,6 +138,8 @@ if COMPILED:
     from reference_models.stacks.comparing import compared, model_of, rotations, run_chain
     from reference_models.stacks.drawing import draw
 
+    # the reference model takes most of a minute to compile
+    @pytest.mark.long
     @pytest.mark.parametrize(("bodies", "scenes"), [(1, 3), (2, 3), (3, 4), (5, 1), (8, 1)])
     def test_random_stacks_move_as_in_the_reference_model(bodies, scenes):
         for one in range(scenes):
@@ -153,6 +155,7 @@ if COMPILED:
         assert len(ours.events.time) > 4
         assert np.abs(rotations(model, ours) + rotations(other, mirror)).max() < 1e-12
 
+    @pytest.mark.long
     def test_fast_steps_come_near():
         scene = draw(np.random.default_rng([77, 3, 5]), 3)
         assert compared(scene, "fast").difference < 1e-2

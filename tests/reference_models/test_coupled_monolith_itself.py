@@ -10,7 +10,8 @@ import pytest
 from reference_models.monoliths import coupled, two_spring, winkler
 from scipy.linalg import expm
 
-pytestmark = pytest.mark.reference_models
+# tests of a reference model, which changes seldom
+pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 G = 9.80665
 RULES = winkler.RULES

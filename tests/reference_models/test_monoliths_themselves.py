@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from reference_models.monoliths import rigid_block, two_spring
 
-pytestmark = pytest.mark.reference_models
+# tests of a reference model, which changes seldom
+pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 G = 9.80665
 RULES = ("contact-state", "leading-corner", "centre")

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from reference_models.monoliths import two_spring, winkler
 
-pytestmark = pytest.mark.reference_models
+# tests of a reference model, which changes seldom
+pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 G = 9.80665
 RULES = winkler.RULES

@@ -21,7 +21,8 @@ from reference_models.stacks.simulate import simulate
 from reference_models.stacks.standing import COMPLETED
 from reference_models.stacks.starting import placed, rest_of
 
-pytestmark = pytest.mark.reference_models
+# tests of a reference model, which changes seldom
+pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 SCENES = {"plain": 24, "eccentric": 8}
 COLUMNS = {"pads": [3, 4, 5], "bed": [0, 1, 2], "coupled": [3, 4, 5, 0, 1, 2]}
@@ -48,7 +49,6 @@ def stack(count: int, **given) -> Scene:
     return Scene(bodies, pads(bodies), rotation=0.1, **given)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("kind", COLUMNS)
 @pytest.mark.parametrize("variant", ["plain", "eccentric"])
 def test_one_or_two_bodies_as_in_the_other_model(kind, variant):
