@@ -68,6 +68,11 @@ class Source:
         self.seconds_called_back = 0.0
 
     @cached_property
+    def called_back(self) -> CalledBack:
+        """What machine code calls where there is none of this."""
+        return CalledBack(self)
+
+    @cached_property
     def signature(self) -> Signature:
         """Its signature; functions of equal signatures share one."""
         from rockframe.compiled.jobs import signature_of
@@ -78,25 +83,15 @@ class Source:
 class Bound:
     """A function bound to a tuple: plain Python, and what entries call in its place."""
 
-    __slots__ = ("_bundle", "_called_back", "source")
+    __slots__ = ("_bundle", "source")
 
     def __init__(self, source: Source, bundle: Any) -> None:
         self.source = source
         self._bundle = _own(bundle)
-        self._called_back: CalledBack | None = None
 
     def call(self, *arguments: Any) -> Any:
         """Call the function with the tuple in place of its numbers, the last argument."""
         return self.source.function(self._bundle, *arguments[:-1])
-
-    @property
-    def address(self) -> int:
-        """The address of the machine code, or, where there is none, of what calls Python back."""
-        if self.source.address:
-            return self.source.address
-        if self._called_back is None:
-            self._called_back = CalledBack(self)
-        return self._called_back.address
 
 
 def bound(functions: tuple[Callable[..., Any], ...], bundle: Any) -> tuple[Bound, ...]:

@@ -12,10 +12,10 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Final, get_type_hints
 
-from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector
+from rockframe.compiled.language import Integers, ReadOnlyMatrix, Vector, tuple_from
 
 if TYPE_CHECKING:
-    from rockframe.compiled.bound import Bound
+    from rockframe.compiled.bound import Source
 
 _WORD: Final = ctypes.c_int64
 _NUMBERS: Final[dict[Any, Any]] = {int: _WORD, float: ctypes.c_double, type(None): None}
@@ -38,10 +38,10 @@ _raised: Final = _Raised()
 
 
 class CalledBack:
-    """A bound function at an address at which it runs as plain Python."""
+    """A function at an address where it runs as plain Python, of the numbers that it is given."""
 
-    def __init__(self, bound: "Bound") -> None:
-        source, call = bound.source, bound.call
+    def __init__(self, source: "Source") -> None:
+        bundle_of = tuple_from(source.structure)
         hints = get_type_hints(source.function, include_extras=True)
         names = [*inspect.signature(source.function).parameters][1:]
         kinds = [*(hints[name] for name in names), Vector]
@@ -52,7 +52,8 @@ class CalledBack:
         def called(*words: Any) -> Any:
             began = perf_counter()
             try:
-                return call(*_arguments(kinds, words))
+                *arguments, numbers = _arguments(kinds, words)
+                return source.function(bundle_of(numbers), *arguments)
             except BaseException as raised:  # machine code knows no exceptions: raised behind it
                 _raised.first = _raised.first or raised
                 return 0

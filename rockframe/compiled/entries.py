@@ -145,7 +145,10 @@ class Entry:
         if routine is None:
             with meanwhile or nullcontext():
                 return self._plain(*arguments)
-        words = [word.address if isinstance(word, Bound) else word for word in words]
+        words = [
+            word.address or word.called_back.address if isinstance(word, Source) else word
+            for word in words
+        ]
         return raising(routine, words)
 
     def _needed(self, sources: list[Source]) -> tuple[list[Source], list[Source]]:
@@ -278,7 +281,7 @@ def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any
     if isinstance(argument, Bound):
         source = argument.source
         sources.append(source)
-        words.append(source.address or argument)
+        words.append(source.address or source)
         return ("function", source.signature)
     words.append(argument)
     if isinstance(argument, np.ndarray):

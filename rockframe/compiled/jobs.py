@@ -166,7 +166,7 @@ class Job:
     @cached_property
     def seconds(self) -> float:
         """About how long it takes to compile [s]."""
-        kinds = classes_in(self.structure) if self.bound else set[type]()
+        kinds = classes_of_structure(self.structure) if self.bound else set[type]()
         return _SECONDS_OF_BYTE * sum(
             len(f.__code__.co_code) for f in called_by(self.function, kinds)
         )
@@ -226,11 +226,11 @@ def without_collection() -> Generator[None]:
             gc.enable()
 
 
-def classes_in(structure: tuple[Any, ...]) -> set[type]:
+def classes_of_structure(structure: tuple[Any, ...]) -> set[type]:
     """Give the classes of a tuple and of the tuples in it."""
     kind, *parts = structure
     found = {kind} if isinstance(kind, type) else set[type]()
-    return found.union(*(classes_in(part) for part in parts if isinstance(part, tuple)))
+    return found.union(*(classes_of_structure(part) for part in parts if isinstance(part, tuple)))
 
 
 def called_by(function: Any, kinds: set[type]) -> set[Any]:

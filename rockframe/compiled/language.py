@@ -132,6 +132,8 @@ def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:
         for part in parts:
             if isinstance(part, tuple):
                 value, first = made(part[0], part[1:], numbers, first)
+            elif part is np.ndarray:  # all that are left
+                value, first = numbers[first:], len(numbers)
             else:
                 value, first = part(numbers[first]), first + 1
             taken.append(value)

@@ -90,6 +90,12 @@ def test_python_machine_code_and_what_calls_back_give_the_same():
     assert result_of(given) == EXPECTED
     assert source.address == 0
     assert source.seconds_called_back > 0.0
+    # of the numbers that are handed over, not of those that it was bound to
+    handed, *others = arguments(2)
+    other = Handed(handed.function, numbers_in(Scale(-3.0, np.array([1.0, 2.0, 8.0]))))
+    through(other, *others)
+    assert others[1][0] == -3.0 * (0.5 - 2.5) * 8.0 + 7.0
+    assert source.address == 0
     source.seconds_called_back = 1e9
     assert result_of(arguments(2)) == EXPECTED
     assert source.address != 0
