@@ -109,7 +109,13 @@ def assert_same(together, alone):
 @pytest.mark.parametrize(
     ("name", "accuracy"),
     # fixed steps of two bases in lanes are tested beside single runs
-    [(name, by) for name in STUDIES for by in ("fast", "standard") if (name, by) != TWICE],
+    [
+        # nothing else compiles lanes of a cascade
+        pytest.param(name, by, marks=[pytest.mark.long] * (name == "cascade"))
+        for name in STUDIES
+        for by in ("fast", "standard")
+        if (name, by) != TWICE
+    ],
 )
 def test_random_studies_have_the_bits_of_scenes_on_their_own(monkeypatch, name, accuracy):
     scene, spreads = STUDIES[name]
