@@ -77,7 +77,10 @@ def find_uses(app: Sphinx) -> None:
         for folder in ("guide", "recipes")
         for file in (manual / folder).glob("*.md")
     }
+    shared = re.compile(app.config.sphinx_gallery_conf["ignore_pattern"])
     for file in gallery.glob("*/*.py"):
+        if shared.search(file.name):  # which has no page
+            continue
         codes[f"/gallery/{file.parent.name}/{file.stem}"] = file.read_text(encoding="utf-8")
     for page, code in codes.items():
         for used in _USED.findall(code):
