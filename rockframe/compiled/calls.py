@@ -23,7 +23,7 @@ HELPER: Final = OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Division by zero gives infinities and NaN, as numpy's, and is not checked for."""
 
 _known: Final[dict[Callable[..., Any], Any]] = {}
-"""Functions and methods that numba has been told of, and its compiled ones, which it keeps not."""
+"""Functions and methods that numba knows, and its compiled ones, to which it refers weakly."""
 _ANYTHING: Final = numba.types.VarArg(numba.types.Any)
 _methods: Final[dict[Callable[..., Any], Any]] = {}
 """How numba finds the types of a method's call."""

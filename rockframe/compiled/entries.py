@@ -43,6 +43,11 @@ COMPILED: Final = _ASKED != "0" and _HAS_NUMBA
 """Whether functions are compiled."""
 WAITS: Final = _ASKED == "wait"
 """Whether all entries wait for their machine code."""
+CALLED_BACK: Final = 1.0 / 3.0
+"""Share of the time of a compilation that may be spent before it in what is called back.
+
+So little is lost where it is compiled after all, and nothing where a few short runs are made.
+"""
 PATIENCE: Final = 3.0
 """Length of a run in plain Python from which on compilation is spoken of [s]."""
 _said_slow: Final[list[bool]] = []
@@ -161,7 +166,7 @@ class Entry:
     def _catch_up(self, sources: list[Source]) -> None:
         """Compile what has been called back in Python for long, or take what was kept of it.
 
-        For a third of what compiling takes, where this waits, and else for a moment, as another
+        For a share of what compiling takes, where this waits, and else for a moment, as another
         process compiles it.
         """
         from rockframe.compiled.jobs import Job
@@ -170,7 +175,7 @@ class Entry:
         for source in sources:
             job = self._seldom.setdefault(source, Job(source.function, source.structure, True))
             try:
-                patience = job.seconds / 3.0 if WAITS else WORTHWHILE
+                patience = CALLED_BACK * job.seconds if WAITS else WORTHWHILE
                 if source.seconds_called_back < patience and not job.is_stored:
                     continue
                 if not WAITS:

@@ -112,6 +112,14 @@ def tabulate(
     return found
 
 
+def test_time_is_estimated_from_all_that_a_function_calls():
+    from rockframe.compiled.jobs import called_by
+
+    found = called_by(Pair.total_at, {Pair, Linear, Hardening})
+    assert found == {Pair.total_at, Linear.force_at, Hardening.force_at, cubed}
+    assert called_by(Pair.total_at, {Pair, Linear}) == {Pair.total_at, Linear.force_at}
+
+
 def arguments(pair):
     given = np.linspace(-2.0, 1.7, 12).reshape(3, 4)
     given.setflags(write=False)
