@@ -29,7 +29,7 @@ def scene(request):
     return SCENES[request.param]
 
 
-@pytest.mark.parametrize("accuracy", ["standard", "fast"])
+@pytest.mark.parametrize("accuracy", ["standard", pytest.param("fast", marks=pytest.mark.long)])
 def test_peaks_do_not_depend_on_the_output_step(scene, accuracy):
     runs = [
         scene.simulate(
@@ -44,7 +44,7 @@ def test_peaks_do_not_depend_on_the_output_step(scene, accuracy):
             np.testing.assert_array_equal(other, first)
 
 
-@pytest.mark.parametrize("accuracy", ["standard", "fast"])
+@pytest.mark.parametrize("accuracy", ["standard", pytest.param("fast", marks=pytest.mark.long)])
 def test_peaks_are_those_of_very_fine_samples(scene, accuracy):
     run = scene.simulate(
         PULSE, duration="1.5 s", output_step="0.05 ms", points=TOP, accuracy=accuracy,

@@ -47,6 +47,7 @@ def test_a_tendon_that_holds_nothing_makes_no_difference():
         np.testing.assert_allclose(run[name], bare[name], rtol=0.0, atol=1e-6 * scale)
 
 
+@pytest.mark.long
 def test_one_column_s_tendons_are_those_of_a_block_that_is_bent_twice():
     """Without a beam, a column with a tendon at half of its gaps is a block with that tendon."""
     frame = rf.RockingFrame(PIER, columns=2, beam_mass="0 t")

@@ -118,6 +118,7 @@ def test_a_tolerance_is_proved_or_said_to_be_too_wide():
     assert "within 1e-06" in str(rf.prove(scene, motion, scale=0.5, restitution_tolerance=1e-6))
 
 
+@pytest.mark.long
 def test_a_set_about_a_critical_scale_is_proved_safe_below_and_to_overturn_above():
     scene, motion = system(4), half_sine()
     at = 0.5 * (CASES[0][-2] + CASES[0][-1])

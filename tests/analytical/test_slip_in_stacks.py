@@ -46,10 +46,11 @@ def run_of(interfaces, base, motion, *links, bodies=(STATUE, PLINTH), offset=0.0
 def test_two_plates_that_slide_in_closed_form(way):
     upper, lower, strong, length = 0.1, 0.3, way * 5.0, 0.4
     steady = rf.GroundMotion.from_arrays((np.full(41, strong), "m/s^2"), "0.01 s")
-    found = run_of(
-        [ground(0.2, upper)], ground(0.35, lower), steady, bodies=(PLATE, SLAB),
-        free_vibration=None,
-    )  # fmt: skip
+    with plainly():  # these equations take longest to compile
+        found = run_of(
+            [ground(0.2, upper)], ground(0.35, lower), steady, bodies=(PLATE, SLAB),
+            free_vibration=None,
+        )  # fmt: skip
     one, two = 1000.0, 2000.0
     of_upper = way * upper * GRAVITY  # absolute accelerations
     of_lower = way * GRAVITY * (lower * (one + two) - upper * one) / two
@@ -62,11 +63,13 @@ def test_two_plates_that_slide_in_closed_form(way):
 
 def test_one_that_sticks_rides_on_one_that_slides():
     steady = rf.GroundMotion.from_arrays((np.full(41, 5.0), "m/s^2"), "0.01 s")
-    found = run_of([ground(0.4)], ground(0.3, 0.25), steady, free_vibration=None)
+    with plainly():
+        found = run_of([ground(0.4)], ground(0.3, 0.25), steady, free_vibration=None)
     slip = 0.5 * (0.25 * GRAVITY - 5.0) * 0.4**2
     assert found.body_slip.values[:, -1] == pytest.approx([0.0, slip], rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("seed", "static", "kinetic"), [(5, 0.36, 0.25), (8, 0.36, 0.25), (6, 0.38, 0.36)]
 )
@@ -84,6 +87,7 @@ def test_a_wide_body_below_is_the_ground(seed, static, kinetic):
     assert found.peak_rotation.item() == pytest.approx(alone.peak_rotation.item(), rel=1e-9)
 
 
+@pytest.mark.long
 def test_friction_without_end_holds():
     shaken = noise(3, 5.0)
     found = run_of([ENDLESS], ENDLESS, shaken)
@@ -96,6 +100,7 @@ def test_friction_without_end_holds():
     assert found.peak_body_slip.max().item() < 1e-9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("joint", "base"),
     [
@@ -118,6 +123,7 @@ def test_energies_balance_and_mirrored_runs_are_mirrored(joint, base):
     np.testing.assert_allclose(one.body_slip, -other.body_slip, atol=1e-7)
 
 
+@pytest.mark.long
 def test_laws_of_impact():
     shaken = noise(4, 6.0)
     slides, sticks = (

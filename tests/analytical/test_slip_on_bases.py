@@ -127,6 +127,7 @@ def stacked(upper, lower, pads=PADS):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("frictions", [(0.2, 0.25), (0.2, 1.0), (1.0, 0.2)])
 def test_bodies_of_a_stack_slip_within_the_cone_of_friction(frictions):
     found = stacked(*frictions)
@@ -147,6 +148,7 @@ def test_bodies_of_a_stack_slip_within_the_cone_of_friction(frictions):
     assert "body 2" in found.attrs["verdict"]
 
 
+@pytest.mark.long
 def test_a_stack_with_friction_without_end_is_held():
     pads = PADS.replace(restitution=1.0)
     held, found = stacked(None, None, pads), stacked(1e8, 1e8, pads)
@@ -154,6 +156,7 @@ def test_a_stack_with_friction_without_end_is_held():
     assert far < 1e-7 * held.peak_rotation.item()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("upper", "lower"), [(0.2, None), (None, 0.25)])
 def test_a_base_without_friction_holds_beside_one_with_friction(upper, lower):
     pads = PADS.replace(restitution=1.0)
@@ -165,6 +168,7 @@ def test_a_base_without_friction_holds_beside_one_with_friction(upper, lower):
         assert abs(found[name] - held[name]).max().item() < 1e-6 * most
 
 
+@pytest.mark.long
 def test_any_mixture_and_bases_that_all_give_way_are_one(monkeypatch):
     one = stacked(0.2, 0.25)
     monkeypatch.setattr(model, "SlippingChain", SlippingRigidChain)

@@ -136,12 +136,13 @@ def critical_amplitude():
     return brentq(growing, slope * GRAVITY * 1.0001, 40.0, xtol=1e-12)
 
 
+@pytest.mark.long
 # of few families too the bounds must hold
 @pytest.mark.filterwarnings("ignore:.*hardly known:rockframe.errors.ModelWarning")
 # of 1e-3 and 1e-6
 @pytest.mark.parametrize(
     ("dispersion", "cases", "seeds"),
-    [(0.1, 300, 6), pytest.param(0.065, 500, 4, marks=pytest.mark.long)],
+    [(0.1, 300, 6), (0.065, 500, 4)],
 )
 def test_a_block_under_a_pulse_of_random_size(dispersion, cases, seeds):
     probability = norm.sf(math.log(critical_amplitude() / 4.0) / dispersion)

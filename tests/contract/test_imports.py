@@ -102,8 +102,8 @@ def test_help_and_completion_load_no_library(words):
     ("name", "words", "first"),
     [
         ("probe.py", ["-m", "rockframe"], "import rockframe"),
-        ("rockframe.study.py", [], "import rockframe"),
-        ("rockframe", [], "from rockframe import Block"),
+        pytest.param("rockframe.study.py", [], "import rockframe", marks=pytest.mark.long),
+        pytest.param("rockframe", [], "from rockframe import Block", marks=pytest.mark.long),
     ],
 )
 def test_every_script_has_the_accessor_however_it_is_called(name, words, first, tmp_path):

@@ -10,6 +10,7 @@ import pytest
 SCRIPT = Path(__file__).resolve().parents[2] / "examples" / "office_contents.py"
 
 
+@pytest.mark.long
 def test_it_puts_medians_beside_those_of_fema(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(sys, "argv", [str(SCRIPT), "--motions", "3", "--folder", str(tmp_path)])
     with pytest.raises(SystemExit) as left:

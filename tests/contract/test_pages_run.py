@@ -25,14 +25,27 @@ PAGES = [
 ]
 SNIPPET = re.compile(r"```(python|console|toml)\n(.*?)```(?:\n+```text\n(.*?)```)?", re.DOTALL)
 FILE = re.compile(r"# (\S+\.toml)\n")
+LONG = (
+    "analyses",
+    "clouds_and_hazard",
+    "command_line",
+    "dynamic_analysis",
+    "fragility",
+    "model_and_accuracy",
+    "plots",
+    "proved_verdicts",
+    "statue",
+    "suites",
+    "tradeoff",
+)
+"""Pages that take more than a second."""
 RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.AT2"}
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(
     "page",
-    # all models of a scene at three accuracies, each compiled
-    [pytest.param(page, marks=[pytest.mark.long] * (page.stem == "tradeoff")) for page in PAGES],
+    [pytest.param(page, marks=[pytest.mark.long] * (page.stem in LONG)) for page in PAGES],
     ids=[page.name for page in PAGES],
 )
 def test_snippets_run_from_first_to_last(page, tmp_path, monkeypatch, capsys, request):

@@ -195,7 +195,13 @@ BOMBS = {
 }
 
 
-@pytest.mark.parametrize("name", BOMBS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.long] * ("nested" in name or "many " in name))
+        for name in BOMBS
+    ],
+)
 def test_bombs(folder, name, tmp_path):
     data = BOMBS[name]()
     path = tmp_path / "bomb"

@@ -283,6 +283,7 @@ LONG = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("data", LONG.values(), ids=LONG)
 def test_long_files_neither_take_long_nor_much(folder, data):
     path = folder / "long"

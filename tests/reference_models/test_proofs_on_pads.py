@@ -295,7 +295,10 @@ def outside(case, prepare=None, beside=NOWHERE):
     return SimpleNamespace(missed=missed, seen=len(seen), way=one, stopped=stopped, last=seen[-1])
 
 
-@pytest.mark.parametrize("case", list(CASES))
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, marks=[pytest.mark.long] * (k > 1)) for k, case in enumerate(CASES)],
+)
 def test_enclosures_hold_the_run_of_fifty_digits(case):
     found = outside(case)
     assert found.stopped is None

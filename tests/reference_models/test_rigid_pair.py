@@ -274,6 +274,7 @@ def test_halves_of_a_column_rock_as_one_body():
     assert run.place[:count, 5] == pytest.approx(alone.rotation[:count], abs=1e-9)
 
 
+@pytest.mark.long
 def test_dying_rocking_of_one_body_ends():
     """Impacts of a block alone accumulate: the sum of their spans is finite."""
     half = Body.uniform(0.5, 1.0, 500.0)
@@ -320,6 +321,7 @@ def test_tolerance_does_not_matter():
     assert other.place == pytest.approx(one.place, abs=1e-9)
 
 
+@pytest.mark.long
 def test_ground_that_falls_away_leaves_both_in_flight():
     """Jolted upwards and then dropped faster than they fall, they fly, land and rest."""
     pieces = harmonic(0.3, -14.0, 2.0, 1, free=1.0)
@@ -329,6 +331,7 @@ def test_ground_that_falls_away_leaves_both_in_flight():
     assert all(one == "both" for one in run.events[-1].after)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not have_records(), reason="recorded motions are not there")
 def test_a_hinge_that_pulls_and_would_close_at_once_is_held():
     """Opposite senses of rocking: let go, a light upper block would come down on the lower one."""
@@ -341,6 +344,7 @@ def test_a_hinge_that_pulls_and_would_close_at_once_is_held():
     assert run.imbalance < 1e-10
 
 
+@pytest.mark.long
 def test_random_scenes_uplift_and_overturn():
     ends = []
     for number in range(30):
@@ -366,6 +370,7 @@ def test_the_package_moves_alike(number):
 # impacts ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_how_many_patterns_are_admissible():
     rng = np.random.default_rng(5)
     found = {kind: counted(rng, kind, 400) for kind in KINDS}

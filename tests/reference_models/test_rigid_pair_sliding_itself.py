@@ -26,7 +26,7 @@ from reference_models.rigid_pair_sliding.drawing import draw
 from reference_models.rigid_pair_sliding.events import OffTheTopError
 from reference_models.rigid_pair_sliding.simulate import simulate, simulate_pair
 
-pytestmark = pytest.mark.reference_models
+pytestmark = [pytest.mark.reference_models, pytest.mark.long]
 
 HELD = {"ground": Friction(), "joint": Friction()}
 ROUGH = Pair(Body(1000.0, 120.0, 0.35, 0.5, 0.55, 0.02), Body(800.0, 90.0, 0.2, 0.6, 0.5), 0.02)

@@ -128,7 +128,9 @@ def test_a_run_by_a_record_has_its_certificate_though_it_overturned(tmp_path):
 
 
 @pytest.mark.parametrize("given", [{"overturning": "continue"}, {"free_vibration": "9 s"}])
-@pytest.mark.parametrize("parts", ["rigid", "sliding", "pads", "stack"])
+@pytest.mark.parametrize(
+    "parts", ["rigid", "sliding", "pads", pytest.param("stack", marks=pytest.mark.long)]
+)
 def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_path):
     scenes = {
         "rigid": (BLOCK,), "sliding": (BLOCK, rf.RigidGround(friction=0.5)), "pads": (BLOCK, PADS),

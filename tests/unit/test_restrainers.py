@@ -371,7 +371,8 @@ def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
     "number",
     [
         755,  # a tie of 2e10 N/m, the last bit of whose length is more than the rounding of weights
-        508,  # a tie between bodies that rest on one another, taut or slack by the last bit
+        # a tie between bodies that rest on one another, taut or slack by the last bit
+        pytest.param(508, marks=pytest.mark.long),
     ],
 )
 def test_rounding_of_stiff_ties_does_not_hold_and_release_without_end(number):

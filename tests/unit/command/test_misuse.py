@@ -207,7 +207,12 @@ def test_files_of_other_editors_are_read(typed):
 
 @pytest.mark.skipif(shutil.which("sh") is None, reason="there is no shell")
 @pytest.mark.parametrize(
-    ("words", "code"), [("run scene.toml >&-", 0), ("run - <&-", 2), ("run scene.toml 2>&-", 0)]
+    ("words", "code"),
+    [
+        ("run scene.toml >&-", 0),
+        pytest.param("run - <&-", 2, marks=pytest.mark.long),
+        pytest.param("run scene.toml 2>&-", 0, marks=pytest.mark.long),
+    ],
 )
 def test_closed_streams_are_no_tracebacks(words, code, folder, uncompiled):
     done = subprocess.run(

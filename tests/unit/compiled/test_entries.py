@@ -279,6 +279,7 @@ def test_arrays_that_are_read_only_stay_so(fallbacks):
     fallbacks.clear()
 
 
+@pytest.mark.long
 def test_damaged_machine_code_is_made_anew(tmp_path):
     told = "from rockframe.compiled import entry\nimport own\nprint(own.twice(4))\n"
     (tmp_path / "own.py").write_text(
