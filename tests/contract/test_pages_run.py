@@ -34,6 +34,7 @@ LONG = (
     "model_and_accuracy",
     "plots",
     "proved_verdicts",
+    "stacks",
     "statue",
     "suites",
     "tradeoff",
