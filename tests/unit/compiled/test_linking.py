@@ -110,3 +110,59 @@ def test_another_numba_goes_its_ordinary_way(made, monkeypatch):
     again(values)
     assert values.tolist() == [12.0]
     assert any("thrice" in name for name in made)
+
+
+@kernel
+def listed(x: float) -> float:
+    values = [root_of(x), x]
+    values.append(2.0)
+    room = np.zeros(3)
+    for i in range(3):
+        room[i] = values[i]
+    return room.sum()
+
+
+@entry
+def summed(values: Vector) -> None:
+    for i in range(len(values)):
+        values[i] = right(listed(values[i]))
+
+
+def test_what_makes_lists_and_arrays_counts_their_references():
+    """They are let go, and those that use them have nothing to count."""
+    from numba.core.runtime import _nrt_python, rtsys
+
+    from rockframe.compiled.calls import _counts_references
+
+    counting = [each for each in (root_of, left, right, thrice, listed) if _counts_references(each)]
+    assert counting == [root_of, listed]
+    values = np.array([9.0, 16.0])
+    summed(values)
+    assert values.tolist() == [3.0 * 14.0**0.5, 3.0 * 22.0**0.5]
+    _nrt_python.memsys_enable_stats()
+    before = rtsys.get_allocation_stats()
+    summed(np.full(1000, 9.0))
+    after = rtsys.get_allocation_stats()
+    _nrt_python.memsys_disable_stats()
+    assert after.alloc - before.alloc == after.free - before.free > 1000
+
+
+def test_an_operator_is_looked_up_once_and_only_while_something_is_compiled():
+    import numba
+
+    from rockframe.compiled.jobs import operators_remembered
+
+    kind = numba.types.Function
+    plain, looked = kind.get_call_type, []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            numba.core.types.functions.BaseFunction, "get_call_type",
+            lambda *words: (looked.append(words[2]), plain(*words))[1],
+        )  # fmt: skip
+        with operators_remembered():
+            many = numba.njit(lambda x, n: (x + x) * (x + x) + (n + n) * (x + n))
+            assert many(2.0, 3) == 46.0
+    sums = [words for words in looked if words == (numba.float64, numba.float64)]
+    assert 1 <= len(sums) <= 2  # an addition, a multiplication
+    assert kind.get_call_type is plain
+    assert "get_call_type" not in vars(kind)
