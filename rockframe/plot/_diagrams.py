@@ -73,7 +73,10 @@ def phase(
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
     >>> run = system.simulate(pulse, free_vibration="2 s")
-    >>> rf.plot.phase(run, rotation="deg").figure.savefig("phase.png")  # doctest: +SKIP
+    >>> axes = rf.plot.phase(run, rotation="deg")
+    >>> axes.get_xlabel()
+    'rotation [°]'
+    >>> axes.figure.savefig("phase.png")  # doctest: +SKIP
     """
     given = runs_of(runs, "phase", window)
     unit = units_of(units, "phase").unless_relative(ANGLE, rotation=rotation)
@@ -225,7 +228,10 @@ def energies(
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
     >>> run = system.simulate(pulse, free_vibration="2 s", outputs=("energy",))
-    >>> rf.plot.energies(run, energy="kJ").figure.savefig("energies.png")  # doctest: +SKIP
+    >>> axes = rf.plot.energies(run, energy="kJ")
+    >>> axes.get_ylabel()
+    'energy [kJ]'
+    >>> axes.figure.savefig("energies.png")  # doctest: +SKIP
     """
     given = runs_of(run, "energies", None)
     if len(given) > 1:

@@ -84,6 +84,18 @@ def dynamic_analysis(
     Returns
     -------
     Panels
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("2.2 m/s^2", f"{f} Hz") for f in (1, 2)}
+    >>> found = rf.incremental_dynamic_analysis(
+    ...     system, motions, scale=[0.5, 1.0, 2.0, 4.0], intensity="PGA"
+    ... )
+    >>> panels = rf.plot.dynamic_analysis(found, units={"acceleration": "g"})
+    >>> panels[0].get_ylabel()
+    'peak ground acceleration [g]'
     """
     given = of_one_structure(drawable(dataset, "dynamic_analysis", units))
     name = str(given.attrs.get("intensity", "scale"))
@@ -165,6 +177,15 @@ def fractile_curves(
     Returns
     -------
     matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("2.2 m/s^2", f"{f} Hz") for f in (1, 2)}
+    >>> runs = rf.sweep(system, motions, scale=[0.5, 1.0, 2.0])
+    >>> rf.plot.fractile_curves(rf.fractile_curves(runs, "PGA")).get_xlabel()
+    'peak relative rotation [-]'
     """
     given = drawable(dataset, "fractile_curves", units)
     on = single(ax, "fractile_curves", (6.0, 4.3))
@@ -254,6 +275,17 @@ def overturning_map(
     matplotlib.axes.Axes
         On rigid ground the axes are amplitude over that of uplift and frequency over the block's,
         unless `units` has one of accelerations.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> found = rf.overturning_map(
+    ...     system, pulse, amplitude=([2.0, 4.0, 8.0], "m/s^2"), frequency=([0.5, 1.0], "Hz")
+    ... )
+    >>> rf.plot.overturning_map(found, units={"acceleration": "g"}).get_ylabel()
+    'amplitude [g]'
     """
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
@@ -317,7 +349,13 @@ def rocking_spectrum(
 
     Examples
     --------
-    >>> axes = rf.plot.rocking_spectrum(rf.rocking_spectrum(...))  # doctest: +SKIP
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> found = rf.rocking_spectrum(system, pulse, periods=([2.0, 3.0], "s"), slenderness=[5.0])
+    >>> panels = rf.plot.rocking_spectrum(found)
+    >>> panels[0].get_title()
+    'H/B = 5'
     """
     given = drawable(dataset, "rocking_spectrum", units)
     on = _sheet(ax, "rocking_spectrum", given)
@@ -351,6 +389,18 @@ def overturning_spectrum(
     Returns
     -------
     Panels
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> found = rf.overturning_spectrum(
+    ...     system, pulse, scale=[1.0, 2.0, 4.0, 8.0], periods=([2.0, 3.0], "s"), slenderness=[5.0]
+    ... )
+    >>> panels = rf.plot.overturning_spectrum(found, units={"acceleration": "g"})
+    >>> panels[0].get_ylabel()
+    'peak ground acceleration [g]'
     """
     given = drawable(dataset, "overturning_spectrum", units)
     on = _sheet(ax, "overturning_spectrum", given)

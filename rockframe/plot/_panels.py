@@ -69,6 +69,16 @@ class Panels(tuple[Any, ...]):
 
     A tuple of :class:`matplotlib.axes.Axes`, which can be handed back as ``ax=`` to draw something
     else in the same panels.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> panels = rf.plot.motion(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+    >>> len(panels), panels.figure is panels[0].figure
+    (3, True)
+    >>> again = rf.plot.motion(rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz"), ax=panels)
+    >>> again[0] is panels[0]
+    True
     """
 
     __slots__ = ()

@@ -38,6 +38,12 @@ class CheckedLine:
         What it is, and its formula.
     source : str
         Clause and number of the formula; or where else it is from.
+
+    Examples
+    --------
+    >>> from rockframe.units import Unit
+    >>> CheckedLine("M*", 1850.0, Unit.KILOGRAM, "participating mass", "(C8.7.1.4)").written()
+    '1.85 t'
     """
 
     symbol: str
@@ -78,6 +84,11 @@ class CheckedVerdict:
         Demand and capacity.
     source : str
         Clause.
+
+    Examples
+    --------
+    >>> CheckedVerdict("Damage", True, "0.03 m is below 0.05 m", "C8.7.1.2").passed
+    True
     """
 
     title: str
@@ -105,6 +116,21 @@ class CodeCheck:
         What the check leaves out.
     scene : str
         What was checked, in a line.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rockframe as rf
+    >>> cabinet = rf.Block(width="0.6 m", height="1.8 m", mass="300 kg")
+    >>> check = rf.codes.asce_7_22(cabinet, spectral_acceleration=1.0, importance=1.5)
+    >>> check.value("S_DS"), check.passed["tipping"]
+    (1.0, False)
+    >>> len([*check.banners()]), [title for title, _ in check.tables(ReaderUnits())]
+    (1, ['Factors', 'Forces', 'Statics, without anchors', 'Left out'])
+    >>> "S_DS" in check.section(ReaderUnits())
+    True
+    >>> check.report(f"{tempfile.mkdtemp()}/check.html").name
+    'check.html'
     """
 
     title: str
