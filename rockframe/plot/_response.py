@@ -258,7 +258,7 @@ def response(
         ratios = {"height_ratios": heights}
         return figure.subplots(len(names), 1, sharex=True, gridspec_kw=ratios)
 
-    on = sheet(ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)), make)
+    on = sheet(ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)), make, choice=True)
     drawn = dict(zip(names, on.panels, strict=True))
     for name, axes in drawn.items():
         if name in strips:
