@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from rockframe import plot
@@ -46,26 +47,27 @@ def verdict_sections(
 
 def worst_case(
     dataset: xr.Dataset, motions: Mapping[str, GroundMotion]
-) -> tuple[str, xr.Dataset, System] | None:
-    """Simulate the case of a sweep that comes nearest to overturning, or overturns first."""
-    if not _is_sweep(dataset):
-        return None
-    order = from_worst(dataset)
+) -> tuple[str, tuple[xr.Dataset, System] | None]:
+    """Simulate the case of a sweep that comes nearest to overturning, or overturns first.
+
+    Gives its words, which say why where it cannot be simulated; none of what has no cases.
+    """
+    order = from_worst(dataset) if _is_sweep(dataset) else np.array([])
     if not order.size:
-        return None
+        return "", None
     labels = labels_at(dataset, int(order[0]))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
             found = case(dataset, motions=motions or None, **labels)
             run = found.simulate(outputs=())
-    except RockframeError:  # such as of a function of another process, or without its motions
-        return None
+    except RockframeError as problem:  # such as without its motions
+        return f"Not simulated again; {problem}.", None
     named = ", ".join(
         f"{name.replace('_', ' ')} {written(value)}" for name, value in labels.items()
     )
     system = found.system if found.motion is None else under(found.system, found.motion)
-    return f"Simulated again: {named}." if named else "Simulated again.", run, system
+    return f"Simulated again: {named}." if named else "Simulated again.", (run, system)
 
 
 def under(system: System, motion: GroundMotion) -> System:

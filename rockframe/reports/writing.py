@@ -147,13 +147,15 @@ def report(
         if found:
             spectra = spectra_section(found, aim, chosen)
             body.append(page.section("Ground motions", spectra))
-        worst = studies.worst_case(dataset, found)
+        words, worst = studies.worst_case(dataset, found)
         if worst is not None:
-            words, run, system = worst
-            verdict = sections.outcome_of(worst[1])
+            run, system = worst
+            verdict = sections.outcome_of(run)
             body.append(page.section("The worst case in full", [page.paragraph(words), verdict]))
             body += _of_run(run, system, about, chosen)
         else:
+            if words:
+                body.append(page.section("The worst case", [page.paragraph(words)]))
             system = _system_of(dataset, None)
             if system is not None:
                 body.append(page.section("Scene", sections.scene_section(dataset, system)))

@@ -1,6 +1,7 @@
 """Reports: the spectra of the motions beside their target, their records, and checks by codes."""
 
 import re
+import warnings
 from html import unescape
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, RecordWarning
 from rockframe.reports import motions as in_reports
 from rockframe.results.schema import SCHEMA
 
@@ -119,6 +120,7 @@ def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypat
     bare = text_of(rf.report(read, path))
     assert "Ground motions" not in bare
     assert "The worst case in full" not in bare
+    assert re.search("The worst case Not simulated again; .* must be given, as motions=", bare)
     whole = text_of(rf.report(read, path, motions=suite))
     assert "Compared at 40 periods" in whole
     assert "The worst case in full" in whole
@@ -128,6 +130,29 @@ def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypat
     kept = text_of(rf.report(rf.open_study(tmp_path / "kept"), path))  # with its records
     assert "Sturno 3" in kept
     assert "The worst case in full" in kept
+
+
+def test_records_of_unlike_time_steps_are_reported_with_their_forces(tmp_path):
+    steps = ("0.01 s", "0.02 s", "0.015 s")
+    motions = {f"R{k}": record(k).resampled(step) for k, step in enumerate(steps)}
+    said = "time steps from 0.01 s to 0.02 s; histories are kept every 0.01 s for all of them"
+    with pytest.warns(RecordWarning, match=said):
+        runs = rf.sweep(BLOCK, motions, scale=[3.0], outputs=["base_shear"])
+    assert np.diff(runs.time) == pytest.approx(0.01, rel=1e-9)
+    for name, motion in motions.items():
+        alone = BLOCK.simulate(motion.scaled(3.0), outputs=["base_shear"], output_step="0.01 s")
+        case = runs.sel(motion=name, scale=3.0)
+        shear = case.base_shear.to_numpy()
+        assert shear[: alone.time.size] == pytest.approx(alone.base_shear.to_numpy(), rel=1e-9)
+        assert float(case.peak_base_shear) == float(alone.peak_base_shear)
+    with pytest.warns(RecordWarning, match=r"3 of 3 records are sampled every 0\.01 s to 0\.02 s"):
+        path = rf.report(runs, tmp_path / "r.html", motions=motions, units={"force": "kN"})
+    html = text_of(path)
+    assert "peak base shear [kN]" in html
+    assert "The worst case in full Simulated again: scale 3, motion R" in html
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rf.sweep(BLOCK, motions, outputs=["base_shear"], output_step="0.02 s")
 
 
 def test_a_run_has_its_record_and_its_target(suite, tmp_path):
