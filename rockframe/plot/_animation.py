@@ -283,7 +283,7 @@ def animation(
         clock.set_text(moving.words(place))
 
     draw(0)
-    on.entitle(str(run.attrs.get("verdict", "")), title)
+    on.entitle(chosen.reader.of_sentence(str(run.attrs.get("verdict", ""))), title)
     if ax is None:  # places are found once, not for every frame
         on.panels.figure.canvas.draw()
         on.panels.figure.set_layout_engine("none")

@@ -14,6 +14,7 @@ from rockframe.plot._axes import (
     label_of,
     label_of_intensity,
     style_of,
+    units_of,
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, chosen_panels, sheet, single
@@ -114,7 +115,8 @@ def dynamic_analysis(
     for axes in on.panels if on.own is None else on.panels[:1]:
         axes.set_ylabel(label_of_intensity(measure, given))
     on.name_lines()
-    on.entitle(verdict_of_analysis(given), title)
+    verdict = verdict_of_analysis(of_one_structure(dataset))
+    on.entitle(units_of(units, "dynamic_analysis").reader.of_sentence(verdict), title)
     return on.panels
 
 

@@ -6,7 +6,15 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import SchemaError
-from rockframe.plot._axes import COLOURS, colour_of, grid, label_of, label_of_intensity, style_of
+from rockframe.plot._axes import (
+    COLOURS,
+    colour_of,
+    grid,
+    label_of,
+    label_of_intensity,
+    style_of,
+    units_of,
+)
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
@@ -126,7 +134,8 @@ def probability(
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
-    on.entitle(cases_verdict(given), title)
+    told = units_of(units, "probability").reader.of_sentence(cases_verdict(dataset))
+    on.entitle(told, title)
     return on.panels
 
 

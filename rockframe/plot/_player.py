@@ -194,7 +194,7 @@ def player(
                _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip
     sentence = (
-        str(run.attrs.get("verdict", ""))
+        chosen.reader.of_sentence(str(run.attrs.get("verdict", "")))
         if title is None
         else text(title, owner="rf.plot.player", name="title")
     )

@@ -277,7 +277,7 @@ def response(
     ends = [run.time[[0, -1]] for run in given]
     for axes in on.panels:
         axes.set_xlim(min(start for start, _ in ends), max(end for _, end in ends))
-    on.entitle(runs_title(given), title)
+    on.entitle(runs_title(given, chosen.reader), title)
     return on.panels
 
 

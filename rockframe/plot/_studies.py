@@ -65,7 +65,8 @@ def critical_scale(
     """
     given = drawable(dataset, "critical_scale", units)
     scale, outcome = given["scale"].to_numpy(), given["outcome"].to_numpy()
-    angles = units_of(units, "critical_scale").reader.chose(ANGLE) is not None
+    reader = units_of(units, "critical_scale").reader
+    angles = reader.chose(ANGLE) is not None
     relative = "peak_relative_rotation" in given and not angles
     name = "peak_relative_rotation" if relative else "peak_rotation"
     peak = given[name].to_numpy()
@@ -87,7 +88,7 @@ def critical_scale(
     on.axes.set_ylim(bottom=0.0)
     grid(on.axes)
     key(on.axes)
-    on.entitle(cases_verdict(given), title)
+    on.entitle(reader.of_sentence(cases_verdict(dataset)), title)
     return on.axes
 
 

@@ -15,7 +15,7 @@ from rockframe.reports import page
 from rockframe.reports.page import KIND
 from rockframe.reports.values import powers_in_html
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, UnitsLike, reader_units
 from rockframe.writing import write_file
 
 _SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
@@ -64,9 +64,10 @@ class CheckedLine:
         -------
         str
         """
-        chosen = (units or ReaderUnits()).of(str(self.unit))
-        unit = "" if self.unit is Unit.ONE else chosen.words
-        return number_with_unit(self.value / chosen.size, unit)
+        chosen = None if units is None else units.chosen.get(str(self.unit))
+        if chosen is not None:  # with no other prefix
+            return f"{self.value / chosen.size:.6g} {chosen.words}"
+        return number_with_unit(self.value, "" if self.unit is Unit.ONE else str(self.unit))
 
 
 @proposing
@@ -125,7 +126,7 @@ class CodeCheck:
     >>> check = rf.codes.asce_7_22(cabinet, spectral_acceleration=1.0, importance=1.5)
     >>> check.value("S_DS"), check.passed["tipping"]
     (1.0, False)
-    >>> len([*check.banners()]), [title for title, _ in check.tables(ReaderUnits())]
+    >>> len([*check.banners(ReaderUnits())]), [title for title, _ in check.tables(ReaderUnits())]
     (1, ['Factors', 'Forces', 'Statics, without anchors', 'Left out'])
     >>> "S_DS" in check.section(ReaderUnits())
     True
@@ -185,8 +186,13 @@ class CodeCheck:
         rows = {one.title: f"{_SAID[one.passed][0]}; {one.words}" for one in self.verdicts}
         return card(escape(self.title), rows)
 
-    def banners(self) -> Iterator[str]:
+    def banners(self, units: ReaderUnits) -> Iterator[str]:
         """Give each verdict with demand, capacity and clause, as pages show it.
+
+        Parameters
+        ----------
+        units : ReaderUnits
+            Of the numbers.
 
         Yields
         ------
@@ -195,7 +201,7 @@ class CodeCheck:
         """
         for one in self.verdicts:
             said, kind = _SAID[one.passed]
-            words = f"{one.words} [{one.source}]. {self.code}."
+            words = f"{units.of_sentence(one.words)} [{one.source}]. {self.code}."
             yield page.banner(f"{one.title}: {said}", words, kind)
 
     def tables(self, units: ReaderUnits) -> Iterator[tuple[str, list[str]]]:
@@ -214,20 +220,33 @@ class CodeCheck:
         head = ("", "value", "", "source")
         for title, several in self.lines.items():
             cells = [
-                (one.symbol, powers_in_html(one.written(units)), one.words, one.source)
+                (
+                    one.symbol,
+                    powers_in_html(one.written(units)),
+                    units.of_sentence(one.words),
+                    one.source,
+                )
                 for one in several
             ]
             yield title, [page.rows(cells, head=head)]
         if self.notes:
-            yield "Left out", [page.items(self.notes)]
+            yield "Left out", [page.items(map(units.of_sentence, self.notes))]
 
-    def report(self, path: "str | PathLike[str]", *, overwrite: bool = False) -> Path:
+    def report(
+        self,
+        path: "str | PathLike[str]",
+        *,
+        units: UnitsLike = None,
+        overwrite: bool = False,
+    ) -> Path:
         """Write the check as one HTML page that needs no other file.
 
         Parameters
         ----------
         path : str or path
             Of the file; its name ends in ``.html``. A report that is there is replaced.
+        units : mapping of str to str, optional
+            Units by what they are of, as for :func:`rockframe.report`.
         overwrite : bool, optional
             Whether a file that is there is replaced though it is no report.
 
@@ -241,16 +260,20 @@ class CodeCheck:
         FileError
             The file cannot be written, its name has another ending, or it is there already and
             no report.
+        ComponentError, UnitsError
+            Units that are none, or of another kind.
         """
+        chosen = reader_units(units, owner="CodeCheck.report")
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
-        body += self._checked()
-        body += self.banners()
-        body += [page.section(title, pieces) for title, pieces in self.tables(ReaderUnits())]
+        body += self._checked(chosen)
+        body += self.banners(chosen)
+        body += [page.section(title, pieces) for title, pieces in self.tables(chosen)]
         content = page.page(self.title, body).encode()
         return write_file(path, KIND, content, overwrite=overwrite)
 
-    def _checked(self) -> list[str]:
-        return [page.paragraph(f"Checked: {self.scene}.")] if self.scene else []
+    def _checked(self, units: ReaderUnits) -> list[str]:
+        words = units.of_sentence(self.scene)
+        return [page.paragraph(f"Checked: {words}.")] if words else []
 
     def section(self, units: ReaderUnits) -> str:
         """Give its section of a larger page.
@@ -265,7 +288,7 @@ class CodeCheck:
         str
             HTML.
         """
-        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._checked()]
+        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._checked(units)]
         for title, inner in self.tables(units):
             pieces += [page.subtitle(title), *inner]
         return page.section(f"Check by {self.code.split(',')[0]}", pieces)

@@ -12,7 +12,7 @@ from rockframe.errors import RockframeError, RockframeWarning, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
-from rockframe.reports.cases import case_tables, from_worst, labels_at, written
+from rockframe.reports.cases import case_tables, from_worst, labels_at, labels_of
 from rockframe.reports.figures import figure_of
 from rockframe.reports.project import Project
 from rockframe.reports.values import powers_in_html, table_of, value_of
@@ -30,7 +30,7 @@ def verdict_sections(
     sentence = cases_verdict(dataset)
     verdict = [*about.conclusions()]
     if sentence:
-        verdict.append(_banner(dataset, sentence))
+        verdict.append(_banner(dataset, units.of_sentence(sentence)))
     yield page.section("Verdict", [*verdict, *by_codes])
     figure = _figure(dataset, units)
     if figure:
@@ -46,7 +46,7 @@ def verdict_sections(
 
 
 def worst_case(
-    dataset: xr.Dataset, motions: Mapping[str, GroundMotion]
+    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], units: ReaderUnits
 ) -> tuple[str, tuple[xr.Dataset, System] | None]:
     """Simulate the case of a sweep that comes nearest to overturning, or overturns first.
 
@@ -55,7 +55,8 @@ def worst_case(
     order = from_worst(dataset) if _is_sweep(dataset) else np.array([])
     if not order.size:
         return "", None
-    labels = labels_at(dataset, int(order[0]))
+    place = int(order[0])
+    labels = labels_at(dataset, place)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
@@ -63,9 +64,8 @@ def worst_case(
             run = found.simulate(outputs=())
     except RockframeError as problem:  # such as without its motions
         return f"Not simulated again; {problem}.", None
-    named = ", ".join(
-        f"{name.replace('_', ' ')} {written(value)}" for name, value in labels.items()
-    )
+    shown_as = labels_of(dataset, place, units)
+    named = ", ".join(f"{name.replace('_', ' ')} {words}" for name, words in shown_as.items())
     system = found.system if found.motion is None else under(found.system, found.motion)
     return f"Simulated again: {named}." if named else "Simulated again.", (run, system)
 
@@ -129,4 +129,5 @@ def _of_limit_states(dataset: xr.Dataset, units: ReaderUnits) -> list[str]:
             words = str(values.attrs.get("long_name", name))
             rows.append([words, *(value_of(values.isel({dim: k}), units)
                                   for k in range(dataset.sizes[dim]))])  # fmt: skip
-    return [page.columns(rows, ["", *map(str, dataset[dim].to_numpy())])]
+    heads = [units.of_sentence(str(one)) for one in dataset[dim].to_numpy()]
+    return [page.columns(rows, ["", *heads])]
