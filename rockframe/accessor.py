@@ -100,6 +100,14 @@ class RockframeAccessor:
         ------
         SchemaError, UnitsError, ComponentError, FileError
             As :func:`rockframe.plot.player` and :meth:`rockframe.plot.Player.save`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+        >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+        >>> run.rockframe.player().to_html()[:15]
+        '<!doctype html>'
         """
         from rockframe import plot
 
@@ -126,6 +134,14 @@ class RockframeAccessor:
         ------
         SchemaError, ComponentError
             As :func:`rockframe.table`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+        >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+        >>> run.rockframe.table(units={"angle": "deg"})["peak_rotation [°]"].round(2).tolist()
+        [2.63]
         """
         from rockframe.results.table import table
 

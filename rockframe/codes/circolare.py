@@ -170,7 +170,7 @@ def _damage(
     )  # fmt: skip
     verdict = CheckedVerdict(
         "kinematic, SLD", needed <= activation,
-        f"demand {needed:.4g} m/s^2, activation {activation:.4g} m/s^2", "C8.7.1.8",
+        f"demand {needed:.4g} m s^-2, activation {activation:.4g} m s^-2", "C8.7.1.8",
     )  # fmt: skip
     lines = {"Mechanism and capacity": capacity, "Demand in acceleration": wanted}
     title = "A rigid block that overturns, whether its mechanism is activated"

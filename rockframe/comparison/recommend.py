@@ -30,6 +30,13 @@ class Recommendation:
         Whether it meets the tolerance.
     sentence : str
         The same in words.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> best = Recommendation("rigid ground", "fast", met=True, sentence="Take 'rigid ground'.")
+    >>> print(best)
+    Take 'rigid ground'.
     """
 
     model: str
@@ -68,6 +75,15 @@ def recommend(
         The dataset is no comparison of rungs, or has no such error.
     UnitsError, ComponentError
         `tolerance` is no ratio above 0 and up to 1.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> found = rf.tradeoff(system, pulse, models="rigid ground", accuracies="standard", repeats=1)
+    >>> rf.recommend(found, "1 %").accuracy
+    'standard'
     """
     limit = to_ratio(tolerance, owner=_OWNER, name="tolerance", condition=POSITIVE)
     if limit > 1.0:

@@ -133,6 +133,17 @@ def tradeoff(
     -----
     Every rung is run once before it is timed. Times are wall times of this machine, now:
     compare them with one another only. Histories are compared at the output times.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> found = rf.tradeoff(
+    ...     system, pulse, models="rigid ground", accuracies=["fast", "standard"], repeats=1
+    ... )
+    >>> found.verdict_agrees.values.tolist()
+    [[True, True]]
     """
     check_system(system, _OWNER)
     repeats = whole_number(repeats, owner=_OWNER, name="repeats", lowest=1, highest=_MOST_REPEATS)

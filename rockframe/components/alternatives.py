@@ -24,6 +24,13 @@ class OneOf:
         Names of parameters; those of a tuple go together.
     required : bool
         Whether one must be given.
+
+    Examples
+    --------
+    >>> stiffness = OneOf("stiffness", "frequency_ratio")
+    >>> stiffness.check({"stiffness": "2 MN/m", "frequency_ratio": None}, owner="Pads")
+    >>> stiffness.displaced({"frequency_ratio": 20})
+    frozenset({'stiffness'})
     """
 
     ways: tuple[tuple[str, ...], ...]

@@ -77,6 +77,14 @@ class Component(metaclass=Proposing):
     Buffer(strength='3000.0 N', friction=0.3)
     >>> buffer.replace(strength="4 kN").strength.to("kN")
     <Quantity(4.0, 'kilonewton')>
+    >>> buffer.parameters(), [*Buffer.declared()] == [*Buffer.varied()]
+    (('strength', 'friction'), True)
+    >>> Buffer.from_dict(buffer.to_dict()) == buffer.with_scaled("friction", 1.0)
+    True
+    >>> buffer.with_si({"friction": 0.4}).friction, buffer.cautions()
+    (0.4, [])
+    >>> buffer.left_behind(["strength"]), buffer.too_many(["strength"])
+    ((), ())
     """
 
     __slots__ = ("given", "si")

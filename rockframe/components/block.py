@@ -185,6 +185,12 @@ class Block(Component):
             Of a block that was given its `inertia`, as are those by their shape, `width`,
             `height` or `mass` is changed, but not the `inertia`, nor `shape_factor` in its
             place; or the `height`, but not a `centre_height` that was given.
+
+        Examples
+        --------
+        >>> block = Block(width="0.8 m", height="4 m", mass="2 t")
+        >>> block.replace(centre_of_mass=("1.5 m", "0.05 m")).eccentricity
+        <Quantity(0.05, 'meter')>
         """
         if "centre_of_mass" in changes:
             height, beside = changes.get("centre_height"), changes.get("eccentricity")
@@ -212,6 +218,11 @@ class Block(Component):
         Returns
         -------
         mapping
+
+        Examples
+        --------
+        >>> set(Block.varied()) - set(Block.declared()) == {"radius", "slenderness"}
+        True
         """
         return {**super().varied(), **_BY_SIZE}
 
@@ -226,6 +237,12 @@ class Block(Component):
         Returns
         -------
         tuple of str
+
+        Examples
+        --------
+        >>> block = Block(width="0.8 m", height="4 m", mass="2 t")
+        >>> block.too_many(["radius", "width", "mass"])
+        ('radius', 'width')
         """
         named = [name for name in (*_BY_SIZE, *_SIDES) if name in changed]
         sides = sum(name in _SIDES for name in named)
@@ -249,6 +266,12 @@ class Block(Component):
         ------
         ComponentError
             A value is out of range, or does not fit the others.
+
+        Examples
+        --------
+        >>> block = Block(width="0.8 m", height="4 m", mass="2 t")
+        >>> block.with_si({"slenderness": 4.0, "width": 1.0}).height
+        <Quantity(4.0, 'meter')>
         """
         example = "{'width': 0.8}"
         values = by_names(values, owner="Block.with_si", name="values", example=example)
@@ -286,6 +309,12 @@ class Block(Component):
         -------
         tuple of str
             ``"inertia"``, ``"centre_height"``, both or none.
+
+        Examples
+        --------
+        >>> block = Block(width="0.8 m", height="4 m", mass="2 t", inertia="2800 kg*m^2")
+        >>> block.left_behind(["width"]), block.left_behind(["width", "inertia"])
+        (('inertia',), ())
         """
         super().left_behind(changed)
         if self.given.inertia is None:
@@ -359,6 +388,12 @@ class Block(Component):
         ------
         UnitsError, ComponentError
             As for :class:`Block`.
+
+        Examples
+        --------
+        >>> stone = {"depth": "0.5 m", "density": "2.5 t/m^3"}
+        >>> Block.from_density(width="1 m", height="4 m", **stone).mass
+        <Quantity(5000.0, 'kilogram')>
         """
         owner = f"{cls.__name__}.from_density"
         volume = 1.0
@@ -398,6 +433,11 @@ class Block(Component):
         ------
         UnitsError, ComponentError
             As for :class:`Block`.
+
+        Examples
+        --------
+        >>> Block.from_size(radius="5 m", slenderness=4, mass="50 t").width.round(4)
+        <Quantity(2.4254, 'meter')>
         """
         owner = f"{cls.__name__}.from_size"
         metres = to_si(radius, LENGTH, owner=owner, name="radius", condition=POSITIVE)

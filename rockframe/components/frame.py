@@ -226,6 +226,13 @@ class FrameEquivalent(Block):
             It describes a component of another class.
         TypeError, UnitsError, ComponentError
             As the constructor.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> frame = rf.FrameEquivalent(width="4 m", height="12 m", mass="80 t", shape_factor=2.5)
+        >>> rf.FrameEquivalent.from_dict(frame.to_dict()) == frame
+        True
         """
         given = cls._described(arguments)
         if not {"members", "density"} & set(given):
@@ -309,6 +316,14 @@ class FrameEquivalent(Block):
         ------
         ComponentError
             The frame was built from its parameters and knows no members.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> tower = rf.Member.box("tower", "column", 2400.0, (0.0, 4.5), (1.0, 9.0, 1.0))
+        >>> frame = rf.FrameEquivalent.from_members([tower], width="1 m", height="9 m")
+        >>> frame.members_table().mass.values.tolist()
+        [21600.0]
         """
         building = self._building
         if building is None:

@@ -171,6 +171,12 @@ class Member(Component):
         Returns
         -------
         Member
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.Member.box("C1", "column", 2500.0, (0.0, 2.0), (0.4, 4.0, 0.4)).name
+        'C1'
         """
         member = object.__new__(cls)
         (x, y), (width, height, depth) = centre, size

@@ -22,7 +22,15 @@ BODY: Final = 1
 
 
 class Link(Component):
-    """What acts on a point of a body; bodies are counted from the top down."""
+    """What acts on a point of a body; bodies are counted from the top down.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> load = rf.Load(at=("-0.1 m", "3 m"), vertical="10 kN", on_body=2)
+    >>> isinstance(load, Link), load.parameters()
+    (True, ('vertical',))
+    """
 
     noun: ClassVar[str] = "link"
 
@@ -58,6 +66,13 @@ class PointLink(Link):
     Points are given where the bodies stand upright under their weight: from the middle of the
     base of their body to the right, and above it; on the ground, or a wall that moves with it,
     from the middle of the lowest base. Bodies are counted from the top down.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> tie = rf.Restrainer(on=("-0.5 m", "3 m"), to=("-1.5 m", "3 m"), stiffness="2 MN/m")
+    >>> isinstance(tie, PointLink), tie.parameters()
+    (True, ('stiffness',))
     """
 
     on = Place(doc="The point of the body.")

@@ -140,6 +140,20 @@ class Parameter(Declared[Quantity, Usual]):
     default : str, optional
         Value unless given; None for one that may be missing, ``DERIVED`` for one that
         then follows from others.
+
+    Examples
+    --------
+    >>> from rockframe.components import Component
+    >>> from rockframe.units import FORCE
+    >>> class Anchor(Component):
+    ...     strength = Parameter(FORCE, doc="Force at which it breaks.")
+    >>> Anchor(strength="3 kN").strength
+    <Quantity(3000.0, 'newton')>
+    >>> strength = Anchor.declared()["strength"]
+    >>> strength.accept("3 kN", "Anchor"), strength.read("3 kN", "Anchor"), strength.write(3000.0)
+    (3000.0, 3000.0, '3000.0 N')
+    >>> strength.public(3000.0), strength.caution(3000.0)
+    (<Quantity(3000.0, 'newton')>, None)
     """
 
     written_as = "str or Quantity"
@@ -184,6 +198,17 @@ class Ratio(Declared[float, Usual]):
         then follows from others.
     example : str, optional
         A number that makes sense, for messages.
+
+    Examples
+    --------
+    >>> from rockframe.components import Component
+    >>> class Slab(Component):
+    ...     friction = Ratio(doc="Coefficient of friction.", default=0.3)
+    >>> Slab(friction="40 %").friction, Slab().friction
+    (0.4, 0.3)
+    >>> friction = Slab.declared()["friction"]
+    >>> friction.read("40 %", "Slab"), friction.write(0.4), friction.public(0.4)
+    (0.4, 0.4, 0.4)
     """
 
     written_as = "float"
@@ -219,6 +244,19 @@ class Choice(Declared[Words, Words]):
         Value unless given; its kind has the words.
     doc : str
         What it is, in a sentence.
+
+    Examples
+    --------
+    >>> from enum import StrEnum
+    >>> from rockframe.components import Component
+    >>> Side = StrEnum("Side", ["LEFT", "RIGHT"])
+    >>> class Latch(Component):
+    ...     side = Choice(Side.LEFT, doc="Where it is.")
+    >>> Latch(side="right"), Latch(side="left")
+    (Latch(side='right'), Latch())
+    >>> side = Latch.declared()["side"]
+    >>> side.read("right", "Latch") is Side.RIGHT, side.write(Side.RIGHT)
+    (True, 'right')
     """
 
     annotation = str
@@ -249,6 +287,14 @@ class Text(Declared[str, Usual]):
         What it is, in a sentence.
     default : None, optional
         For one that may be missing.
+
+    Examples
+    --------
+    >>> from rockframe.components import Component
+    >>> class Bolt(Component):
+    ...     name = Text(doc="What it is called.", default=None)
+    >>> Bolt(name="B1").name, Bolt().name, Bolt.declared()["name"].read("B2", "Bolt")
+    ('B1', None, 'B2')
     """
 
     written_as = "str"

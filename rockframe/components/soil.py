@@ -152,6 +152,13 @@ class WinklerSoil(Component):
         ------
         UnitsError, ComponentError
             As for :class:`WinklerSoil`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> soil = rf.WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth="4 m", damping_ratio=0.2)
+        >>> soil.stiffness.to("MPa").round(9)
+        <Quantity(80.0, 'megapascal')>
         """
         owner = f"{cls.__name__}.from_subgrade_modulus"
         per_area = to_si(modulus, SUBGRADE_MODULUS, owner=owner, name="modulus", condition=POSITIVE)

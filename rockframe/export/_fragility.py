@@ -182,6 +182,15 @@ def to_openquake(
     OpenQuake takes the mean and the standard deviation of the capacity itself, not of its
     logarithm: with median theta and dispersion beta theta exp(beta^2/2), and that times
     sqrt(exp(beta^2) - 1). It takes intensities above the greatest of the fragility for that one.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rockframe as rf
+    >>> counts = {"intensity": ([0.2, 0.4, 0.8], "m/s"), "exceeded": [1, 6, 19], "trials": 20}
+    >>> found = rf.fragility(counts, "PGV")
+    >>> rf.export.to_openquake({"bookcase": found}, f"{tempfile.mkdtemp()}/model.xml").name
+    'model.xml'
     """
     one_of_names(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
     for what, given in (("description", description), ("category", category)):

@@ -25,6 +25,12 @@ def to_dataset(motion: MotionValue) -> xr.Dataset:
     xarray.Dataset
         ``acceleration`` (and ``vertical_acceleration``) over ``time``, with
         units, name, metadata and history.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").to_dataset().sizes["time"]
+    65
     """
     si = motion.si
     components = {"acceleration": si.horizontal, "vertical_acceleration": si.vertical}
@@ -78,5 +84,12 @@ def from_dataset(kind: type[Made], dataset: xr.Dataset) -> Made:
     ------
     SchemaError
         Not such a dataset, or its samples were changed since.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s")
+    >>> rf.GroundMotion.from_dataset(pulse.to_dataset()) == pulse
+    True
     """
     return kind(**stored_motion(checked_dataset(dataset, owner=f"{kind.__name__}.from_dataset")))

@@ -91,6 +91,12 @@ def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
         Plain values, fit for JSON: constructor and arguments of an analytic motion,
         with the ``operations`` done to it since; ``constructor`` is None for a
         motion that only its samples describe.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").to_dict()["constructor"]
+    'half_sine_pulse'
     """
     kind = {"type": type(motion).__name__}
     if motion.recipe is not None:
@@ -125,6 +131,13 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
     SchemaError
         The motion is a record without its samples, which must be supplied, or the
         description fits no constructor.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s")
+    >>> rf.GroundMotion.from_dict(pulse.to_dict()) == pulse
+    True
     """
     if not isinstance(description, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
         msg = f"{kind.__name__}.from_dict: found {shown(description)}; expected what to_dict gives"

@@ -105,6 +105,17 @@ class HorizontalPair(metaclass=Proposing):
         RecordError
             It cannot be read, or does not hold two horizontal components and at most one
             vertical one.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import rockframe as rf
+        >>> path = f"{tempfile.mkdtemp()}/record.csv"
+        >>> rows = [f"{0.01 * k:.2f}, {0.1 * k:.1f}, {0.2 * k:.1f}" for k in range(5)]
+        >>> with open(path, "w") as file:
+        ...     print("time [s], N [g], E [g]", *rows, sep=chr(10), file=file)
+        >>> rf.HorizontalPair.read(path).principal_axis.to("deg").round(1)
+        <Quantity(63.4, 'degree')>
         """
         source = read_source(path)
         readings: list[Reading] = []
@@ -177,6 +188,13 @@ class HorizontalPair(metaclass=Proposing):
         ------
         UnitsError, ComponentError
             As for :meth:`GroundMotion.rotated`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> north, east = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (3, 4))
+        >>> rf.HorizontalPair(north, east).rotated("90 deg").peak_acceleration.round(3)
+        <Quantity(4.0, 'meter / second ** 2')>
         """
         turned = self.first.rotated(self.second, angle, azimuth=azimuth)
         return turned if self.vertical is None else turned.with_vertical(self.vertical)
@@ -201,6 +219,13 @@ class HorizontalPair(metaclass=Proposing):
         ------
         UnitsError, ComponentError
             As for :meth:`GroundMotion.velocity_pulse`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> north, east = (rf.GroundMotion.type_a_pulse(f"{v} m/s", "2 s") for v in (0.3, 0.4))
+        >>> rf.HorizontalPair(north, east).velocity_pulse().angle.to("deg").round()
+        <Quantity(53.0, 'degree')>
         """
         dt = self.first.si.time_step
         owner = f"{type(self).__name__}.velocity_pulse"
@@ -228,6 +253,14 @@ class HorizontalPair(metaclass=Proposing):
         ------
         UnitsError
             Not an angle.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> north, east = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (3, 4))
+        >>> along, across = rf.HorizontalPair(north, east).in_axes("53.1301 deg").components
+        >>> along.peak_acceleration.round(3), across.peak_acceleration.round(3)
+        (<Quantity(5.0, 'meter / second ** 2')>, <Quantity(0.0, 'meter / second ** 2')>)
         """
         along = self.first.rotated(self.second, angle)
         # the second axis of the turned pair is that of the second component, turned back

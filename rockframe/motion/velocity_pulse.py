@@ -53,6 +53,13 @@ class VelocityPulse(Generic[Made]):
     Notes
     -----
     Printed, it tells the period, the indicator, and which criteria are not met.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.type_a_pulse("0.5 m/s", "2 s").velocity_pulse()
+    >>> pulse.period.round(2), pulse.pulse_like
+    (<Quantity(3.91, 'second')>, True)
     """
 
     period: Quantity

@@ -5,15 +5,10 @@ from typing import TYPE_CHECKING
 from rockframe.plot._animation import Animation, animation
 from rockframe.plot._clouds import annual_rate, cloud
 from rockframe.plot._diagrams import energies, moment_rotation, phase
+from rockframe.plot._dynamic_analysis import dynamic_analysis, fractile_curves
 from rockframe.plot._ensembles import ensemble, fragility, probability, subset_simulation
 from rockframe.plot._motion import motion, velocity_pulse
-from rockframe.plot._overturning import (
-    dynamic_analysis,
-    fractile_curves,
-    overturning_map,
-    overturning_spectrum,
-    rocking_spectrum,
-)
+from rockframe.plot._overturning import overturning_map, overturning_spectrum, rocking_spectrum
 from rockframe.plot._panels import Panels
 from rockframe.plot._player import Player, player
 from rockframe.plot._response import response

@@ -58,6 +58,18 @@ class Animation:
         Of the run [s].
     player : callable
         Makes the same as a player.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+    >>> moving = rf.plot.animation(run)
+    >>> moving.save(f"{tempfile.mkdtemp()}/run.html").name, moving.to_html()[:15]
+    ('run.html', '<!doctype html>')
+    >>> moving.play()  # in a window  # doctest: +SKIP
+    >>> moving.close()
     """
 
     def __init__(
@@ -271,7 +283,7 @@ def animation(
         clock.set_text(moving.words(place))
 
     draw(0)
-    on.entitle(str(run.attrs.get("verdict", "")), title)
+    on.entitle(chosen.reader.of_sentence(str(run.attrs.get("verdict", ""))), title)
     if ax is None:  # places are found once, not for every frame
         on.panels.figure.canvas.draw()
         on.panels.figure.set_layout_engine("none")

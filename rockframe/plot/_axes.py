@@ -59,7 +59,9 @@ def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> Non
     rows = -(-len(words) // columns) + bool(title)
     share = min(0.6, (0.08 + _LINE * rows) / height)
     linear = axes.get_yscale() == "linear"
-    low, high = axes.get_ylim()[0], axes.dataLim.y1 + (0.05 * axes.dataLim.height if linear else 0)
+    low, top = axes.get_ylim()
+    # what is above the end of the axis stays there
+    high = min(top, axes.dataLim.y1 + (0.05 * axes.dataLim.height if linear else 0.0))
     if linear and high > low:
         axes.set_ylim(low, low + (high - low) / (1.0 - share))
     elif high > low > 0.0:

@@ -39,6 +39,16 @@ def cloud(
     Returns
     -------
     matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> sizes = ("2 m/s^2", "2.1 m/s^2", "2.3 m/s^2", "2.5 m/s^2")
+    >>> motions = {size: rf.GroundMotion.sine_pulse(size, "1 Hz") for size in sizes}
+    >>> found = rf.cloud_analysis(rf.sweep(system, motions), "PGA", limits=[0.2])
+    >>> rf.plot.cloud(found).get_ylabel()
+    'peak relative rotation [-]'
     """
     given = drawable(dataset, "cloud", units)
     on = single(ax, "cloud", (6.0, 4.3))
@@ -98,6 +108,15 @@ def annual_rate(
     Returns
     -------
     matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> counts = {"intensity": ([2, 4, 8], "m/s^2"), "exceeded": [1, 6, 19], "trials": 20}
+    >>> hazard = {"intensity": ([0.1, 1.0, 10.0, 100.0], "m/s^2"), "rate": [1.0, 1e-2, 1e-5, 1e-9]}
+    >>> rates = rf.annual_rate(rf.fragility(counts, "PGA"), hazard)
+    >>> rf.plot.annual_rate(rates).get_ylabel()
+    'share of the rate [%]'
     """
     given = drawable(dataset, "annual_rate", units)
     several = [str(dim) for dim in given["annual_rate"].dims if dim != "limit_state"]

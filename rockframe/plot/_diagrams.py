@@ -73,10 +73,14 @@ def phase(
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
     >>> run = system.simulate(pulse, free_vibration="2 s")
-    >>> rf.plot.phase(run, rotation="deg").figure.savefig("phase.png")  # doctest: +SKIP
+    >>> axes = rf.plot.phase(run, rotation="deg")
+    >>> axes.get_xlabel()
+    'rotation [°]'
+    >>> axes.figure.savefig("phase.png")  # doctest: +SKIP
     """
     given = runs_of(runs, "phase", window)
-    unit = units_of(units, "phase").unless_relative(ANGLE, rotation=rotation)
+    chosen = units_of(units, "phase")
+    unit = chosen.unless_relative(ANGLE, rotation=rotation)
     on = single(ax, "phase", (5.6, 4.4))
     for run in given:
         across, up = of_rotation(run, unit), _rate(run, unit)
@@ -98,7 +102,7 @@ def phase(
     )
     if len(given) > 1:
         key(on.axes)
-    on.entitle(runs_title(given), title)
+    on.entitle(runs_title(given, chosen.reader), title)
     return on.axes
 
 
@@ -176,7 +180,7 @@ def moment_rotation(
             )  # fmt: skip
         if on.axes.get_legend_handles_labels()[0]:
             key(on.axes)
-        on.entitle(runs_title(runs), title)
+        on.entitle(runs_title(runs, chosen.reader), title)
     _about_zero(on.axes)
     on.axes.set(
         xlabel=axis_label("rotation", angle.words),
@@ -225,13 +229,17 @@ def energies(
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
     >>> run = system.simulate(pulse, free_vibration="2 s", outputs=("energy",))
-    >>> rf.plot.energies(run, energy="kJ").figure.savefig("energies.png")  # doctest: +SKIP
+    >>> axes = rf.plot.energies(run, energy="kJ")
+    >>> axes.get_ylabel()
+    'energy [kJ]'
+    >>> axes.figure.savefig("energies.png")  # doctest: +SKIP
     """
     given = runs_of(run, "energies", None)
     if len(given) > 1:
         raise SchemaError(refuse("energies", run))
     _need(given, ENERGIES, "energies")
-    unit = units_of(units, "energies").of(ENERGY, "kJ", energy=energy)
+    chosen = units_of(units, "energies")
+    unit = chosen.of(ENERGY, "kJ", energy=energy)
     (whole,) = given
     from_start = {
         name: unit.of(whole.dataset[name] - (whole.dataset[name][0] if name in _STATES else 0.0))
@@ -264,7 +272,7 @@ def energies(
     on.axes.set(xlabel="time [s]", ylabel=axis_label("energy", unit.words))
     on.axes.set_xlim(part.time[0], part.time[-1])
     on.legend(*on.axes.get_legend_handles_labels(), columns=4)
-    on.entitle(runs_title(given), title)
+    on.entitle(runs_title(given, chosen.reader), title)
     return on.axes
 
 

@@ -6,7 +6,15 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import SchemaError
-from rockframe.plot._axes import COLOURS, colour_of, grid, label_of, label_of_intensity, style_of
+from rockframe.plot._axes import (
+    COLOURS,
+    colour_of,
+    grid,
+    label_of,
+    label_of_intensity,
+    style_of,
+    units_of,
+)
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, Sheet, sheet, single
 from rockframe.results.outcome import overturns
@@ -39,7 +47,13 @@ def ensemble(
 
     Examples
     --------
-    >>> axes = rf.plot.ensemble(rf.ensemble_statistics(...))  # doctest: +SKIP
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> runs = rf.sweep(system, pulse, scale=[0.8, 1.0, 1.1])
+    >>> found = rf.ensemble_statistics(runs, "peak_rotation", pooled=["scale"])
+    >>> rf.plot.ensemble(found).get_xlabel()
+    'peak rotation [rad]'
     """
     given = drawable(dataset, "ensemble", units)
     on = single(ax, "ensemble", (5.6, 3.9))
@@ -81,6 +95,16 @@ def probability(
     Returns
     -------
     Panels
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> spread = {"width": ("uniform", "0.7 m", "0.9 m")}
+    >>> found = rf.probability_of_overturning(system, pulse, spread=spread, cases=40)
+    >>> [axes.get_xlabel() for axes in rf.plot.probability(found)]
+    ['first-order index [-]', 'width [m]']
     """
     given = drawable(dataset, "probability", units)
     names = ("indices", "shares")
@@ -110,7 +134,8 @@ def probability(
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
-    on.entitle(cases_verdict(given), title)
+    told = units_of(units, "probability").reader.of_sentence(cases_verdict(dataset))
+    on.entitle(told, title)
     return on.panels
 
 
@@ -135,6 +160,16 @@ def subset_simulation(
     Returns
     -------
     matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> spread = {"scale": ("lognormal", 1.5, 0.4)}
+    >>> found = rf.subset_simulation(system, pulse, spread=spread, limit=0.5, cases=100)
+    >>> rf.plot.subset_simulation(found).get_ylabel()
+    'probability of reaching it [-]'
     """
     given = drawable(dataset, "subset_simulation", units)
     on = single(ax, "subset_simulation", (6.0, 4.1))
@@ -210,6 +245,13 @@ def fragility(
     SchemaError
         The dataset is no fragility; the message names the function that draws what was given. Or
         it has more structures than a figure shows: twelve, over two measures one.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> counts = {"intensity": ([2, 4, 8], "m/s^2"), "exceeded": [1, 6, 19], "trials": 20}
+    >>> rf.plot.fragility(rf.fragility(counts, "PGA"), units={"acceleration": "g"}).get_xlabel()
+    'peak ground acceleration [g]'
     """
     given = drawable(dataset, "fragility", units)
     if "limit_state" not in given.dims:

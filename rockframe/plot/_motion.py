@@ -127,7 +127,9 @@ def motion(
     --------
     >>> import rockframe as rf
     >>> record = rf.GroundMotion.example("loma-prieta")
-    >>> panels = rf.plot.motion(record, units={"acceleration": "g"})  # doctest: +SKIP
+    >>> panels = rf.plot.motion(record, units={"acceleration": "g"})
+    >>> panels[-1].get_xlabel()
+    'time [s]'
     """
     from rockframe.measures import velocity_and_displacement
 
@@ -231,8 +233,10 @@ def velocity_pulse(
     Examples
     --------
     >>> import rockframe as rf
-    >>> motion = rf.GroundMotion.stochastic(6.6, "5 km", seed=1)
-    >>> panels = rf.plot.velocity_pulse(motion.velocity_pulse())  # doctest: +SKIP
+    >>> motion = rf.GroundMotion.type_a_pulse("0.5 m/s", "2 s")
+    >>> panels = rf.plot.velocity_pulse(motion.velocity_pulse())
+    >>> panels[-1].get_xlabel()
+    'time [s]'
     """
     from rockframe.measures import velocity_and_displacement
     from rockframe.motion import VelocityPulse

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 import numpy as np
 
 from rockframe.arguments import text
-from rockframe.errors import ComponentError, shown
+from rockframe.errors import ComponentError, nearest, shown
 from rockframe.plot._axes import key
 from rockframe.proposals import proposing
 
@@ -69,6 +69,16 @@ class Panels(tuple[Any, ...]):
 
     A tuple of :class:`matplotlib.axes.Axes`, which can be handed back as ``ax=`` to draw something
     else in the same panels.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> panels = rf.plot.motion(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+    >>> len(panels), panels.figure is panels[0].figure
+    (3, True)
+    >>> again = rf.plot.motion(rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz"), ax=panels)
+    >>> again[0] is panels[0]
+    True
     """
 
     __slots__ = ()
@@ -136,8 +146,12 @@ def sheet(
     names: Sequence[str],
     size: tuple[float, float],
     make: Callable[[Any], Any],
+    *,
+    choice: bool = False,
 ) -> Sheet:
     """Take the panels that are given, or make new ones in the figure that is given or in a new one.
+
+    Where the function has the argument `panels`, a message about them tells that there is a choice.
 
     A new figure is one of pyplot, so that a notebook shows it and ``show()`` opens a window.
     """
@@ -145,11 +159,28 @@ def sheet(
         given = cast("Figure", ax)
         return Sheet(Panels(np.ravel(make(given))), given)
     if ax is not None:
-        return Sheet(Panels(_checked_axes(ax, function, names)), None)
+        return Sheet(Panels(_checked_axes(ax, function, names, choice=choice)), None)
     from matplotlib import pyplot
 
     figure = pyplot.figure(figsize=size, layout="constrained")
     return Sheet(Panels(np.ravel(make(figure))), figure)
+
+
+def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[str, ...]:
+    """Read which panels of a figure are drawn; all unless some are given."""
+    names = list(known)
+    if panels is None:
+        return tuple(names)
+    chosen: list[Any] = list(panels) if isinstance(panels, tuple | list) else [panels]
+    wrong = [one for one in chosen if not isinstance(one, str) or one not in names]
+    if wrong or not chosen or len(set(chosen)) < len(chosen):
+        found = wrong[0] if wrong else panels
+        msg = (
+            f"rf.plot.{function}: panels are one or more of {', '.join(map(repr, names))}, each "
+            f"once, got {shown(found)}{nearest(found, names)}"
+        )
+        raise ComponentError(msg)
+    return tuple(chosen)
 
 
 def single(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
@@ -157,7 +188,7 @@ def single(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
     return sheet(ax, function, ("the figure",), size, lambda figure: figure.subplots())
 
 
-def _checked_axes(ax: Any, function: str, names: Sequence[str]) -> "list[Axes]":
+def _checked_axes(ax: Any, function: str, names: Sequence[str], *, choice: bool) -> "list[Axes]":
     from matplotlib.axes import Axes
 
     several = isinstance(ax, Sequence | np.ndarray) and not isinstance(ax, str | Axes)
@@ -169,6 +200,8 @@ def _checked_axes(ax: Any, function: str, names: Sequence[str]) -> "list[Axes]":
             raise ComponentError(msg)
     if len(found) != len(names):
         msg = f"rf.plot.{function}: ax must be {wanted}, got {len(found)} Axes"
+        if choice and len(names) > 1:
+            msg += f"; panels={names[0]!r} draws one of them"
         raise ComponentError(msg)
     return cast("list[Axes]", found)
 

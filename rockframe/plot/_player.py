@@ -72,6 +72,16 @@ class Player:
         The page.
     length : float
         Time of the run that it plays [s].
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+    >>> player = rf.plot.player(run)
+    >>> player.save(f"{tempfile.mkdtemp()}/run.html").name, player.to_html()[:15]
+    ('run.html', '<!doctype html>')
     """
 
     def __init__(self, html: str, length: float) -> None:
@@ -158,7 +168,10 @@ def player(
     >>> import rockframe as rf
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
-    >>> rf.plot.player(run).save("run.html")  # doctest: +SKIP
+    >>> player = rf.plot.player(run, title="A block")
+    >>> "A block" in player.to_html()
+    True
+    >>> player.save("run.html")  # doctest: +SKIP
     """
     check_run(run, "player")
     (drawn,) = runs_of(run, "player", window)
@@ -181,7 +194,7 @@ def player(
                _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip
     sentence = (
-        str(run.attrs.get("verdict", ""))
+        chosen.reader.of_sentence(str(run.attrs.get("verdict", "")))
         if title is None
         else text(title, owner="rf.plot.player", name="title")
     )

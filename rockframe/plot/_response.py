@@ -258,7 +258,7 @@ def response(
         ratios = {"height_ratios": heights}
         return figure.subplots(len(names), 1, sharex=True, gridspec_kw=ratios)
 
-    on = sheet(ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)), make)
+    on = sheet(ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)), make, choice=True)
     drawn = dict(zip(names, on.panels, strict=True))
     for name, axes in drawn.items():
         if name in strips:
@@ -277,7 +277,7 @@ def response(
     ends = [run.time[[0, -1]] for run in given]
     for axes in on.panels:
         axes.set_xlim(min(start for start, _ in ends), max(end for _, end in ends))
-    on.entitle(runs_title(given), title)
+    on.entitle(runs_title(given, chosen.reader), title)
     return on.panels
 
 

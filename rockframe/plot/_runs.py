@@ -11,6 +11,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import colour_of, style_of
 from rockframe.plot._checks import check_run
 from rockframe.units import TIME, QuantityLike, to_si
+from rockframe.units.shown import ReaderUnits
 
 Window: TypeAlias = tuple[QuantityLike | None, QuantityLike | None] | None
 RunsLike: TypeAlias = xr.Dataset | Sequence[xr.Dataset] | Mapping[Any, xr.Dataset]
@@ -73,10 +74,10 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
     return (-np.inf if np.isnan(start) else start), (np.inf if np.isnan(end) else end)
 
 
-def runs_title(runs: list[Run]) -> str:
+def runs_title(runs: list[Run], units: ReaderUnits) -> str:
     """Give the title of a figure: the verdict of a run; of several, what they have in common."""
     if len(runs) == 1:
-        return str(runs[0].dataset.attrs.get("verdict", ""))
+        return units.of_sentence(str(runs[0].dataset.attrs.get("verdict", "")))
     motions = {str(run.dataset.attrs.get("motion", "")) for run in runs}
     return motions.pop() if len(motions) == 1 else ""
 

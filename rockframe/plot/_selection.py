@@ -38,6 +38,15 @@ def selection(
     Panels
         Bands reach one standard deviation of the logarithm to both
         sides.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+    >>> suite = rf.MotionSuite(motions)
+    >>> found = suite.scaling_to(rf.TargetSpectrum.eurocode_8("0.2 g_0"), bounds=None)
+    >>> [axes.get_xlabel() for axes in rf.plot.selection(found)]
+    ['period [s]', 'misfit of the logarithm [-]']
     """
     dataset = drawable(dataset, "selection", units)
     count = dataset.sizes["motion"]

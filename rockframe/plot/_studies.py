@@ -59,12 +59,14 @@ def critical_scale(
     >>> import rockframe as rf
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
-    >>> found = rf.critical_scale(system, pulse, largest=3)  # doctest: +SKIP
-    >>> axes = rf.plot.critical_scale(found)  # doctest: +SKIP
+    >>> axes = rf.plot.critical_scale(rf.critical_scale(system, pulse, largest=3))
+    >>> axes.get_xlabel()
+    'scale of the motion [-]'
     """
     given = drawable(dataset, "critical_scale", units)
     scale, outcome = given["scale"].to_numpy(), given["outcome"].to_numpy()
-    angles = units_of(units, "critical_scale").reader.chose(ANGLE) is not None
+    reader = units_of(units, "critical_scale").reader
+    angles = reader.chose(ANGLE) is not None
     relative = "peak_relative_rotation" in given and not angles
     name = "peak_relative_rotation" if relative else "peak_rotation"
     peak = given[name].to_numpy()
@@ -86,7 +88,7 @@ def critical_scale(
     on.axes.set_ylim(bottom=0.0)
     grid(on.axes)
     key(on.axes)
-    on.entitle(cases_verdict(given), title)
+    on.entitle(reader.of_sentence(cases_verdict(dataset)), title)
     return on.axes
 
 
@@ -128,8 +130,10 @@ def sweep(
     >>> import rockframe as rf
     >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
-    >>> runs = rf.sweep(system, pulse, scale=[1, 2], width=["0.8 m", "1 m"])  # doctest: +SKIP
-    >>> axes = rf.plot.sweep(runs)  # doctest: +SKIP
+    >>> runs = rf.sweep(system, pulse, scale=[1, 1.2], width=["0.8 m", "1 m"])
+    >>> axes = rf.plot.sweep(runs, "peak_rotation")
+    >>> axes.get_xlabel(), axes.get_ylabel()
+    ('scale [-]', 'peak rotation [rad]')
     """
     if not isinstance(cast("object", runs), xr.Dataset) or not runs.data_vars:
         raise SchemaError(refuse("sweep", runs))
@@ -183,7 +187,14 @@ def free_decay(
 
     Examples
     --------
-    >>> axes = rf.plot.free_decay(rf.fit_free_decay(...))  # doctest: +SKIP
+    >>> import rockframe as rf
+    >>> block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+    >>> system = rf.System(block, rf.RigidGround(restitution=0.9))
+    >>> start = rf.InitialState(rotation="0.05 rad")
+    >>> measured = system.simulate(duration="3 s", initial=start).rotation
+    >>> panels = rf.plot.free_decay(rf.fit_free_decay(system, measured))
+    >>> panels[0].get_ylabel()
+    'rotation [°]'
     """
     given = drawable(dataset, "free_decay")
     unit = units_of(units, "free_decay").of(ANGLE, "deg", rotation=rotation)

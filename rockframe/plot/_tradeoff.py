@@ -50,6 +50,15 @@ def tradeoff(
     Returns
     -------
     Panels
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> found = rf.tradeoff(system, pulse, models="rigid ground", accuracies="standard", repeats=1)
+    >>> [axes.get_title() for axes in rf.plot.tradeoff(found)]
+    ['integration: low and left is better', 'with that of the model: left is better']
     """
     from matplotlib import colormaps
     from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter

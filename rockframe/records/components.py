@@ -89,6 +89,11 @@ def orientation_of(name: str) -> Orientation:
     Azimuths run clockwise from north; ``S16W`` is 16 degrees from south towards
     west, 196. In a SEED channel code the third letter is the direction, and Z is
     positive upwards (SEED Reference Manual 2.4, appendix A).
+
+    Examples
+    --------
+    >>> orientation_of("S16W").azimuth, str(orientation_of("UP"))
+    (196.0, 'up')
     """
     text = name.strip().casefold()
     if text in _COMPASS:
@@ -152,6 +157,14 @@ class FileComponent:
         Other names that it answers to.
     line : int, optional
         Where the file names it, from 1.
+
+    Examples
+    --------
+    >>> from rockframe.records import Record, Request, Source, choose_unit
+    >>> unit = choose_unit(Source("a.sim", b"SIMPLE", ""), Request(), "gal", None)[0]
+    >>> north = FileComponent("N", lambda: Record(0.01, [0.0, 2.0], unit, {}), orientation_of("N"))
+    >>> north.label, north.read().samples
+    ("'N' (0 degrees)", [0.0, 2.0])
     """
 
     name: str | None
@@ -225,6 +238,18 @@ def choose_component(
     A name is looked for in this order: among the names in the file, among the
     directions, among the channel numbers. Without a name, the only component is
     read, or the only one that is not vertical.
+
+    Examples
+    --------
+    >>> from rockframe.records import Record, Request, Source, choose_unit
+    >>> source, request = Source("a.sim", b"SIMPLE", ""), Request(component="E")
+    >>> unit = choose_unit(source, request, "gal", None)[0]
+    >>> def component(name, peak):
+    ...     record = Record(0.01, [0.0, peak], unit, {})
+    ...     return FileComponent(name, lambda: record, orientation_of(name))
+    >>> held = [component("N", 1.0), component("E", 2.0)]
+    >>> choose_component(source, request, held).samples
+    [0.0, 2.0]
     """
     if request.every:
         raise EveryComponentError(source.path, components)

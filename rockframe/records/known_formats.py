@@ -51,6 +51,11 @@ def formats() -> tuple[Format, ...]:
     tuple of Format
         Each with its ``name``, as the argument ``format`` takes it, its
         ``title`` and its ``suffixes``, in the order in which they are tried.
+
+    Examples
+    --------
+    >>> [entry.name for entry in formats()][:3]
+    ['peer-at2', 'cosmos', 'csmip']
     """
     return (*_OWN, *_registered, _LAST)
 
@@ -129,6 +134,21 @@ def unregister(name: str) -> None:
     ------
     ComponentError
         No format of that name was added.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> reader = SimpleNamespace(
+    ...     NAME="mine",
+    ...     TITLE="file of mine",
+    ...     SUFFIXES=(".my",),
+    ...     recognises=lambda source: source.lines[0] == "MINE",
+    ...     read=lambda source, request: None,
+    ... )
+    >>> register(reader)
+    >>> unregister("mine")
+    >>> "mine" in [entry.name for entry in formats()]
+    False
     """
     for entry in _registered:
         if entry.name == name:

@@ -53,6 +53,17 @@ class Source:
         All bytes of the file, unpacked.
     sha256 : str
         Of the bytes.
+
+    Examples
+    --------
+    >>> import hashlib
+    >>> from rockframe.records import Source
+    >>> data = b"SIMPLE" + bytes([10]) + b"0.1"
+    >>> source = Source("a.sim", data, hashlib.sha256(data).hexdigest())
+    >>> source.lines, source.top(1), source.suffix
+    (('SIMPLE', '0.1'), ['SIMPLE'], '.sim')
+    >>> source.refuse(found="no unit", expected="one in the header", line=1)
+    RecordError('a.sim, line 1: found no unit; expected one in the header')
     """
 
     path: str
@@ -147,6 +158,11 @@ class Request:
         File with the response of the instrument.
     every : bool
         Whether all components are asked for; they come in an `EveryComponentError`.
+
+    Examples
+    --------
+    >>> Request(component="N").component
+    'N'
     """
 
     unit: RecordUnit | None = None
@@ -178,6 +194,14 @@ class Record:
         What disagrees, but not so that the file had to be refused.
     vertical : ndarray, shape (n,), optional
         Vertical component, upwards, in `unit`.
+
+    Examples
+    --------
+    >>> from rockframe.records import Request, Source, choose_unit
+    >>> source = Source("a.sim", b"SIMPLE", "")
+    >>> unit, name, warnings = choose_unit(source, Request(), "gal", None)
+    >>> Record(0.01, [0.0, 2.0, -1.0], unit, {"unit_as_read": name}).metadata
+    {'unit_as_read': 'gal'}
     """
 
     time_step: float
@@ -211,6 +235,22 @@ class Reader(Protocol):
         In words.
     SUFFIXES : tuple of str
         Usual extensions, in small letters, with their dot.
+
+    Examples
+    --------
+    >>> from rockframe.records import Record, Request, Source, choose_unit
+    >>> class Simple:
+    ...     NAME, TITLE, SUFFIXES = "simple", "file of the simple format", (".sim",)
+    ...
+    ...     def recognises(self, source):
+    ...         return source.lines[0] == "SIMPLE"
+    ...
+    ...     def read(self, source, request):
+    ...         unit, _, _ = choose_unit(source, request, "gal", None)
+    ...         return Record(0.01, [float(line) for line in source.lines[1:]], unit, {})
+    >>> source = Source("a.sim", bytes([10]).join([b"SIMPLE", b"0", b"2"]), "")
+    >>> Simple().recognises(source), Simple().read(source, Request()).samples
+    (True, [0.0, 2.0])
     """
 
     NAME: str
@@ -246,6 +286,13 @@ class Format:
         Whether it reads bytes (``source.data``) instead of lines.
     own : bool
         Whether it is part of this package.
+
+    Examples
+    --------
+    >>> from rockframe.motion import formats
+    >>> peer = formats()[0]
+    >>> peer.name, peer.suffixes
+    ('peer-at2', ('.at2',))
     """
 
     name: str

@@ -123,6 +123,13 @@ def choose_unit(
     ------
     RecordError
         The file's unit is unknown or not an acceleration, or there is none.
+
+    Examples
+    --------
+    >>> from rockframe.records import Request, Source
+    >>> unit, name, warnings = choose_unit(Source("a.sim", b"SIMPLE", ""), Request(), "gal", None)
+    >>> unit.factor, name, warnings
+    (0.01, 'gal', [])
     """
     known = None if name is None else acceleration_unit(name)
     if name is not None and known is None:

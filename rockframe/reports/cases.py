@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.reports import page
-from rockframe.reports.values import column_head, number_in, value_of
+from rockframe.reports.values import column_head, number_in, powers_in_html, value_of
 from rockframe.results.outcome import overturned_by
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME
@@ -113,7 +113,7 @@ def _table(
     status = dataset["status"]
     rows = list[list[str]]()
     for place in order.tolist():
-        labels = [written(value) for value in labels_at(dataset, place).values()]
+        labels = [*labels_of(dataset, place, units).values()]
         if with_verdict:
             labels.append(_verdict(dataset, place))
         numbers = [number_in(float(one.values[place]), one.unit, units) for one in columns]
@@ -166,6 +166,17 @@ def labels_at(dataset: xr.Dataset, place: int) -> dict[str, Any]:
     places = np.unravel_index(place, status.shape)
     return {str(dim): status[dim].to_numpy()[k].item() if dim in status.coords else int(k)
             for dim, k in zip(status.dims, places, strict=True)}  # fmt: skip
+
+
+def labels_of(dataset: xr.Dataset, place: int, units: ReaderUnits) -> dict[str, str]:
+    """Write the labels of a case, numbers with their units."""
+    found: dict[str, str] = {}
+    for name, value in labels_at(dataset, place).items():
+        unit = units.of(str(dataset[name].attrs.get("units", Unit.ONE)) if name in dataset else "1")
+        words = "" if unit.words == Unit.ONE else f" {powers_in_html(unit.words)}"
+        shown = value / unit.size if isinstance(value, float) else value
+        found[name] = f"{written(shown)}{words}"
+    return found
 
 
 def written(value: object) -> str:

@@ -15,7 +15,7 @@ from rockframe.reports import page
 from rockframe.reports.page import KIND
 from rockframe.reports.values import powers_in_html
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, UnitsLike, reader_units
 from rockframe.writing import write_file
 
 _SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
@@ -38,6 +38,12 @@ class CheckedLine:
         What it is, and its formula.
     source : str
         Clause and number of the formula; or where else it is from.
+
+    Examples
+    --------
+    >>> from rockframe.units import Unit
+    >>> CheckedLine("M*", 1850.0, Unit.KILOGRAM, "participating mass", "(C8.7.1.4)").written()
+    '1.85 t'
     """
 
     symbol: str
@@ -58,9 +64,10 @@ class CheckedLine:
         -------
         str
         """
-        chosen = (units or ReaderUnits()).of(str(self.unit))
-        unit = "" if self.unit is Unit.ONE else chosen.words
-        return number_with_unit(self.value / chosen.size, unit)
+        chosen = None if units is None else units.chosen.get(str(self.unit))
+        if chosen is not None:  # with no other prefix
+            return f"{self.value / chosen.size:.6g} {chosen.words}"
+        return number_with_unit(self.value, "" if self.unit is Unit.ONE else str(self.unit))
 
 
 @proposing
@@ -78,6 +85,11 @@ class CheckedVerdict:
         Demand and capacity.
     source : str
         Clause.
+
+    Examples
+    --------
+    >>> CheckedVerdict("Damage", True, "0.03 m is below 0.05 m", "C8.7.1.2").passed
+    True
     """
 
     title: str
@@ -105,6 +117,21 @@ class CodeCheck:
         What the check leaves out.
     scene : str
         What was checked, in a line.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rockframe as rf
+    >>> cabinet = rf.Block(width="0.6 m", height="1.8 m", mass="300 kg")
+    >>> check = rf.codes.asce_7_22(cabinet, spectral_acceleration=1.0, importance=1.5)
+    >>> check.value("S_DS"), check.passed["tipping"]
+    (1.0, False)
+    >>> len([*check.banners(ReaderUnits())]), [title for title, _ in check.tables(ReaderUnits())]
+    (1, ['Factors', 'Forces', 'Statics, without anchors', 'Left out'])
+    >>> "S_DS" in check.section(ReaderUnits())
+    True
+    >>> check.report(f"{tempfile.mkdtemp()}/check.html").name
+    'check.html'
     """
 
     title: str
@@ -159,8 +186,13 @@ class CodeCheck:
         rows = {one.title: f"{_SAID[one.passed][0]}; {one.words}" for one in self.verdicts}
         return card(escape(self.title), rows)
 
-    def banners(self) -> Iterator[str]:
+    def banners(self, units: ReaderUnits) -> Iterator[str]:
         """Give each verdict with demand, capacity and clause, as pages show it.
+
+        Parameters
+        ----------
+        units : ReaderUnits
+            Of the numbers.
 
         Yields
         ------
@@ -169,7 +201,7 @@ class CodeCheck:
         """
         for one in self.verdicts:
             said, kind = _SAID[one.passed]
-            words = f"{one.words} [{one.source}]. {self.code}."
+            words = f"{units.of_sentence(one.words)} [{one.source}]. {self.code}."
             yield page.banner(f"{one.title}: {said}", words, kind)
 
     def tables(self, units: ReaderUnits) -> Iterator[tuple[str, list[str]]]:
@@ -188,20 +220,33 @@ class CodeCheck:
         head = ("", "value", "", "source")
         for title, several in self.lines.items():
             cells = [
-                (one.symbol, powers_in_html(one.written(units)), one.words, one.source)
+                (
+                    one.symbol,
+                    powers_in_html(one.written(units)),
+                    units.of_sentence(one.words),
+                    one.source,
+                )
                 for one in several
             ]
             yield title, [page.rows(cells, head=head)]
         if self.notes:
-            yield "Left out", [page.items(self.notes)]
+            yield "Left out", [page.items(map(units.of_sentence, self.notes))]
 
-    def report(self, path: "str | PathLike[str]", *, overwrite: bool = False) -> Path:
+    def report(
+        self,
+        path: "str | PathLike[str]",
+        *,
+        units: UnitsLike = None,
+        overwrite: bool = False,
+    ) -> Path:
         """Write the check as one HTML page that needs no other file.
 
         Parameters
         ----------
         path : str or path
             Of the file; its name ends in ``.html``. A report that is there is replaced.
+        units : mapping of str to str, optional
+            Units by what they are of, as for :func:`rockframe.report`.
         overwrite : bool, optional
             Whether a file that is there is replaced though it is no report.
 
@@ -215,16 +260,20 @@ class CodeCheck:
         FileError
             The file cannot be written, its name has another ending, or it is there already and
             no report.
+        ComponentError, UnitsError
+            Units that are none, or of another kind.
         """
+        chosen = reader_units(units, owner="CodeCheck.report")
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
-        body += self._checked()
-        body += self.banners()
-        body += [page.section(title, pieces) for title, pieces in self.tables(ReaderUnits())]
+        body += self._checked(chosen)
+        body += self.banners(chosen)
+        body += [page.section(title, pieces) for title, pieces in self.tables(chosen)]
         content = page.page(self.title, body).encode()
         return write_file(path, KIND, content, overwrite=overwrite)
 
-    def _checked(self) -> list[str]:
-        return [page.paragraph(f"Checked: {self.scene}.")] if self.scene else []
+    def _checked(self, units: ReaderUnits) -> list[str]:
+        words = units.of_sentence(self.scene)
+        return [page.paragraph(f"Checked: {words}.")] if words else []
 
     def section(self, units: ReaderUnits) -> str:
         """Give its section of a larger page.
@@ -239,7 +288,7 @@ class CodeCheck:
         str
             HTML.
         """
-        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._checked()]
+        pieces = [page.paragraph(f"{self.title}. {self.code}."), *self._checked(units)]
         for title, inner in self.tables(units):
             pieces += [page.subtitle(title), *inner]
         return page.section(f"Check by {self.code.split(',')[0]}", pieces)

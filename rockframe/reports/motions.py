@@ -104,7 +104,7 @@ def spectra_section(
     """Show the spectra of motions beside a target, and what is known of each."""
     damping = 0.05 if aim is None else aim.target.damping_ratio
     if aim is not None:
-        name = powers_in_html(aim.target.name)
+        name = powers_in_html(units.of_sentence(aim.target.name))
         yield page.paragraph(
             f"Target: {name}. Compared at {aim.periods.size} periods from {aim.periods[0]:.4g} s "
             f"to {aim.periods[-1]:.4g} s, {100.0 * damping:g} % damping."

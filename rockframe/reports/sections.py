@@ -71,10 +71,10 @@ _PROVENANCE: Final = (
 )
 
 
-def outcome_of(dataset: xr.Dataset) -> str:
+def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
     """Say what became of the body, on top whether it slid."""
     title, kind = _BANNERS[verdict_of(dataset)]
-    words = str(dataset.attrs.get("verdict", ""))
+    words = units.of_sentence(str(dataset.attrs.get("verdict", "")))
     slid = float(slips_of_cases(dataset)) >= LEAST_SLIP
     if "peak_slip" in dataset and words:
         title = _NUMBERS.split(words)[0]
@@ -83,16 +83,17 @@ def outcome_of(dataset: xr.Dataset) -> str:
     return page.banner(title, words, "doubt" if slid and kind == "good" else kind)
 
 
-def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:
+def verdict_section(dataset: xr.Dataset, reason: str, units: ReaderUnits) -> Iterator[str]:
     """Say what became of the body, and how sure that is."""
-    yield outcome_of(dataset)
+    yield outcome_of(dataset, units)
     if "proof" in dataset.attrs:
         proved = bool(dataset["verdict_proved"])
         title = f"The verdict is {'' if proved else 'not '}proved"
-        yield page.banner(title, str(dataset.attrs["proof"]), "good" if proved else "doubt")
+        words = units.of_sentence(str(dataset.attrs["proof"]))
+        yield page.banner(title, words, "good" if proved else "doubt")
     if "certificate" in dataset.attrs:
         sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
-        words = str(dataset.attrs["certificate"])
+        words = units.of_sentence(str(dataset.attrs["certificate"]))
         near = words.startswith(NEAR_WORDS)
         said = f"holds{', but near a boundary' * near}" if sure else "is in doubt"
         title = f"Certificate: the verdict {said}"
@@ -101,26 +102,26 @@ def verdict_section(dataset: xr.Dataset, reason: str) -> Iterator[str]:
         yield page.banner("No certificate", reason or "none was asked for.", "doubt")
     cautions = str(dataset.attrs.get("cautions", NONE))
     if cautions != NONE:
-        yield page.banner("To be used with care", cautions, "doubt")
+        yield page.banner("To be used with care", units.of_sentence(cautions), "doubt")
 
 
-def scene_section(dataset: xr.Dataset, system: System | None) -> Iterator[str]:
+def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits) -> Iterator[str]:
     """Show the parts with their parameters, and the model."""
     if system is not None:
-        yield from _drawing(system)
+        yield from _drawing(system, units)
         for part in system.parts.structural():
             yield page.subtitle(type(part).__name__)
-            yield page.rows(_parameters(part))
+            yield page.rows(_parameters(part, units))
         yield page.subtitle("Options")
         yield page.rows(
-            (name, _value(value))
+            (name, _value(value, units))
             for name, value in system.options.to_dict().items()
             if name != "coupling" or system.scene.coupling is not None
         )
     yield page.subtitle("Model")
     # analyses do not keep the words that a run keeps
     told = "not described" if system is None else system.describe()
-    yield page.verbatim(str(dataset.attrs.get("model_description", told)))
+    yield page.verbatim(units.of_sentence(str(dataset.attrs.get("model_description", told))))
 
 
 def motion_section(
@@ -215,25 +216,25 @@ def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
             yield page.verbatim(_indented(str(attributes[name])))
 
 
-def _drawing(system: System) -> Iterator[str]:
+def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
     """Draw the scene, where it can be drawn."""
     draw = getattr(plot, "scene", None)
     if draw is None:
         return
     try:
-        drawn = draw(system)
+        drawn = draw(system, units=units.words)
     except RockframeError:  # a base of a user's own
         return
     yield page.picture(figure_of(drawn), "The scene, to scale.")
 
 
-def _parameters(part: Component) -> list[tuple[str, str, str]]:
+def _parameters(part: Component, units: ReaderUnits) -> list[tuple[str, str, str]]:
     """Give the parameters of a part as they were given, with what they are."""
     declared = part.declared()
     return [
         (
             name.replace("_", " "),
-            _value(value),
+            _value(value, units),
             _meaning(declared[name]) if name in declared else "",
         )
         for name, value in part.to_dict().items()
@@ -246,13 +247,13 @@ def _meaning(one: Declared[Any, Any]) -> str:
     return words if one.condition is None else words.removesuffix(f"; {one.condition.words}")
 
 
-def _value(given: object) -> str:
+def _value(given: object, units: ReaderUnits) -> str:
     """Write a number with its unit, as far as six digits show it."""
-    number, blank, unit = str(given).partition(" ")
+    number, blank, unit = units.of_sentence(str(given)).partition(" ")
     try:
         return f"{float(number):.6g}{blank}{powers_in_html(unit)}"
     except ValueError:
-        return str(given)
+        return units.of_sentence(str(given))
 
 
 def _indented(text: str) -> str:

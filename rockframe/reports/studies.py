@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from rockframe import plot
@@ -11,7 +12,7 @@ from rockframe.errors import RockframeError, RockframeWarning, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
-from rockframe.reports.cases import case_tables, from_worst, labels_at, written
+from rockframe.reports.cases import case_tables, from_worst, labels_at, labels_of
 from rockframe.reports.figures import figure_of
 from rockframe.reports.project import Project
 from rockframe.reports.values import powers_in_html, table_of, value_of
@@ -29,7 +30,7 @@ def verdict_sections(
     sentence = cases_verdict(dataset)
     verdict = [*about.conclusions()]
     if sentence:
-        verdict.append(_banner(dataset, sentence))
+        verdict.append(_banner(dataset, units.of_sentence(sentence)))
     yield page.section("Verdict", [*verdict, *by_codes])
     figure = _figure(dataset, units)
     if figure:
@@ -45,27 +46,28 @@ def verdict_sections(
 
 
 def worst_case(
-    dataset: xr.Dataset, motions: Mapping[str, GroundMotion]
-) -> tuple[str, xr.Dataset, System] | None:
-    """Simulate the case of a sweep that comes nearest to overturning, or overturns first."""
-    if not _is_sweep(dataset):
-        return None
-    order = from_worst(dataset)
+    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], units: ReaderUnits
+) -> tuple[str, tuple[xr.Dataset, System] | None]:
+    """Simulate the case of a sweep that comes nearest to overturning, or overturns first.
+
+    Gives its words, which say why where it cannot be simulated; none of what has no cases.
+    """
+    order = from_worst(dataset) if _is_sweep(dataset) else np.array([])
     if not order.size:
-        return None
-    labels = labels_at(dataset, int(order[0]))
+        return "", None
+    place = int(order[0])
+    labels = labels_at(dataset, place)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
             found = case(dataset, motions=motions or None, **labels)
             run = found.simulate(outputs=())
-    except RockframeError:  # such as of a function of another process, or without its motions
-        return None
-    named = ", ".join(
-        f"{name.replace('_', ' ')} {written(value)}" for name, value in labels.items()
-    )
+    except RockframeError as problem:  # such as without its motions
+        return f"Not simulated again; {problem}.", None
+    shown_as = labels_of(dataset, place, units)
+    named = ", ".join(f"{name.replace('_', ' ')} {words}" for name, words in shown_as.items())
     system = found.system if found.motion is None else under(found.system, found.motion)
-    return f"Simulated again: {named}." if named else "Simulated again.", run, system
+    return f"Simulated again: {named}." if named else "Simulated again.", (run, system)
 
 
 def under(system: System, motion: GroundMotion) -> System:
@@ -127,4 +129,5 @@ def _of_limit_states(dataset: xr.Dataset, units: ReaderUnits) -> list[str]:
             words = str(values.attrs.get("long_name", name))
             rows.append([words, *(value_of(values.isel({dim: k}), units)
                                   for k in range(dataset.sizes[dim]))])  # fmt: skip
-    return [page.columns(rows, ["", *map(str, dataset[dim].to_numpy())])]
+    heads = [units.of_sentence(str(one)) for one in dataset[dim].to_numpy()]
+    return [page.columns(rows, ["", *heads])]

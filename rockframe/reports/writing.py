@@ -126,7 +126,7 @@ def report(
     chosen = reader_units(units, owner=_OWNER)
     aim = aim_of(target, motions, _OWNER)
     checked = checks_of(checks, _OWNER)
-    by_codes = [banner for one in checked for banner in one.banners()]
+    by_codes = [banner for one in checked for banner in one.banners(chosen)]
     by_codes = by_codes or [*about.unchecked()]
     source = str(dataset.encoding.get("source", ""))
     read = [source] if source else []
@@ -137,7 +137,7 @@ def report(
         heading = given or f"Rocking response, {model} model"
         system = _system_of(dataset, motion)
         dataset, reason = certified(dataset, system) if certify else (dataset, "")
-        verdict = sections.verdict_section(dataset, reason)
+        verdict = sections.verdict_section(dataset, reason, chosen)
         body = [page.section("Verdict", [*about.conclusions(), *verdict, *by_codes])]
         body += _of_run(dataset, system, about, chosen, aim)
     else:
@@ -147,16 +147,18 @@ def report(
         if found:
             spectra = spectra_section(found, aim, chosen)
             body.append(page.section("Ground motions", spectra))
-        worst = studies.worst_case(dataset, found)
+        words, worst = studies.worst_case(dataset, found, chosen)
         if worst is not None:
-            words, run, system = worst
-            verdict = sections.outcome_of(worst[1])
+            run, system = worst
+            verdict = sections.outcome_of(run, chosen)
             body.append(page.section("The worst case in full", [page.paragraph(words), verdict]))
             body += _of_run(run, system, about, chosen)
         else:
+            if words:
+                body.append(page.section("The worst case", [page.paragraph(words)]))
             system = _system_of(dataset, None)
             if system is not None:
-                body.append(page.section("Scene", sections.scene_section(dataset, system)))
+                body.append(page.section("Scene", sections.scene_section(dataset, system, chosen)))
             limits = sections.limits_section(system, about.assumptions)
             body.append(page.section("Limits of validity", limits))
     body += [one.section(chosen) for one in checked]
@@ -183,7 +185,7 @@ def _of_run(
     motion = None if system is None else system.motion
     return [
         page.section("Response", sections.response_section(dataset, units)),
-        page.section("Scene", sections.scene_section(dataset, system)),
+        page.section("Scene", sections.scene_section(dataset, system, units)),
         page.section("Ground motion", sections.motion_section(dataset, motion, units, aim)),
         page.section("Limits of validity", sections.limits_section(system, about.assumptions)),
     ]

@@ -38,6 +38,14 @@ class Motion:
     ------
     ComponentError
         The components differ in time step or length.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> motion = Motion.of_samples(0.5, np.array([0.0, 2.0, -1.0]))
+    >>> twice = motion.each(lambda signal: Signal(signal.time_step, 2.0 * signal.samples))
+    >>> motion.at(0.25).item(), twice.at(0.25).item()
+    (1.0, 2.0)
     """
 
     horizontal: Signal

@@ -52,6 +52,15 @@ class Signal:
     ComponentError
         A value is not finite, fewer than two samples, shapes that do not agree, or a time
         step that is not positive.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> signal = Signal(0.5, np.array([0.0, 2.0, -1.0]))
+    >>> signal.at([0.25, 1.0]).tolist(), signal.at_place(np.array([0.5, 1.5])).tolist()
+    ([1.0, -1.0], [1.0, 0.5])
+    >>> signal.duration, signal.peak
+    (1.0, 2.0)
     """
 
     time_step: float

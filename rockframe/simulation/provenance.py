@@ -1,15 +1,16 @@
 """What a result says of its run, and the way back."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rockframe.components import InitialState
-from rockframe.errors import RecordWarning, SchemaError, warn
+from rockframe.arguments import by_names
+from rockframe.components import Component, InitialState, component_from_dict
+from rockframe.errors import RecordWarning, SchemaError, nearest, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import shown_name
 from rockframe.solve.accuracy import Accuracy
@@ -122,6 +123,30 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
     if f"{name}{_AFTER_END}" in dataset:
         parts.append(dataset[f"{name}{_AFTER_END}"].to_numpy())
     return np.concatenate(parts)
+
+
+def description_by_names(given: object) -> Mapping[str, Any]:
+    """Refuse what is no description of a system."""
+    return by_names(given, owner="System", name="description", example="that of to_dict()")
+
+
+def parts_and_options(
+    description: Mapping[str, Any], arguments: Iterable[str]
+) -> tuple[list[Component], dict[str, Any]]:
+    """Give parts and options of a description of a system, of whose arguments it may have any."""
+    if "parts" not in description_by_names(description):
+        msg = "found no 'parts'; expected a list of them, as to_dict() gives it"
+        raise SchemaError(msg)
+    known = [name for name in arguments if name != "parts"]
+    allowed = (*known, "parts", "motion")
+    strange = [
+        f"{shown(name)}{nearest(name, allowed)}" for name in description if name not in allowed
+    ]
+    if strange:
+        msg = f"found {', '.join(strange)}; expected parts, motion, {', '.join(known)}"
+        raise SchemaError(msg)
+    options = {name: str(description[name]) for name in known if name in description}
+    return [component_from_dict(part) for part in description["parts"]], options
 
 
 def arguments_of_run(dataset: xr.Dataset) -> dict[str, Any]:

@@ -56,6 +56,18 @@ def register(
     ------
     ComponentError
         What is not as it must be, every fault at once; nothing is registered then.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import rockframe as rf
+    >>> def roof_drift(state):
+    ...     return state["horizontal_displacement"] + 2.0 * np.sin(state["rotation"])
+    >>> rf.register(roof_drift, unit="m", long_name="displacement of the middle of the roof")
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> round(float(system.simulate(pulse, outputs=["roof_drift"]).peak_roof_drift), 3)
+    0.184
     """
     columns = several(columns, owner=_OWNER, name="columns", of="Variables")
     if isinstance(kind, Diagnostic) or (callable(kind) and not isinstance(kind, type)):

@@ -31,6 +31,20 @@ VERDICT: Final = Argument(
     "beyond the angle while the ground moves.",
 )
 
+NO_ARGUMENTS: Final = {
+    "damping": "dampers belong to the parts, such as TwoSpringSupport(damping_ratio=0.1) or "
+    "WinklerSoil(damping_ratio=0.2); a block on rigid ground loses energy in impacts, by "
+    "RigidGround(restitution=...)",
+    "damping_ratio": "it belongs to the parts, such as TwoSpringSupport(damping_ratio=0.1)",
+    "dt": "the steps of the integration are its own, as fine as accuracy asks for; output_step "
+    "is the spacing of the histories",
+    "time_step": "the steps of the integration are its own, as fine as accuracy asks for; "
+    "output_step is the spacing of the histories",
+    "gravity": "it is an option of System(..., gravity='9.81 m/s^2')",
+    "scale": "write simulate(motion.scaled(1.5))",
+}
+"""What a run does not take, and what does."""
+
 OutputStep: TypeAlias = Annotated[
     QuantityLike | None,
     Argument(

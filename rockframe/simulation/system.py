@@ -9,20 +9,24 @@ from typing import Any, Final, Literal, Self
 
 import xarray as xr
 
-from rockframe.arguments import by_names, checked_dataset, truth
-from rockframe.components import InitialState, component_from_dict
-from rockframe.errors import ModelWarning, SchemaError, nearest, shown, warn
+from rockframe.arguments import checked_dataset, truth
+from rockframe.components import InitialState
+from rockframe.errors import ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
-from rockframe.proposals import Proposing, hinted, proposing
-from rockframe.simulation.provenance import motion_from_dataset
-from rockframe.simulation.run_arguments import Certification
+from rockframe.proposals import hinted, proposing
+from rockframe.simulation.provenance import (
+    description_by_names,
+    motion_from_dataset,
+    parts_and_options,
+)
+from rockframe.simulation.run_arguments import NO_ARGUMENTS, Certification
+from rockframe.simulation.value import SystemValue
 from rockframe.solve.accuracy import AccuracyLevel
-from rockframe.system.assembly import Assembly, assemble
+from rockframe.system.assembly import assemble
 from rockframe.system.options import (
     AccuracyLike,
     Coupling,
     CouplingLike,
-    Options,
     Overturning,
     OverturningLike,
     PointsLike,
@@ -33,17 +37,14 @@ from rockframe.system.options import (
     Sliding,
     SlidingLike,
 )
-from rockframe.system.parts import Parts
-from rockframe.system.scenes import Scene
-from rockframe.system.setting import Setting
-from rockframe.units import ACCELERATION, ANGLE, Quantity, QuantityLike, quantity
+from rockframe.units import QuantityLike
 
 _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
 """What is raised where a description is not what was written."""
 
 
 @proposing
-class System(metaclass=Proposing):
+class System(SystemValue):
     """An assembled scene: parts in any order, checked together, ready to simulate.
 
     Parameters
@@ -87,7 +88,7 @@ class System(metaclass=Proposing):
     False
     """
 
-    __slots__ = ("_assembly",)
+    __slots__ = ()
 
     def __init__(
         self,
@@ -99,99 +100,13 @@ class System(metaclass=Proposing):
         inclination: QuantityLike | None = None,
         sliding: SlidingLike = Sliding.COMPUTED,
     ) -> None:
-        self._assembly = assemble(
+        assembly = assemble(
             parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity,
             inclination=inclination, sliding=sliding,
         )  # fmt: skip
-        for caution in self._assembly.doubts:
+        super().__init__(assembly)
+        for caution in assembly.doubts:
             warn(caution, ModelWarning)
-
-    @property
-    def assembly(self) -> Assembly:
-        """Parts and options, checked together."""
-        return self._assembly
-
-    @property
-    def parts(self) -> Parts:
-        """The parts, by what they are."""
-        return self._assembly.parts
-
-    @property
-    def motion(self) -> GroundMotion | None:
-        """The ground motion among the parts, if there is one."""
-        return self.parts.motion
-
-    @property
-    def options(self) -> Options:
-        """All options, and gravity."""
-        return self._assembly.options
-
-    @property
-    def restraint(self) -> Restraint:
-        """Which point of the base the ground holds horizontally."""
-        return self.options.restraint
-
-    @property
-    def rotation(self) -> Rotation:
-        """Exact kinematics, or expanded to second order in the rotation."""
-        return self.options.rotation
-
-    @property
-    def coupling(self) -> Coupling:
-        """How block, pads, cap and soil are joined, in a scene that has them."""
-        return self.options.coupling
-
-    @property
-    def gravity(self) -> Quantity:
-        """Acceleration of gravity [m s^-2]."""
-        return quantity(self.options.gravity, ACCELERATION)
-
-    @property
-    def inclination(self) -> Quantity:
-        """Angle by which the base line rises to the right [rad]."""
-        return quantity(self.options.inclination, ANGLE)
-
-    @property
-    def sliding(self) -> Sliding:
-        """What friction does: its forces are computed, or it is compared with what is needed."""
-        return self.options.sliding
-
-    @property
-    def scene(self) -> Scene:
-        """The row of the table of scenes that the parts make."""
-        return self._assembly.scene
-
-    @property
-    def setting(self) -> Setting:
-        """The scene's numbers in SI units."""
-        return self._assembly.setting
-
-    def __eq__(self, other: object) -> bool:
-        return self._assembly == other._assembly if isinstance(other, System) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(self._assembly)
-
-    def __repr__(self) -> str:
-        parts = ", ".join(repr(part) for part in self.parts.present())
-        coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
-        given = self.options.to_dict()
-        others = "".join(
-            f", {name}={given[name]!r}" for name in ("inclination", "sliding") if name in given
-        )
-        return (
-            f"{type(self).__name__}({parts}, restraint={str(self.restraint)!r}, "
-            f"rotation={str(self.rotation)!r}{coupling}{others})"
-        )
-
-    def __dir__(self) -> list[str]:
-        inner = {"assembly", "scene", "setting"}  # for the package, and those who extend it
-        return [n for n in super().__dir__() if not n.startswith("_") and n not in inner]
-
-    def _repr_html_(self) -> str:
-        from rockframe.system.html import system_html
-
-        return system_html(self._assembly, type(self).__name__)
 
     def describe(self) -> str:
         """Tell which model was picked, by which equations, and what it leaves out.
@@ -200,21 +115,17 @@ class System(metaclass=Proposing):
         -------
         str
             Several lines of plain text.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+        >>> system.describe().splitlines()[0]
+        'Model: rigid ground'
         """
         return self._assembly.description
 
-    @hinted(
-        damping="dampers belong to the parts, such as TwoSpringSupport(damping_ratio=0.1) or "
-        "WinklerSoil(damping_ratio=0.2); a block on rigid ground loses energy in impacts, by "
-        "RigidGround(restitution=...)",
-        damping_ratio="it belongs to the parts, such as TwoSpringSupport(damping_ratio=0.1)",
-        dt="the steps of the integration are its own, as fine as accuracy asks for; output_step "
-        "is the spacing of the histories",
-        time_step="the steps of the integration are its own, as fine as accuracy asks for; "
-        "output_step is the spacing of the histories",
-        gravity="it is an option of System(..., gravity='9.81 m/s^2')",
-        scale="write simulate(motion.scaled(1.5))",
-    )
+    @hinted(**NO_ARGUMENTS)
     def simulate(
         self,
         motion: GroundMotion | None = None,
@@ -287,6 +198,15 @@ class System(metaclass=Proposing):
         ComponentError
             `certify` is neither True, False, ``"proved"`` nor a Certification; or nothing can
             be proved of the system.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+        >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+        >>> run = system.simulate(pulse, free_vibration="2 s")
+        >>> f"{float(run.peak_relative_rotation):.2f}, overturned: {bool(run.overturned)}"
+        '0.28, overturned: False'
         """
         from rockframe.simulation.plan import plan_run
         from rockframe.simulation.run import run
@@ -327,6 +247,16 @@ class System(metaclass=Proposing):
         ------
         ComponentError, FileError
             As :func:`rockframe.export.to_opensees`.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import rockframe as rf
+        >>> block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+        >>> system = rf.System(block, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+        >>> pulse = rf.GroundMotion.sine_pulse("1.6 m/s^2", "1 Hz")
+        >>> system.to_opensees(pulse, f"{tempfile.mkdtemp()}/model.py").name
+        'model.py'
         """
         above: Any = import_module("rockframe.export")  # of a layer that this one does not know
         return above.to_opensees(self, motion, path, **options)
@@ -398,6 +328,14 @@ class System(metaclass=Proposing):
         xarray.Dataset
             Scalars: settlements and reactions of what the scene has,
             ``uplift_angle``, ``uplift_moment`` and ``overturning_angle``.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> soil = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
+        >>> system = rf.System(rf.Block(width="4 m", height="18 m", mass="99 t"), soil)
+        >>> round(float(system.equilibrium().soil_settlement), 4)
+        0.027
         """
         from rockframe.simulation.statics import equilibrium
 
@@ -411,6 +349,12 @@ class System(metaclass=Proposing):
         dict
             A motion among the parts stands under ``motion``: a pulse or a synthetic motion
             by its recipe, a record with its samples.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t")).to_dict()["parts"]
+        [{'type': 'Block', 'width': '0.8 m', 'height': '4.0 m', 'mass': '2000.0 kg'}]
         """
         motion = {} if self.motion is None else {"motion": self.motion.to_dict(samples=True)}
         return {**self._assembly.to_dict(), **motion}
@@ -432,9 +376,16 @@ class System(metaclass=Proposing):
         ------
         SchemaError
             It does not describe a system.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"), sliding="checked")
+        >>> rf.System.from_dict(system.to_dict()) == system
+        True
         """
         try:
-            given = _described_by_names(description).get("motion")
+            given = description_by_names(description).get("motion")
             motion = None if given is None else GroundMotion.from_dict(given)
             return cls._described(description, motion)
         except _DAMAGED as problem:
@@ -461,6 +412,14 @@ class System(metaclass=Proposing):
         ------
         SchemaError
             No dataset, or one that does not describe a system.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+        >>> run = system.simulate(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz"))
+        >>> rf.System.from_dataset(run).motion.name
+        'sine pulse, 2.5 m/s^2, 1 Hz, cycles: 1'
         """
         dataset = checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset")
         text = dataset.attrs.get("system_json")
@@ -475,26 +434,5 @@ class System(metaclass=Proposing):
 
     @classmethod
     def _described(cls, description: Mapping[str, Any], motion: GroundMotion | None) -> Self:
-        _described_by_names(description)
-        if "parts" not in description:
-            msg = "found no 'parts'; expected a list of them, as to_dict() gives it"
-            raise SchemaError(msg)
-        known = [name for name in signature(cls).parameters if name != "parts"]
-        allowed = (*known, "parts", "motion")
-        strange = [
-            f"{shown(name)}{nearest(name, allowed)}" for name in description if name not in allowed
-        ]
-        if strange:
-            msg = f"found {', '.join(strange)}; expected parts, motion, {', '.join(known)}"
-            raise SchemaError(msg)
-        parts = [component_from_dict(part) for part in description["parts"]]
-        options: dict[str, Any] = {
-            name: str(value)
-            for name, value in description.items()
-            if name not in ("parts", "motion")
-        }
+        parts, options = parts_and_options(description, signature(cls).parameters)
         return cls(*parts, *([] if motion is None else [motion]), **options)
-
-
-def _described_by_names(given: object) -> Mapping[str, Any]:
-    return by_names(given, owner="System", name="description", example="that of to_dict()")

@@ -101,7 +101,7 @@ def incremental_dynamic_analysis(
     **more_axes : values
         Axes whose names a keyword can have. A `width` is that of a block.
     output_step : str or Quantity, optional
-        Spacing of the histories; the time step of the motions unless given [s].
+        Spacing of the histories, as for :func:`rockframe.sweep` [s].
     outputs : sequence of str, optional
         Histories of the runs at `scale`, as for :func:`rockframe.sweep`; None keeps none.
     points : mapping of str to (str or Quantity, str or Quantity), optional

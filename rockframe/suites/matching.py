@@ -41,6 +41,15 @@ def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
     -----
     RecordWarning
         What :meth:`GroundMotion.matched` warns of, for all motions together.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> record = rf.GroundMotion.example("loma-prieta").window("5 s", "12 s")
+    >>> target = rf.TargetSpectrum.eurocode_8("0.1 g_0", "B")
+    >>> found = rf.MotionSuite({"A": record}).matched(target, periods=("0.2 s", "0.5 s"))
+    >>> found["A"].metadata["largest_spectral_misfit"] <= 0.05
+    True
     """
     motions: dict[str, GroundMotion] = {}
     said: list[str] = []

@@ -77,6 +77,15 @@ class MotionSuite(LabelledMotions):
         Returns
         -------
         xarray.Dataset
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> suite.intensity_measures().peak_ground_velocity.values.round(3)
+        array([0.637, 0.318])
         """
         return intensity_measures(self, **arguments)
 
@@ -98,6 +107,15 @@ class MotionSuite(LabelledMotions):
         Returns
         -------
         xarray.Dataset
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> suite.response_spectrum(["0.5 s"]).pseudo_spectral_acceleration.values.round(2).ravel()
+        array([3.24, 5.4 ])
         """
         return response_spectrum(
             self, periods, damping_ratios, component=component, interpolation=interpolation
@@ -119,6 +137,18 @@ class MotionSuite(LabelledMotions):
         -------
         xarray.Dataset
             Labelled by the records.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import rockframe as rf
+        >>> folder = tempfile.mkdtemp()
+        >>> rows = [f"{0.01 * k:.2f}, {0.1 * k:.1f}, {0.2 * k:.1f}" for k in range(5)]
+        >>> with open(f"{folder}/R1.csv", "w") as file:
+        ...     print("time [s], N [g], E [g]", *rows, sep=chr(10), file=file)
+        >>> spectrum = rf.read_suite(folder).rotated_spectrum(["0.5 s"])
+        >>> spectrum.motion.values.tolist()
+        ['R1.csv']
         """
         return rotated_spectrum(self.pairs, periods, damping_ratios)
 
@@ -135,6 +165,16 @@ class MotionSuite(LabelledMotions):
         Returns
         -------
         xarray.Dataset
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> found = suite.average_spectral_acceleration("0.5 s")
+        >>> found.average_spectral_acceleration.values.round(2)
+        array([3.24, 5.4 ])
         """
         return average_spectral_acceleration(self, periods, damping_ratio)
 
@@ -160,6 +200,16 @@ class MotionSuite(LabelledMotions):
         ------
         UnitsError, ComponentError, SchemaError
             As for :meth:`scaling_to`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> found = suite.scaling_to(rf.TargetSpectrum.eurocode_8("0.2 g_0"), bounds=None)
+        >>> suite.scaled_to(found)["1 Hz"].peak_acceleration.round(2)
+        <Quantity(1.67, 'meter / second ** 2')>
         """
         found = target
         if not isinstance(found, xr.Dataset):
@@ -190,6 +240,15 @@ class MotionSuite(LabelledMotions):
         ------
         UnitsError, ComponentError
             As for :meth:`selection_for`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2, 3, 4)}
+        ... )
+        >>> [*suite.chosen_for(rf.TargetSpectrum.eurocode_8("0.2 g_0"), 2, bounds=None)]
+        ['4 Hz', '1 Hz']
         """
         return self.scaled_to(self.selection_for(target, count, **arguments))
 
@@ -208,6 +267,15 @@ class MotionSuite(LabelledMotions):
         xarray.Dataset
             Over ``motion``, the vertical components last, what is known of each; the samples of
             all, one behind the other, over ``sample``, with ``sample_count`` (CF 9.3.3).
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> suite.to_dataset().sizes["motion"]
+        2
         """
         return suite_dataset(self)
 
@@ -228,6 +296,15 @@ class MotionSuite(LabelledMotions):
         ------
         SchemaError
             Not such a dataset, or its samples were changed since.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> rf.MotionSuite.from_dataset(suite.to_dataset())["2 Hz"] == suite["2 Hz"]
+        True
         """
         owner = f"{cls.__name__}.from_dataset"
         motions, attributes = stored_motions(checked_dataset(dataset, owner=owner))

@@ -52,6 +52,15 @@ class TargetSpectrum(metaclass=Proposing):
         Of the oscillators [1].
     limits : tuple of float
         Periods between which it is known [s].
+
+    Examples
+    --------
+    >>> target = TargetSpectrum("flat", lambda periods: 0.0 * periods + 2.0, limits=(0.1, 4.0))
+    >>> target.at(["0.1 s", "1 s"]).tolist()
+    [2.0, 2.0]
+    >>> periods = np.array([0.2, 1.0])
+    >>> target.at_seconds(periods, owner="mine").tolist(), target.deviations_at(periods).tolist()
+    ([2.0, 2.0], [0.0, 0.0])
     """
 
     name: str
@@ -170,6 +179,14 @@ class TargetSpectrum(metaclass=Proposing):
         ------
         SchemaError
             No such dataset.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+        >>> spectrum = rf.response_spectrum(pulse, ["0.5 s", "1 s"])
+        >>> TargetSpectrum.from_spectrum(spectrum).at(["1 s"]).round(2).tolist()
+        [5.4]
         """
         owner = f"{cls.__name__}.from_spectrum"
         given = checked_dataset(dataset, owner=owner)
@@ -306,6 +323,11 @@ class TargetSpectrum(metaclass=Proposing):
             Periods without a unit, or with one of another kind.
         ComponentError
             Periods at which it is not known.
+
+        Examples
+        --------
+        >>> TargetSpectrum.eurocode_8("0.2 g_0").at(["0 s", "0.2 s"]).round(3).tolist()
+        [1.961, 4.903]
         """
         owner = f"{type(self).__name__}.at"
         return self.at_seconds(
@@ -374,6 +396,11 @@ class TargetSpectrum(metaclass=Proposing):
         ------
         UnitsError, ComponentError
             Not a ratio above zero.
+
+        Examples
+        --------
+        >>> TargetSpectrum.eurocode_8("0.2 g_0").scaled(1.5).at(["0 s"]).round(3).tolist()
+        [2.942]
         """
         owner = f"{type(self).__name__}.scaled"
         ratio = to_ratio(factor, owner=owner, name="factor", condition=POSITIVE)
@@ -397,6 +424,12 @@ class TargetSpectrum(metaclass=Proposing):
         ------
         UnitsError, ComponentError
             Not a ratio from 0 to 3.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> TargetSpectrum.eurocode_8("0.2 g_0").with_deviation(0.4).deviations_at(np.array([1.0]))
+        array([0.4])
         """
         owner = f"{type(self).__name__}.with_deviation"
         value = to_ratio(

@@ -181,6 +181,15 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         ------
         ComponentError
             None of them, or one that is not there.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> suite.only(["2 Hz"])
+        <MotionSuite of 1 motion: '2 Hz'>
         """
         owner = f"{type(self).__name__}.only"
         asked = several(labels, owner=owner, name="labels", of="labels")
@@ -209,6 +218,15 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         ------
         ComponentError
             No such column.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> [*suite.sort("duration")]
+        ['2 Hz', '1 Hz']
         """
         truth(descending, owner=f"{type(self).__name__}.sort", name="descending")
         check_column(self, by, owner=f"{type(self).__name__}.sort")
@@ -232,6 +250,15 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         ------
         ComponentError
             What it gives is no motion.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> suite = rf.MotionSuite(
+        ...     {f"{f} Hz": rf.GroundMotion.sine_pulse("2 m/s^2", f"{f} Hz") for f in (1, 2)}
+        ... )
+        >>> suite.changed(lambda motion: motion.scaled(2))["1 Hz"].peak_acceleration
+        <Quantity(4.0, 'meter / second ** 2')>
         """
         step = function_of(step, "motion", owner=f"{type(self).__name__}.changed", name="step")
         motions = {label: step(motion) for label, motion in self._motions.items()}
@@ -250,6 +277,17 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         ------
         ComponentError
             A vertical component has another time step.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> across, up = (
+        ...     rf.GroundMotion(rf.GroundMotion.sine_pulse(a, "1 Hz").si, metadata={"record": "R1"})
+        ...     for a in ("3 m/s^2", "1 m/s^2")
+        ... )
+        >>> suite = rf.MotionSuite({"N": across}, verticals={"UP": up}).with_verticals()
+        >>> suite["N"].vertical_acceleration.max().round(3)
+        <Quantity(1.0, 'meter / second ** 2')>
         """
         by_record = {one.metadata.get("record"): one for one in self._verticals.values()}
         by_record.pop(None, None)

@@ -19,6 +19,30 @@ class OwnLink(PointLink):
     """A link by a law of your own; :func:`rockframe.register` makes its class known.
 
     A class derived from it declares the parameters of its law, and has the method ``law``.
+
+    Examples
+    --------
+    >>> from typing import NamedTuple
+    >>> from rockframe import extension as ext
+    >>> @ext.link_law
+    ... class Spring(NamedTuple):
+    ...     stiffness: float
+    ...
+    ...     def force(self, state, stretch, own):
+    ...         return self.stiffness * stretch.elongation
+    ...
+    ...     def energy(self, state, stretch, own):
+    ...         return 0.5 * self.stiffness * stretch.elongation**2
+    >>> class Bar(ext.OwnLink):
+    ...     stiffness = ext.Parameter(
+    ...         ext.Measure("a stiffness", ext.Unit.NEWTON_PER_METRE, "2 MN/m"), doc="Stiffness."
+    ...     )
+    ...
+    ...     def law(self, mass):
+    ...         stiffness = self.si.stiffness / mass
+    ...         return ext.LinkNumbers(Spring(stiffness), stiffness)
+    >>> Bar(on=("0 m", "3 m"), to=("1 m", "3 m"), stiffness="2 MN/m").law(1000.0).stiffness
+    2000.0
     """
 
     @abstractmethod

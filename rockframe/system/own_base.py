@@ -39,6 +39,23 @@ class OwnBase(OwnAnswers, Component):
     A subclass declares its parameters as all components do, says in ``slot`` whose place it
     takes (``"pads"`` or ``"soil"``), and how it carries a body. :func:`rockframe.register`
     makes it known; from then on it stands in scenes wherever pads, or soil, do.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> from rockframe import extension as ext
+    >>> class Rubber(ext.OwnBase):
+    ...     slot = "pads"
+    ...     damping = ext.DampingRatio(doc="Vertical damping ratio.")
+    ...
+    ...     def simpler(self):
+    ...         return (rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=self.si.damping),)
+    ...
+    ...     def support(self, load):
+    ...         return ext.pads_under(*self.simpler(), load)
+    >>> rubber = Rubber(damping=0.1)
+    >>> rubber.misfits({"pads": rubber}), rubber.answers({}, {}, {})
+    ([], {})
     """
 
     noun: ClassVar[str] = "base"

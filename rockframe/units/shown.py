@@ -1,5 +1,6 @@
 """Units in which people read numbers, in the place of SI units."""
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -20,7 +21,23 @@ _WRITTEN: Final = {"g_0": "g", "deg": "°", "degree": "°", "degrees": "°"}
 _READ: Final = {("g", kinds.ACCELERATION): "g_0"}
 """What is meant by a letter that is a unit of something else too."""
 _BELOW: Final = re.compile(r"\s*/\s*([^\W\d_]+)(?:\^(\d+))?")
-_NUMBER: Final = r"-?\d[\d.]*(?:e[+-]?\d+)?"
+_NUMBER: Final = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
+_SPELLED: Final = {
+    "m/s^2": "m s^-2", "m/s": "m s^-1", "rad/s": "rad s^-1", "N/m": "N m^-1",
+    "N s/m": "N s m^-1",
+}  # fmt: skip
+"""Units as descriptions of models spell them."""
+_UNITS: Final = "|".join(
+    sorted(map(re.escape, [*_SPELLED, *map(str, list(kinds.Unit)[1:])]), key=len, reverse=True)
+)
+_QUANTITY: Final = re.compile(
+    rf"(?<![\w.])(?:\((?P<across>{_NUMBER}), (?P<up>{_NUMBER})\)|"
+    rf"(?:(?P<first>{_NUMBER}) (?P<word>to|and) )?(?P<last>{_NUMBER})) (?P<unit>{_UNITS})"
+    # behind it the same in another unit
+    rf"(?![\w^/])(?: \({_NUMBER} ?(?:g|deg|°)\))?"
+)
+_DIGITS: Final = 4
+"""Of most numbers in sentences."""
 _SENTENCES: Final = ("verdict",)
 """Attributes of datasets that tell numbers with their units."""
 UnitsLike: TypeAlias = Mapping[str, str] | None
@@ -102,17 +119,34 @@ class ReaderUnits:
         )
 
     def of_sentence(self, text: str) -> str:
-        """Write the numbers of a sentence that are in SI units in these units."""
-        for si, unit in self.chosen.items():
-            numbers = rf"(?:({_NUMBER}) (to|and) )?({_NUMBER}) {re.escape(si)}(?!\w|\^| s\^)"
+        """Write the numbers of a text that are in SI units in these units."""
+        return _QUANTITY.sub(self._written, text) if self.chosen else text
 
-            def written(found: "re.Match[str]", unit: Shown = unit) -> str:
-                first, word, last = found.groups()
-                shown_as = [f"{float(one) / unit.size:.4g}" for one in (first, last) if one]
-                return f"{f' {word} '.join(shown_as)} {unit.words}"
+    def _written(self, found: "re.Match[str]") -> str:
+        """Write one number with its unit, a range of two, or a place."""
+        unit = self.chosen.get(_SPELLED.get(found["unit"], found["unit"]))
+        if unit is None:
+            return found[0]
+        across, up, first, last = (
+            "" if found[name] is None else _with_digits(found[name], unit.size)
+            for name in ("across", "up", "first", "last")
+        )
+        numbers = f"({across}, {up})" if across else last
+        before = f"{first} {found['word']} " if first else ""
+        return f"{before}{numbers} {unit.words}"
 
-            text = re.sub(numbers, written, text)
-        return text
+
+def _with_digits(number: str, size: float) -> str:
+    """Write a number over the size of a unit, with the digits that it tells.
+
+    A rounded number is known to a digit less in another unit, but for one that is a power of ten
+    of its own; one of few digits may be whole.
+    """
+    told = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
+    moved = float(f"1e{round(math.log10(size))}") == size
+    digits = max(_DIGITS, told) if moved or told < _DIGITS - 1 else max(_DIGITS - 1, told - 1)
+    value = f"{float(number) / size:.{digits}g}"
+    return np.format_float_positional(float(value), trim="-") if "e+" in value else value
 
 
 def reader_units(given: object, *, owner: str) -> ReaderUnits:

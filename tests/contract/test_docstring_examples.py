@@ -1,13 +1,20 @@
-"""The examples in docstrings run as they stand, and show what they give."""
+"""The examples in docstrings run as they stand, and show what they give; none is missing."""
 
 import doctest
 import importlib
+import inspect
 import pkgutil
+import re
+from pathlib import Path
+from unittest import mock
 
+import matplotlib.pyplot as plt
 import pint
 import pytest
 
 import rockframe
+from rockframe.results.diagnostics import DIAGNOSTICS
+from rockframe.results.schema import SCHEMA
 
 pytestmark = [
     pytest.mark.contract,
@@ -18,6 +25,15 @@ MODULES = [
     for found in pkgutil.walk_packages(rockframe.__path__, "rockframe.")
     if not found.name.endswith("__main__")
 ]
+REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "index.md"
+LISTED = re.compile(r"^   ([A-Za-z][\w.]+)$", re.MULTILINE)
+LEFT_OUT = {
+    "errors": "exceptions are raised by rockframe, not called by users",
+    "extension.OwnScene": "its equations fill a page, docs/guide/own_scene.md, whose code runs",
+    "plot.Animation.play": "it needs a window",
+    "GroundMotion.from_trace": "its example, which is not run, needs ObsPy",
+}
+"""What has no example that is run, and why."""
 
 
 @pytest.fixture(autouse=True)
@@ -38,8 +54,70 @@ def examples_in(name):
 def test_examples_in_docstrings():
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
     told: list[str] = []
-    for name in MODULES:
-        for example in examples_in(name):
-            runner.run(example, out=told.append)
+    with mock.patch.dict(DIAGNOSTICS), mock.patch.dict(SCHEMA):
+        for name in MODULES:
+            for example in examples_in(name):
+                runner.run(example, out=told.append)
+                plt.close("all")
     assert runner.tries > 200
     assert not runner.failures, "".join(told)
+
+
+def found_by(name):
+    """Give what the reference lists by its name below `rockframe`."""
+    value = rockframe
+    for part in name.split("."):
+        try:
+            value = getattr(value, part)
+        except AttributeError:
+            value = importlib.import_module(f"{value.__name__}.{part}")
+    return value
+
+
+def run_in(value):
+    """Give the code of a docstring's examples that are run."""
+    examples = doctest.DocTestParser().get_examples(inspect.getdoc(value) or "")
+    return "".join(one.source for one in examples if not one.options.get(doctest.SKIP))
+
+
+def methods_of(kind):
+    """Give the methods of a class that this package defines, by their names."""
+    for name in dir(kind):
+        value = inspect.getattr_static(kind, name)
+        value = getattr(value, "__func__", value)
+        ours = (getattr(value, "__module__", None) or "").startswith("rockframe")
+        if not name.startswith("_") and inspect.isfunction(value) and ours:
+            yield name, value
+
+
+def is_shown(kind, method):
+    """Tell whether a method is in an example: its own, of what it overrides, or of the class.
+
+    Methods that users write are shown by a class that has them.
+    """
+    return any(
+        run_in(vars(one).get(method)) or re.search(rf"\b{method}\(", run_in(one))
+        for one in kind.__mro__
+        if one is not object
+    )
+
+
+def test_no_public_callable_lacks_an_example():
+    values = {
+        name: found_by(name) for name in LISTED.findall(REFERENCE.read_text(encoding="utf-8"))
+    }
+    lacking = [name for name, value in values.items() if not run_in(value)]
+    named, shown = {}, set()
+    for name, value in values.items():
+        for method, function in methods_of(value) if inspect.isclass(value) else ():
+            named.setdefault(function, f"{name}.{method}")
+            if is_shown(value, method):
+                shown.add(function)  # for all classes that inherit it
+    lacking += [name for function, name in named.items() if function not in shown]
+    assert len(values) + len(named) > 290
+    left_out = {
+        name: [left for left in LEFT_OUT if name == left or name.startswith(f"{left}.")]
+        for name in lacking
+    }
+    assert [name for name, reasons in left_out.items() if not reasons] == []
+    assert {left for reasons in left_out.values() for left in reasons} == set(LEFT_OUT)

@@ -19,6 +19,7 @@ from rockframe.reports.limits import LIMITS
 from rockframe.results.schema import SCHEMA
 from rockframe.simulation.certify import certificate
 from rockframe.simulation.run_arguments import FEWEST_RUNS
+from rockframe.units.shown import ReaderUnits
 
 pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
@@ -218,7 +219,9 @@ def test_what_overturned_after_it_slid_and_what_would_slide(tmp_path):
 def test_a_certificate_near_a_boundary_is_shown_as_such(response):
     told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
     told.attrs["certificate"] = certificate.NEAR_WORDS + ": the body stands, but ..."
-    (shown,) = [one for one in sections.verdict_section(told, "") if "Certificate" in one]
+    (shown,) = [
+        one for one in sections.verdict_section(told, "", ReaderUnits()) if "Certificate" in one
+    ]
     assert "the verdict holds, but near a boundary" in shown
     assert 'class="verdict doubt"' in shown
 
@@ -227,9 +230,9 @@ def test_a_certificate_near_a_boundary_is_shown_as_such(response):
 def test_a_certificate_holds_only_where_it_is_sure_in_every_way(response, doubted):
     told = response.assign(dict.fromkeys(("verdict_converged", "verdict_robust"), True))
     told.attrs["certificate"] = "The body stands."
-    assert "the verdict holds" in "".join(sections.verdict_section(told, ""))
+    assert "the verdict holds" in "".join(sections.verdict_section(told, "", ReaderUnits()))
     assert "the verdict is in doubt" in "".join(
-        sections.verdict_section(told.assign({doubted: False}), "")
+        sections.verdict_section(told.assign({doubted: False}), "", ReaderUnits())
     )
 
 

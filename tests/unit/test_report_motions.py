@@ -1,6 +1,7 @@
 """Reports: the spectra of the motions beside their target, their records, and checks by codes."""
 
 import re
+import warnings
 from html import unescape
 
 import numpy as np
@@ -8,9 +9,10 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, RecordWarning
 from rockframe.reports import motions as in_reports
 from rockframe.results.schema import SCHEMA
+from rockframe.units.shown import reader_units
 
 pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
@@ -68,7 +70,8 @@ def test_motions_that_fit_a_target_carry_it(suite):
 def test_records_stand_beside_their_target(runs, suite, tmp_path):
     path = rf.report(runs, tmp_path / "r.html", motions=suite, units={"acceleration": "g_0"})
     words = text_of(path)
-    assert f"Target: {TARGET.name.replace('^2', '²')}. Compared at 40 periods from 0.1 s" in words
+    assert TARGET.name.endswith("ground B, 1.961 m/s^2")
+    assert "ground B, 0.2 g. Compared at 40 periods from 0.1 s" in words
     assert "Response spectra of the motions at 5 % damping, their mean, and the target" in words
     head, *rows = rows_of(path, "Ground motions")
     assert head == ["motion", "event", "magnitude", "station", "component", "scale factor",
@@ -119,6 +122,7 @@ def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypat
     bare = text_of(rf.report(read, path))
     assert "Ground motions" not in bare
     assert "The worst case in full" not in bare
+    assert re.search("The worst case Not simulated again; .* must be given, as motions=", bare)
     whole = text_of(rf.report(read, path, motions=suite))
     assert "Compared at 40 periods" in whole
     assert "The worst case in full" in whole
@@ -128,6 +132,29 @@ def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypat
     kept = text_of(rf.report(rf.open_study(tmp_path / "kept"), path))  # with its records
     assert "Sturno 3" in kept
     assert "The worst case in full" in kept
+
+
+def test_records_of_unlike_time_steps_are_reported_with_their_forces(tmp_path):
+    steps = ("0.01 s", "0.02 s", "0.015 s")
+    motions = {f"R{k}": record(k).resampled(step) for k, step in enumerate(steps)}
+    said = "time steps from 0.01 s to 0.02 s; histories are kept every 0.01 s for all of them"
+    with pytest.warns(RecordWarning, match=said):
+        runs = rf.sweep(BLOCK, motions, scale=[3.0], outputs=["base_shear"])
+    assert np.diff(runs.time) == pytest.approx(0.01, rel=1e-9)
+    for name, motion in motions.items():
+        alone = BLOCK.simulate(motion.scaled(3.0), outputs=["base_shear"], output_step="0.01 s")
+        case = runs.sel(motion=name, scale=3.0)
+        shear = case.base_shear.to_numpy()
+        assert shear[: alone.time.size] == pytest.approx(alone.base_shear.to_numpy(), rel=1e-9)
+        assert float(case.peak_base_shear) == float(alone.peak_base_shear)
+    with pytest.warns(RecordWarning, match=r"3 of 3 records are sampled every 0\.01 s to 0\.02 s"):
+        path = rf.report(runs, tmp_path / "r.html", motions=motions, units={"force": "kN"})
+    html = text_of(path)
+    assert "peak base shear [kN]" in html
+    assert "The worst case in full Simulated again: scale 3, motion R" in html
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rf.sweep(BLOCK, motions, outputs=["base_shear"], output_step="0.02 s")
 
 
 def test_a_run_has_its_record_and_its_target(suite, tmp_path):
@@ -159,21 +186,22 @@ def test_what_a_code_says_stands_beside_the_motion(check, tmp_path):
     run = BLOCK.simulate(rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz"))
     cabinet = rf.codes.asce_7_22(rf.Block(width="0.6 m", height="1.8 m", mass="300 kg"),
                                  spectral_acceleration=1.0)  # fmt: skip
-    path = rf.report(run, tmp_path / "r.html", checks=[check, cabinet], certify=False,
-                     units={"force": "kN", "length": "mm"})  # fmt: skip
+    units = {"force": "kN", "length": "mm"}
+    path = rf.report(run, tmp_path / "r.html", checks=[check, cabinet], certify=False, units=units)
+    told = reader_units(units, owner="a test").of_sentence
     words = text_of(path)
     above = words.split("Response")[0]
     assert "Did not overturn" in above
     for one in (*check.verdicts, *cabinet.verdicts):
         said = "satisfied" if one.passed else "not satisfied"
-        assert f"{one.title}: {said} {one.words} [{one.source}]" in above
+        assert f"{one.title}: {said} {told(one.words)} [{one.source}]" in above
     rows = {row[0]: row for row in rows_of(path, "Check by Circolare C.S.LL.PP. 21 January 2019")
             if row}  # fmt: skip
     assert rows["alpha_0"][1:] == ["0.25", "activation multiplier, sum(P d_Py)/sum((P + Q) d_PQx)",
                                    "C8.7.1.1"]  # fmt: skip
     assert rows["d_SLV"][1] == f"{1e3 * check.value('d_SLV'):.6g} mm"
     assert rows["T_SLC"][3] == "C8.7.1.11"
-    assert "Checked: Block(width='0.6 m', height='2.4 m', mass='1000.0 kg')" in words
+    assert "Checked: Block(width='600 mm', height='2400 mm', mass='1000.0 kg')" in words
     force = {row[0]: row for row in rows_of(path, "Check by ASCE/SEI 7-22") if row}["F_p"]
     assert force[1] == f"{cabinet.value('F_p') / 1e3:.6g} kN"
     for wrong in ("circolare_2019", [3.5], 3.5):

@@ -624,7 +624,24 @@ def test_columns_of_floats_are_converted_as_each_of_them(unit):
     ]
 
 
+LONG = {"length": "mm", "stiffness": "kN/mm"}
+
+
 def test_sentences_are_told_in_the_units_of_the_reader():
     units = reader_units({"acceleration": "g", "length": "mm"}, owner="a figure")
     told = units.of_sentence("from 9.80665 to 19.6133 m s^-2, 0.02 m, -1e-3 m; 2 m s^-1, 3 m s^-2.")
     assert told == "from 1 to 2 g, 20 mm, -1 mm; 2 m s^-1, 0.3059 g."
+    chosen = {**LONG, "moment": "MN*m", "force": "kN", "angle": "deg", "mass": "t"}
+    units = reader_units(chosen, owner="a figure")
+    for text, wanted in (
+        ("M_OT 4707 N m, 1e+07 N", "M_OT 0.004707 MN m, 10000 kN"),
+        ("1.5e+07 N/m, 80 N s/m", "15 kN mm^-1, 80 N s/m"),
+        ("at (-0.5, 3) m, 4 kg m^2", "at (-500, 3000) mm, 4 kg m^2"),
+        ("0.0544 m at most, 3 mm, 2 months", "54.4 mm at most, 3 mm, 2 months"),
+        ("Block(width='0.6 m', mass='5000.0 kg')", "Block(width='600 mm', mass='5 t')"),
+        # the same behind it in degrees goes; and a rounded number has a digit less in them
+        ("0.244979 rad (14.04 deg), 0.01663 rad", "14.036 °, 0.953 °"),
+        ("0.5 rad/s", "0.5 rad/s"),
+    ):
+        assert units.of_sentence(text) == wanted
+    assert reader_units(None, owner="a figure").of_sentence("4 m") == "4 m"

@@ -11,11 +11,9 @@ from functools import partial, wraps
 from inspect import signature
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
-from rockframe.arguments import whole_number
-from rockframe.errors import ComponentError, shown
+from rockframe.motion.constructors.analytic_arguments import ArgumentReader
 from rockframe.motion.pulses import (
     QUARTER_TURN,
-    impulse_duration,
     mavroeidis_papageorgiou,
     opposite_impulses,
     ricker,
@@ -26,19 +24,10 @@ from rockframe.motion.value import Made
 from rockframe.proposals import hinted
 from rockframe.shared_arguments import with_raises
 from rockframe.units import (
-    ACCELERATION,
-    ANGLE,
-    FREQUENCY,
-    PERIOD,
     POSITIVE,
-    VELOCITY,
     Condition,
-    Measure,
     QuantityLike,
     RatioLike,
-    Unit,
-    to_ratio,
-    to_si,
 )  # fmt: skip
 
 if TYPE_CHECKING:
@@ -49,23 +38,7 @@ Constructor = TypeVar("Constructor", bound=Callable[..., Any])
 PULSES: Final[list[str]] = []
 """Names of the constructors, in the order in which they stand here."""
 
-_MEASURES: Final[dict[str, tuple[Measure, Condition | None, str]]] = {
-    # of each parameter that is a quantity; and the word before it, where its unit leaves a doubt
-    "amplitude": (ACCELERATION, None, ""),
-    "velocity": (VELOCITY, None, ""),
-    "frequency": (FREQUENCY, POSITIVE, ""),
-    "period": (PERIOD, POSITIVE, ""),
-    "duration": (PERIOD, POSITIVE, ""),
-    "interval": (PERIOD, POSITIVE, "interval "),
-    "pulse_duration": (PERIOD, POSITIVE, "impulses of "),
-    "phase": (ANGLE, None, "phase "),
-}
-_SPELLED: Final = {
-    Unit.METRE_PER_SECOND_SQUARED: "m/s^2",
-    Unit.METRE_PER_SECOND: "m/s",
-}
 _AT_LEAST_ONE: Final = Condition("at least 1", lambda value: value >= 1.0)
-_HIGHEST_ORDER: Final = 1000
 _RAISES: Final = """\
 UnitsError
     A wrong unit, or none.
@@ -88,7 +61,7 @@ def _pulse(
             checked(kind, *given, **named)  # says what is missing, or too much
             values = own.bind(kind, *given, **named)
             values.apply_defaults()
-            reader = _Reader(f"{kind.__name__}.{declared.__name__}", cycles)
+            reader = ArgumentReader(f"{kind.__name__}.{declared.__name__}", cycles)
             for name in list(own.parameters)[1:]:
                 reader.read(name, values.arguments[name])
             return kind(
@@ -102,55 +75,6 @@ def _pulse(
         return cast("Constructor", construct)
 
     return decorate
-
-
-class _Reader:
-    """Reads the arguments of one call, and remembers what it has read."""
-
-    def __init__(self, owner: str, cycles: Condition) -> None:
-        self.owner = owner
-        self.numbers: dict[str, Any] = {}  # in SI units, for the formula
-        self.recipe: dict[str, Any] = {}  # for the way back from plain values
-        self.short: list[str] = []
-        self.exact: list[str] = []
-        self._cycles = cycles
-
-    def read(self, name: str, value: Any) -> None:
-        """Read the argument of a name."""
-        owner = self.owner
-        if name in _MEASURES:
-            self._read_quantity(name, value, *_MEASURES[name])
-        elif name == "cycles":
-            number = to_ratio(value, owner=owner, name=name, condition=self._cycles, example="2")
-            self._keep(name, number, number, f"{name}: {number:.6g}", f"{name}: {number!r}")
-        elif name == "order":
-            order = whole_number(value, owner=owner, name=name, lowest=1, highest=_HIGHEST_ORDER)
-            self._keep(name, order, order, *[f"{name}: {order}"] * 2)
-        elif isinstance(value, bool):
-            self._keep(name, value, value, *[name if value else f"not {name}"] * 2)
-        else:
-            msg = f"{owner}: {name} must be True or False, got {shown(value)}"
-            raise ComponentError(msg)
-
-    def _read_quantity(
-        self, name: str, value: Any, measure: Measure, condition: Condition | None, words: str
-    ) -> None:
-        number = None
-        if value is not None or name not in ("phase", "pulse_duration"):
-            number = to_si(value, measure, owner=self.owner, name=name, condition=condition)
-        if name == "pulse_duration":
-            number = impulse_duration(self.owner, number, self.numbers["interval"])
-        if number is None:  # left to the formula, and not told
-            return
-        unit = _SPELLED.get(measure.unit, str(measure.unit))
-        kept = f"{number!r} {measure.unit}"
-        self._keep(name, number, kept, f"{words}{number:.6g} {unit}", f"{words}{number!r} {unit}")
-
-    def _keep(self, name: str, number: Any, kept: Any, short: str, exact: str) -> None:
-        self.numbers[name] = number
-        self.recipe[name] = kept
-        self.short.append(short)
-        self.exact.append(exact)
 
 
 @_pulse("sine pulse", sine)
@@ -175,6 +99,12 @@ def sine_pulse(
     -------
     GroundMotion
         With polynomial pieces between samples: exact to 3e-13 of the amplitude.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz", cycles=3).duration
+    <Quantity(1.5, 'second')>
     """
     ...
 
@@ -202,6 +132,12 @@ def cosine_pulse(
     See Also
     --------
     type_b_pulse : One cycle, given by its velocity.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.cosine_pulse("3 m/s^2", "2 Hz").acceleration[0]
+    <Quantity(3.0, 'meter / second ** 2')>
     """
     ...
 
@@ -225,6 +161,12 @@ def half_sine_pulse(kind: type[Made], amplitude: QuantityLike, duration: Quantit
     GroundMotion
         Its ground does not stop: the velocity at the end is
         ``2 amplitude duration/pi``.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").velocity[-1].round(4)
+    <Quantity(0.9549, 'meter / second')>
     """
     ...
 
@@ -259,6 +201,12 @@ def harmonic(
     -------
     GroundMotion
         With polynomial pieces between samples: exact to 3e-13 of the amplitude.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.harmonic("3 m/s^2", "2 Hz", "10 s", phase="90 deg").name
+    'harmonic motion, 3 m/s^2, 2 Hz, 10 s, phase 1.5708 rad'
     """
     ...
 
@@ -285,6 +233,12 @@ def type_a_pulse(kind: type[Made], velocity: QuantityLike, period: QuantityLike)
     Notes
     -----
     Type A of Makris and Chang (2000), :eq:`eq-type-a`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.type_a_pulse("0.5 m/s", "0.8 s").displacement[-1].round(4)
+    <Quantity(0.2, 'meter')>
     """
     ...
 
@@ -313,6 +267,12 @@ def type_b_pulse(kind: type[Made], velocity: QuantityLike, period: QuantityLike)
     Notes
     -----
     Type B of Makris and Chang (2000), :eq:`eq-type-b`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.type_b_pulse("0.5 m/s", "0.8 s").velocity.max().round(4)
+    <Quantity(0.5, 'meter / second')>
     """
     ...
 
@@ -350,6 +310,12 @@ def type_c_pulse(
     -----
     Type C_n of Makris and Chang (2000), :eq:`eq-type-c`, with the phase phi of
     :eq:`eq-type-c-phase`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.type_c_pulse("0.5 m/s", "0.8 s", order=2).duration.round(4)
+    <Quantity(1.9672, 'second')>
     """
     ...
 
@@ -388,6 +354,12 @@ def ricker_wavelet(
     Wavelets of Ricker (1943) with the parameters of Vassiliou and Makris (2011),
     :eq:`eq-ricker-symmetric` and :eq:`eq-ricker-antisymmetric`; its velocity and
     displacement are :eq:`eq-ricker-path`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.8 s").peak_acceleration
+    <Quantity(3.0, 'meter / second ** 2')>
     """
     ...
 
@@ -431,6 +403,13 @@ def mavroeidis_papageorgiou_pulse(
     -----
     Pulse of Mavroeidis and Papageorgiou (2003), :eq:`eq-mp-velocity` and
     :eq:`eq-mp-acceleration`. It leaves the ground at :eq:`eq-mp-offset`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.mavroeidis_papageorgiou_pulse("0.5 m/s", "1 Hz", 2)
+    >>> pulse.velocity.max().round(4)
+    <Quantity(0.5, 'meter / second')>
     """
     ...
 
@@ -475,5 +454,11 @@ def double_impulse(
     the shape :eq:`eq-impulse`, with a peak of 1.875 V over its length. An oscillator
     of the angular frequency omega takes the impulses for weaker by
     ``(omega pulse_duration)^2/56``, as long as that is small.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.double_impulse("0.5 m/s", "0.8 s").displacement[-1].round(3)
+    <Quantity(0.4, 'meter')>
     """
     ...

@@ -90,6 +90,15 @@ def read(
         The file contradicts itself or an argument a little (such as a stated peak
         and its samples), its peak, offset or time step is unusual, or its only
         component is vertical.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rockframe as rf
+    >>> path = f"{tempfile.mkdtemp()}/record.AT2"
+    >>> rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz").to_at2(path)
+    >>> rf.GroundMotion.read(path).peak_acceleration.to("m/s^2").round(3)
+    <Quantity(3.0, 'meter / second ** 2')>
     """
     requested = request_of(
         owner=f"{kind.__name__}.read",
@@ -145,6 +154,13 @@ def from_arrays(
     ComponentError
         Not finite, not one-dimensional, of different lengths, or with times of its own
         that are uneven or of another step.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> samples = ([0.0, 1.2, -2.5, 0.4], "m/s^2")
+    >>> rf.GroundMotion.from_arrays(samples, time_step="0.02 s", name="shaken").peak_acceleration
+    <Quantity(2.5, 'meter / second ** 2')>
     """
     owner = f"{kind.__name__}.from_arrays"
     if time_step is None:

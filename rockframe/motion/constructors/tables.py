@@ -350,6 +350,13 @@ def from_trace(
     -----
     ObsPy itself is not imported: whatever has ``id``, ``data`` and ``stats`` as its traces
     do is read.
+
+    Examples
+    --------
+    >>> from obspy import read  # doctest: +SKIP
+    >>> trace = read("record.mseed")[0]  # doctest: +SKIP
+    >>> GroundMotion.from_trace(trace, unit="m/s^2").name  # doctest: +SKIP
+    'XX.ABC.HNE'
     """
     owner = f"{kind.__name__}.from_trace"
     requested = request_of(owner=owner, unit=unit, component=component)

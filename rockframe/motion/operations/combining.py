@@ -52,6 +52,13 @@ def with_vertical(motion: Made, other: MotionValue) -> Made:
     -----
     RecordWarning
         The file of `other` does not say whether it is positive upwards or downwards.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> across, up = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "2 Hz") for a in (3, 1))
+    >>> across.with_vertical(up).vertical_acceleration.max().round(3)
+    <Quantity(1.0, 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.with_vertical", motion.si
     theirs = other_motion(other, si, owner).si
@@ -120,6 +127,13 @@ def rotated(
     Notes
     -----
     ``a cos(angle) + a_other sin(angle)``.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> north, east = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "2 Hz") for a in (3, 4))
+    >>> north.rotated(east, "53.1301 deg").peak_acceleration.round(3)
+    <Quantity(5.0, 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.rotated", motion.si
     theirs = other_motion(other, si, owner).si

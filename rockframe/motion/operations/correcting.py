@@ -80,6 +80,13 @@ def filtered(
 
     Integrated, a motion that was cut back drifts after ``low``: velocity and displacement of
     the tails are missing. With the padding both return to zero.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> record = rf.GroundMotion.example("loma-prieta")
+    >>> record.filtered(low="0.1 Hz", high="20 Hz").history[-1].split(",")[0]
+    'Butterworth filter of order 4'
     """
     owner, si = f"{type(motion).__name__}.filtered", motion.si
     corners = {
@@ -163,6 +170,13 @@ def baseline_corrected(
     ComponentError
         Not a whole number up to 20, or not below the number of samples; or
         another `fit`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> record = rf.GroundMotion.from_arrays(([0.1, 1.1, -0.9, 0.1], "m/s^2"), time_step="0.02 s")
+    >>> record.baseline_corrected().acceleration.round(6)
+    <Quantity([-0.3  0.9 -0.9  0.3], 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.baseline_corrected", motion.si
     fitted = one_of_words(Baseline, fit, owner=owner, name="fit")

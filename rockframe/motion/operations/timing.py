@@ -70,6 +70,12 @@ def window(
     ComponentError
         Outside the motion, fewer than two samples, or tapers that are not positive or
         longer than the part.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.example("loma-prieta").window("2 s", "12 s").duration
+    <Quantity(10.0, 'second')>
     """
     owner, si = f"{type(motion).__name__}.window", motion.si
     ends = {
@@ -151,6 +157,13 @@ def resampled(
     ComponentError
         Not positive, longer than the motion, too short to be meant, or another
         interpolation.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> record = rf.GroundMotion.from_arrays(([0.0, 1.0, -1.0], "m/s^2"), time_step="0.02 s")
+    >>> record.resampled("0.01 s").acceleration.round(2)
+    <Quantity([ 0.   0.7  1.   0.2 -1. ], 'meter / second ** 2')>
     """
     owner, si = f"{type(motion).__name__}.resampled", motion.si
     between = one_of_words(Interpolation, interpolation, owner=owner, name="interpolation")

@@ -63,6 +63,16 @@ def to_at2(
     of samples and time step. Then the samples in g, five in a line, with eight digits: read
     back they differ by 5e-8 of themselves at most. The time step is written with all its digits. Of
     an analytic motion the samples are written, not the function between them.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import rockframe as rf
+    >>> pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
+    >>> path = f"{tempfile.mkdtemp()}/pulse.AT2"
+    >>> pulse.to_at2(path)
+    >>> rf.GroundMotion.read(path).peak_acceleration.to("m/s^2").round(3)
+    <Quantity(3.0, 'meter / second ** 2')>
     """
     owner = f"{type(motion).__name__}.to_at2"
     which = one_of_words(WrittenComponent, component, owner=owner, name="component")

@@ -226,9 +226,11 @@ def say_coarse(
     if not coarse:
         return
     which = f"{len(coarse)} of {len(steps)} records are" if len(steps) > 1 else "the record is"
+    least, most = (f"{step:.4g} s" for step in (min(coarse), max(coarse)))
+    spaced = most if least == most else f"{least} to {most}"
     helps = remedy or f"resampled('{finer(max(coarse), shortest):.4g} s') refines a record"
     msg = (
-        f"{owner}: {which} sampled every {max(coarse):.4g} s, which is coarse for periods "
+        f"{owner}: {which} sampled every {spaced}, which is coarse for periods "
         f"from {shortest:.4g} s: straight lines between samples lower ordinates by 3 % at ten "
         f"samples per period and 13 % at five; {helps}"
     )

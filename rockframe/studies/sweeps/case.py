@@ -56,6 +56,15 @@ class SweepCase:
         Scaled as in the case; None where the ground stands still.
     options : dict
         Further arguments of :meth:`rockframe.System.simulate`.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    >>> alone = SweepCase(system, pulse, {"free_vibration": "1 s"})
+    >>> f"{float(alone.simulate().peak_relative_rotation):.2f}"
+    '0.28'
     """
 
     system: System

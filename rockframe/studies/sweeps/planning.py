@@ -7,13 +7,21 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import RockframeError, SolverWarning, StudyError, shown, warn
+from rockframe.errors import (
+    RecordWarning,
+    RockframeError,
+    SolverWarning,
+    StudyError,
+    shown,
+    warn,
+)
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import GROUPS, SCHEMA
@@ -153,19 +161,34 @@ def kept_histories(
         raise StudyError(msg)
     step = arguments.output_step
     if step is None:
-        steps = {
-            STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
-            for motion in motions.values()
-        }
+        steps = _time_steps(motions)
+        step = min(steps)
         if len(steps) > 1:
             msg = (
-                "the motions have different time steps, so that their histories have no common "
-                "times; give an output_step"
+                f"{OWNER}: the motions have time steps from {step:g} s to {max(steps):g} s; "
+                f"histories are kept every {step:g} s for all of them, unless output_step gives "
+                "another spacing"
             )
-            raise StudyError(msg)
-        (step,) = steps
+            warn(msg, RecordWarning)
     longest = max(run_length(arguments, motion) for motion in motions.values())
     return Histories(names or None, step, 1 + int(longest / step * (1.0 + 1e-12)))
+
+
+def _at_common_times(
+    arguments: RunRequest, histories: Histories | None, motions: Mapping[str, GroundMotion | None]
+) -> RunRequest:
+    """Have runs whose histories would be of other times give those that are kept."""
+    if histories is None or len(_time_steps(motions)) == 1:
+        return arguments
+    return replace(arguments, output_step=histories.step)
+
+
+def _time_steps(motions: Mapping[str, GroundMotion | None]) -> set[float]:
+    """Give the spacings that histories have where none is asked for."""
+    return {
+        STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
+        for motion in motions.values()
+    }
 
 
 Read = TypeVar("Read")
@@ -254,8 +277,9 @@ def plan_study(
         faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
     faults += _without_length(made, given, arguments)
     histories = tried(lambda: kept_histories(made, given, arguments, outputs), None)
-    numbers = numbers_of_case(arguments, histories, screened=screened)
-    way_out = _LAZILY if kept else _remedies(arguments, histories, may_be_kept=kept is False)
+    of_runs = _at_common_times(arguments, histories, given)
+    numbers = numbers_of_case(of_runs, histories, screened=screened)
+    way_out = _LAZILY if kept else _remedies(of_runs, histories, may_be_kept=kept is False)
     too_large = check_memory(numbers, grid.count, way_out, owner=OWNER)
     if kept and not faults:
         for told in too_large:
@@ -265,7 +289,7 @@ def plan_study(
     if faults:
         raise StudyError(*faults)
     return Study(
-        made, grid, given, arguments, seconds, histories, screened=screened,
+        made, grid, given, of_runs, seconds, histories, screened=screened,
         handed_over=handed_over, lazy=bool(too_large),
     )  # fmt: skip
 

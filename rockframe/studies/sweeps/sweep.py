@@ -72,7 +72,8 @@ def sweep(
     period : str or Quantity, optional
         Of the oscillator of ``pseudo_spectral_acceleration`` [s].
     output_step : str or Quantity, optional
-        Spacing of the histories; the time step of the motions unless given [s].
+        Spacing of the histories; the time step of the motions, of unlike ones the shortest,
+        unless given [s].
     outputs : sequence of str, optional
         Histories that are kept: names and groups, or, of an empty sequence, those that every
         run has, those of points among them. None keeps none.

@@ -52,6 +52,26 @@ def test_a_run_from_the_template_to_the_report(typed, folder):
     assert "A &lt;tower&gt;" in (folder / "out.html").read_text()
 
 
+@pytest.mark.usefixtures("no_pictures")
+def test_a_study_of_records_of_unlike_time_steps_down_to_its_report(typed, folder):
+    (folder / "records").mkdir()
+    for step in ("0.01 s", "0.02 s"):
+        motion = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz").resampled(step)
+        motion.to_at2(f"records/every {step}.AT2")
+    (folder / "study.toml").write_text(
+        'scene = "scene.toml"\nmotions = ["records"]\noutput = "runs.nc"\n'
+        '[axes]\nscale = [1.0]\n[sweep]\noutputs = ["base_shear"]\n'
+    )
+    code, _, said = typed("study", "study.toml")
+    assert code == 0
+    assert "time steps from 0.01 s to 0.02 s; histories are kept every 0.01 s" in said
+    code, told, _ = typed("report", "runs.nc", "--motions", "records", "--units", "force=kN")
+    assert (code, told) == (0, "Report: runs.html\n")
+    page = (folder / "runs.html").read_text()
+    assert "peak base shear [kN]" in page
+    assert "The worst case in full" in page
+
+
 def test_a_table_without_a_unit_is_asked_for_the_option(typed, folder):
     rows = "\n".join(f"{0.01 * k:.2f},{0.1 * (k % 3)}" for k in range(50))
     (folder / "x.csv").write_text(f"{rows}\n")

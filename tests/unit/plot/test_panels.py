@@ -266,6 +266,35 @@ def test_a_dynamic_analysis_has_the_measure_upwards_and_fractiles_of_the_motions
     assert named == ["0", "1", "2"]
 
 
+def test_one_panel_of_a_dynamic_analysis_fits_into_a_column():
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    motions = {f"{a}": rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (2.6, 3.0)}
+    found = rf.incremental_dynamic_analysis(
+        system, motions, scale=[0.5, 1.0, 3.0], intensity="PGA", progress=False
+    )
+    both = rf.plot.dynamic_analysis(found)
+    for name, whole in zip(("peaks", "shares"), both, strict=True):
+        figure, axes = plt.subplots(figsize=(8.5 / 2.54, 7.0 / 2.54), layout="constrained")
+        assert list(rf.plot.dynamic_analysis(found, panels=name, ax=axes)) == [axes]
+        assert axes.get_xlabel() == whole.get_xlabel()
+        assert axes.get_ylabel() == both[0].get_ylabel()
+        drawn = [line.get_xydata() for line in axes.get_lines()]
+        for one, other in zip(drawn, whole.get_lines(), strict=True):
+            np.testing.assert_array_equal(one, other.get_xydata())
+        figure.canvas.draw()
+        out = (axes.get_tightbbox().extents - figure.bbox.extents) * np.array([-1, -1, 1, 1])
+        assert (out <= 2.0).all()  # pixels
+        # the legend stands above what is seen, not above what is beyond the end of the axis
+        assert axes.get_ylim()[1] < 2.0 * both[0].get_ylim()[1]
+    swapped = rf.plot.dynamic_analysis(found, panels=("shares", "peaks"))
+    assert swapped[0].get_xlabel() == both[1].get_xlabel()
+    with pytest.raises(ComponentError, match=r"2 Axes.*got 1 Axes; panels='peaks' draws one"):
+        rf.plot.dynamic_analysis(found, ax=axes)
+    for wrong in ("peak", (), ("peaks", "peaks"), 3):
+        with pytest.raises(ComponentError, match="panels are one or more of 'peaks', 'shares'"):
+            rf.plot.dynamic_analysis(found, panels=wrong)
+
+
 def luminance(colour):
     """Lightness of the CIE, from 0 to 100."""
     rgb = np.array(to_rgb(colour))

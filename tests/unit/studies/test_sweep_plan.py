@@ -305,10 +305,6 @@ REFUSED = [
     (ON_PADS, PULSE, {"scale": [1.0], "outputs": ["colour"]}, ["outputs has no 'colour'"]),
     (ON_PADS, PULSE, {"scale": [1.0], "outputs": "impulse"}, ["are no histories"]),
     (
-        ON_PADS, [PULSE, RECORD], {"scale": [1.0], "outputs": ()},
-        ["different time steps", "give an output_step"],
-    ),
-    (
         ON_PADS, PULSE, {"scale": np.arange(1, 9999.0), "outputs": (), "output_step": "1 us"},
         ["histories of 1000001 times", "TB", "are available", "or keep none: outputs=None"],
     ),

@@ -1,0 +1,275 @@
+"""Dynamic analyses: the intensity over the response, and over the share of the motions."""
+
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+
+from rockframe.errors import SchemaError
+from rockframe.plot._axes import (
+    GREY,
+    VERMILLION,
+    colour_of,
+    grid,
+    label_of,
+    label_of_intensity,
+    style_of,
+    units_of,
+)
+from rockframe.plot._checks import drawable, draws
+from rockframe.plot._panels import Axes, AxesLike, Panels, chosen_panels, sheet, single
+from rockframe.studies.dynamic_analysis import verdict_of_analysis
+from rockframe.units.shown import UnitsLike
+
+_PANELS: Final = {"peaks": 1.4, "shares": 1.0}
+"""What is drawn side by side, and how wide."""
+_LEAST_FRACTILES: Final = 4
+_FRACTILES: Final = (0.16, 0.5, 0.84)
+_STYLED: Final = (1, 0, 2)
+"""Dashes of each."""
+_HEIGHTS: Final = 400
+_ROOM: Final = 1.15
+"""End of the axis over the highest intensity at which a verdict changes."""
+_CAPPED: Final = 1.0
+"""Peaks over the overturning angle that are drawn alike."""
+
+
+def of_one_structure(given: xr.Dataset) -> xr.Dataset:
+    """Give an analysis without the axes of which it has one value; refuse several structures."""
+    dims = given["capacity_scale"].dims
+    beside = [dim for dim in dims if dim not in ("limit_state", "motion")]
+    several = [f"{dim} ({given.sizes[dim]})" for dim in beside if given.sizes[dim] > 1]
+    if several:
+        msg = (
+            f"rf.plot.dynamic_analysis draws one structure, this analysis is of several, by "
+            f"{', '.join(several)}; choose one, for example with analysis.isel({beside[0]}=0)"
+        )
+        raise SchemaError(msg)
+    return given.squeeze(beside)
+
+
+@draws("dynamic_analysis", ax="Axes, one for each panel", title="the verdict")
+def dynamic_analysis(
+    dataset: xr.Dataset,
+    *,
+    panels: str | tuple[str, ...] | None = None,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
+    title: str | None = None,
+) -> Panels:
+    """Draw the intensity over the peak rotation that it brings, and the share that overturned.
+
+    Left, a line in grey for each motion, up to where it first overturns, with a mark there; hollow
+    marks where the verdict changes again. Of four motions or more, fractiles: the peaks below which
+    16, 50 and 84 % of the motions stay at an intensity; where one turns level, that share has
+    overturned. Fewer motions have a colour each. Right, the share of motions whose capacity is
+    below an intensity, for each limit state.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.incremental_dynamic_analysis`.
+    panels : str or tuple of str, optional
+        Which are drawn, of ``"peaks"``, left, and ``"shares"``, right; both unless given.
+
+    Returns
+    -------
+    Panels
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("2.2 m/s^2", f"{f} Hz") for f in (1, 2)}
+    >>> found = rf.incremental_dynamic_analysis(
+    ...     system, motions, scale=[0.5, 1.0, 2.0, 4.0], intensity="PGA"
+    ... )
+    >>> panels = rf.plot.dynamic_analysis(found, units={"acceleration": "g"})
+    >>> panels[0].get_ylabel()
+    'peak ground acceleration [g]'
+    """
+    given = of_one_structure(drawable(dataset, "dynamic_analysis", units))
+    names = chosen_panels(panels, _PANELS, "dynamic_analysis")
+    widths = [_PANELS[name] for name in names]
+    on = sheet(
+        ax, "dynamic_analysis", names, (0.8 + 2.83 * sum(widths), 4.4),
+        lambda figure: figure.subplots(1, len(names), width_ratios=widths, sharey=True),
+        choice=True,
+    )  # fmt: skip
+    drawn = dict(zip(names, on.panels, strict=True))
+    measure = given[str(given.attrs.get("intensity", "scale"))]
+    intensity = measure.broadcast_like(given["peak_relative_rotation"])
+    flips = _flips(given, intensity)
+    if "peaks" in drawn:
+        _peaks(drawn["peaks"], given, intensity, flips)
+    if "shares" in drawn:
+        _shares(drawn["shares"], given, intensity)
+    # nothing happens above where the last verdict changes, if all motions have overturned
+    highest = [float(places.max(initial=0.0)) for places in flips]
+    above = _ROOM * max(highest) if min(highest) > 0.0 else np.inf
+    top = min(max(axes.get_ylim()[1] for axes in on.panels), above)
+    for axes in on.panels:
+        axes.set_ylim(0.0, top)
+        grid(axes)
+    # the axes of given panels may stand anywhere
+    for axes in on.panels if on.own is None else on.panels[:1]:
+        axes.set_ylabel(label_of_intensity(measure, given))
+    on.name_lines()
+    verdict = verdict_of_analysis(of_one_structure(dataset))
+    on.entitle(units_of(units, "dynamic_analysis").reader.of_sentence(verdict), title)
+    return on.panels
+
+
+def _flips(given: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
+    """Give the intensities at which the verdict on each motion changes."""
+    scales = given["scale"].to_numpy()
+    above = given["scale_above"].isel(limit_state=-1)
+    found: list[np.ndarray] = []
+    for number in range(given.sizes["motion"]):
+        flips = above.isel(motion=number).to_numpy()
+        along = intensity.isel(motion=number).to_numpy()
+        found.append(_at(flips[~np.isnan(flips)], scales, along))
+    return found
+
+
+def _peaks(axes: Axes, given: xr.Dataset, intensity: xr.DataArray, flips: list[np.ndarray]) -> None:
+    """Draw the peaks of the motions, and fractiles of many."""
+    several, lines = given.sizes["motion"] >= _LEAST_FRACTILES, list[tuple[Any, Any]]()
+    for number, places in enumerate(flips):
+        one, along = given.isel(motion=number), intensity.isel(motion=number).to_numpy()
+        line = _until_flips(along, one["peak_relative_rotation"].to_numpy(), places)
+        colour = GREY if several else colour_of(number)
+        words = ("motions" if number == 0 else None) if several else str(one["motion"].item())
+        axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
+        for some, face in ((places[:1], colour), (places[1:], "none")):
+            axes.plot(np.full(len(some), _CAPPED), some, "o", mfc=face, color=colour, ms=3)
+        lines.append(line)
+    if several:
+        up = np.linspace(0.0, min(along[-1] for along, _ in lines), _HEIGHTS)
+        for number, (share, values) in enumerate(_fractiles(lines, up)):
+            words, style = f"{100.0 * share:.0f} %", style_of(_STYLED[number])
+            axes.plot(values, up, color=VERMILLION, ls=style, lw=1.6, label=words)
+    axes.set(xlabel=r"peak of $|\alpha|/\theta$ [-]", xlim=(0.0, 1.03))
+
+
+def _shares(axes: Axes, given: xr.Dataset, intensity: xr.DataArray) -> None:
+    """Draw the share of the motions whose capacity is below an intensity."""
+    scales = given["scale"].to_numpy()
+    each = intensity.transpose("motion", "scale").to_numpy()
+    for number, state in enumerate(given["limit_state"].to_numpy()):
+        capacity = given["capacity_scale"].isel(limit_state=number).to_numpy()
+        places = [
+            float(_at(np.array([scale]), scales, along)[0])
+            for scale, along in zip(capacity, each, strict=True)
+            if np.isfinite(scale)
+        ]
+        ordered = np.sort(np.array([0.0, *places]))
+        shares = np.arange(len(ordered)) / max(1, len(capacity))
+        axes.step(shares, ordered, where="pre", color=colour_of(number), label=str(state))
+    axes.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
+
+
+def _until_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
+    """Give intensities and peaks of a motion, with those at which the verdict changes."""
+    up = np.concatenate([along, flips])
+    order = np.argsort(up, kind="stable")
+    return up[order], np.concatenate([peaks.clip(max=_CAPPED), np.full(len(flips), _CAPPED)])[order]
+
+
+def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]:
+    """Give shares of the motions, and the peaks below which these stay at intensities."""
+    peaks = np.sort(
+        [np.interp(up, np.append(0.0, along), np.append(0.0, peak)) for along, peak in lines],
+        axis=0,
+    )
+    found: list[tuple[float, Any]] = []
+    for share in _FRACTILES:
+        place = share * (len(lines) - 1)
+        below, above = peaks[int(place)], peaks[int(np.ceil(place))]
+        # between a peak and a fall nothing lies
+        within = below + (place - int(place)) * (above - below)
+        found.append((share, np.where(above >= _CAPPED, _CAPPED, within)))
+    return found
+
+
+def _at(scales: np.ndarray, known: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Give intensities at scales, of which they are a power."""
+    power = np.log(along[-1] / along[0]) / np.log(known[-1] / known[0])
+    return along[0] * (scales / known[0]) ** power
+
+
+@draws("fractile_curves", title="the verdict")
+def fractile_curves(
+    dataset: xr.Dataset,
+    *,
+    units: UnitsLike = None,
+    ax: AxesLike = None,
+    title: str | None = None,
+) -> Axes:
+    """Draw the intensity over the response: runs in grey, and their fractiles.
+
+    Full lines are fractiles of the response at an intensity, broken ones those of the intensity by
+    which a level of the response is reached. Where a full line ends in a level one to the right,
+    that share of the motions has overturned.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Of :func:`rockframe.fractile_curves`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    >>> motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("2.2 m/s^2", f"{f} Hz") for f in (1, 2)}
+    >>> runs = rf.sweep(system, motions, scale=[0.5, 1.0, 2.0])
+    >>> rf.plot.fractile_curves(rf.fractile_curves(runs, "PGA")).get_xlabel()
+    'peak relative rotation [-]'
+    """
+    given = drawable(dataset, "fractile_curves", units)
+    on = single(ax, "fractile_curves", (6.0, 4.3))
+    axes = on.axes
+    name = str(given.attrs["intensity"])
+    up, levels = given[name].to_numpy(), given["response_level"].to_numpy()
+    runs = given["motion_response"].transpose("motion", name).to_numpy()
+    finite = runs[np.isfinite(runs)]
+    right = _ROOM * max(float(levels[-1]), float(finite.max(initial=0.0)))
+    for number, one in enumerate(runs):
+        words = "motions" if number == 0 else None
+        axes.plot(np.where(np.isfinite(one), one, np.nan), up, color=GREY, lw=0.7, label=words)
+        fallen = np.isinf(one)
+        starts = np.flatnonzero(fallen[1:] & ~fallen[:-1])
+        axes.plot(one[starts], up[starts + 1], "o", color=GREY, ms=3)
+    shares = given["quantile"].to_numpy().round(9).tolist()
+    for number, share in enumerate(shares):
+        colour, words = colour_of(number), f"{100.0 * share:.3g} %"
+        # what most responses stay below is what few intensities are below
+        rest = round(1.0 - share, 9)
+        paired = colour_of(shares.index(rest)) if rest in shares else colour
+        one = given.isel(quantile=number)
+        of_response = np.minimum(one["response_fractile"].to_numpy(), 2.0 * right)
+        axes.plot(of_response, up, color=colour, lw=1.6, label=f"{words} of responses")
+        axes.plot(
+            levels,
+            np.where(np.isfinite(one["intensity_fractile"]), one["intensity_fractile"], np.nan),
+            color=paired,
+            lw=1.4,
+            ls="--",
+            label=f"{words} of intensities",
+        )
+    words = str(given.attrs["response"])
+    axes.set(
+        xlabel=label_of(given["response_level"].rename(words)),
+        ylabel=label_of_intensity(given[name], given),
+        xlim=(0.0, right),
+        # above where the last motion stands nothing is left to see
+        ylim=(0.0, min(up[-1], _ROOM * up[np.isfinite(runs).any(axis=0)].max(initial=up[0]))),
+    )
+    grid(axes)
+    on.name_lines()
+    on.entitle(str(given.attrs["verdict"]), title)
+    return axes

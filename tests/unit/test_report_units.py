@@ -1,0 +1,110 @@
+"""Reports in units of the reader: no sentence of them is left in another one."""
+
+import re
+from html import unescape
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.errors import ComponentError
+from rockframe.units import Unit
+
+pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
+
+UNITS = {
+    "length": "mm", "mass": "t", "angle": "deg", "angular_velocity": "deg/s", "velocity": "cm/s",
+    "acceleration": "g", "force": "kN", "moment": "kN*m", "energy": "kJ", "stiffness": "kN/mm",
+}  # fmt: skip
+LEFT = ("s", "Hz", "N s m^-1", "kg m^2", "kg m^-3", "m^3")
+"""Units of which none is chosen, of those that begin with one of which one is."""
+SPELLED = [str(one) for one in Unit if one not in (*LEFT, "1")] + ["m/s^2", "m/s", "N/m", "rad/s"]
+RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+SI = re.compile(
+    rf"\d (?!(?:{'|'.join(map(re.escape, LEFT))}|N s/m)(?![\w^/]))"
+    rf"(?:{'|'.join(map(re.escape, sorted(SPELLED, key=len, reverse=True)))})(?![\w^/])"
+)
+BLOCK = rf.Block(width="0.6 m", height="2.4 m", mass="1 t")
+WALL = rf.System(rf.Block(width="0.6 m", height="6 m", mass="5 t"), rf.RearWall(side="left"))
+PULSE = rf.GroundMotion(rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz").si, name="pulse")
+
+
+def words_of(path):
+    """Give what a report says, but for what builds its scene again."""
+    html = path.read_text(encoding="utf-8").split("</style>", 1)[1].split("<h2>Provenance</h2>")[0]
+    return unescape(re.sub(r"<[^>]*>", " ", html))
+
+
+def left_in_si(words):
+    """Give numbers in SI units of which others were chosen, with what stands around them."""
+    words = re.sub(
+        r"(?<=[A-Za-z])[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda one: f"^{one[0].translate(RAISED)}", words
+    )
+    return [words[max(0, one.start() - 30) : one.end() + 20] for one in SI.finditer(words)]
+
+
+def test_what_is_left_is_found():
+    assert len(left_in_si("0.6 m wide, 3 m s⁻², 4 N m, 5 N/m; '2 kg'")) == 5
+    assert left_in_si("3 mm, 5 kN m, 2 s, 4 N s/m, 5 kg m², 3 months") == []
+
+
+def test_a_run_that_slides_is_told_in_units_of_the_reader(tmp_path):
+    pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.2)
+    tie = rf.Restrainer(on=("-0.3 m", "2 m"), to=("-1 m", "2 m"), stiffness="20 kN/m", slack="1 cm")
+    run = rf.System(BLOCK, pads, tie).simulate(PULSE, outputs=("base_shear", "energy"))
+    assert re.search(r"Slid [\d.]+ m to the \w+", run.attrs["verdict"])
+    words = words_of(rf.report(run, tmp_path / "r.html", units=UNITS, certify=False))
+    assert left_in_si(words) == []
+    slid = 1e3 * abs(float(run.residual_slip))
+    assert f"Slid {slid:.3g} mm to the" in words
+    turned = np.degrees(float(run.peak_rotation))
+    assert re.search(rf"peak rotation {turned:.3g}0* °", words)
+    assert "600 mm" in words  # the block
+    assert len(left_in_si(words_of(rf.report(run, tmp_path / "r.html", certify=False)))) > 20
+
+
+def test_checks_by_codes_are_told_in_units_of_the_reader(tmp_path):
+    demands = {"limit_state": "SLD", "elastic_period": "0.2 s"}
+    spectrum = rf.TargetSpectrum.eurocode_8("0.25 g_0", "B")
+    checks = [
+        rf.codes.circolare_2019(WALL, PULSE),
+        rf.codes.circolare_2019(WALL, spectrum, **demands),
+        rf.codes.asce_7_22(BLOCK, PULSE, spectral_acceleration=1.0, friction=0.3),
+    ]
+    run = WALL.simulate(PULSE)
+    path = rf.report(run, tmp_path / "r.html", units=UNITS, checks=checks, certify=False)
+    words = words_of(path)
+    assert left_in_si(words) == []
+    needed, there = (checks[0].value(name) for name in ("d_demand", "d_SLV"))
+    assert f"demand {1e3 * needed:.4g} mm, capacity {1e3 * there:.4g} mm" in words
+    tipping = 1e-3 * checks[2].value("M_OT")
+    assert f"M_OT {tipping:.4g} kN m" in words
+    for one in checks:
+        alone = words_of(one.report(tmp_path / "c.html", units=UNITS))
+        assert left_in_si(alone) == []
+        assert left_in_si(words_of(one.report(tmp_path / "c.html")))
+    assert checks[2].lines["Forces"][0].written() == "9.80665 kN"
+    with pytest.raises(ComponentError, match=r"CodeCheck\.report: units are of kinds"):
+        checks[0].report(tmp_path / "c.html", units={"weight": "kN"})
+
+
+def test_cases_are_told_in_units_of_the_reader(tmp_path):
+    system = rf.System(BLOCK, rf.RigidGround(friction=0.15))
+    runs = rf.sweep(system, PULSE, width=["0.6 m", "0.7 m"], progress=False)
+    target = rf.TargetSpectrum.eurocode_8("0.25 g_0", "B")
+    path = rf.report(runs, tmp_path / "r.html", units=UNITS, target=target)
+    words = words_of(path)
+    assert left_in_si(words) == []
+    most = 1e3 * float(runs.peak_slip.max())
+    assert f"slid, by {most:.3g} mm at most" in words
+    assert re.search(r"Simulated again: width [67]00 mm", words)
+
+
+def test_titles_of_figures_follow_the_units(tmp_path):
+    run = rf.System(BLOCK).simulate(PULSE, free_vibration="1 s", outputs=("energy",))
+    turned = f"{np.degrees(float(run.peak_rotation)):.3g}"
+    for draw in (rf.plot.response, rf.plot.phase, rf.plot.energies):
+        drawn = draw(run, units=UNITS)
+        figure = drawn.figure
+        assert f"peak rotation {turned} °" in " ".join(figure.get_suptitle().split())
+    assert f"peak rotation {turned} °" in rf.plot.player(run, units=UNITS).to_html()
