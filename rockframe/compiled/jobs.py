@@ -103,7 +103,7 @@ class Writer:
 _logger = logging.getLogger("rockframe")
 _said: Final[set[str]] = set()
 
-_SECONDS_OF_BYTE: Final = 2e-4
+_SECONDS_OF_BYTE: Final = 1.7e-4
 """Time to compile a byte of Python's own code, of all that a function calls [s].
 
 Measured with numba 0.68 for blocks on rigid ground, pads and soil, coupled, and in stacks: each

@@ -5,7 +5,7 @@ both meet: each finds in the store what the other one has made. Or another proce
 all, and this one goes on in plain Python: compiled or not, a function gives the same numbers to
 the last bit, and a long run comes back now and then (``rockframe.solve.integrate``). So nobody
 waits for a compiler longer than for the run itself, and the run goes on as machine code as soon as
-there is some.
+there is some. When it has taken as long as both processes need for the rest, it compiles, too.
 """
 
 import logging
@@ -42,9 +42,12 @@ def make_all(jobs: Sequence[Job]) -> list[Any]:
     """Compile jobs, or take what was kept of them; last those that other processes compile now."""
     _tell(jobs)
     made: dict[int, Any] = {}
+    ordered = [*enumerate(jobs)]
+    if _are_at_work():
+        ordered.reverse()  # they begin with the first
     with _helped(jobs) as waiting:
         for now in (True, False):
-            for place, job in enumerate(jobs):
+            for place, job in ordered:
                 if place not in made and not (now and _is_at_work_on(job)):
                     made[place] = _made(place, job, waiting)
     return [made[place] for place in range(len(jobs))]
@@ -116,6 +119,8 @@ def _helped(jobs: Sequence[Job]) -> Generator[Callable[[], bool]]:
 
 def _helper(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
     """Start a process that compiles what is missing from its end; None where there can be none."""
+    if _are_at_work():
+        return None
     try:
         missing = [job for job in jobs if not job.is_stored]
     except Exception:  # this process will do it all, and say what is wrong
@@ -198,6 +203,12 @@ _compilers: Final[list["subprocess.Popen[bytes]"]] = []
 """Processes that compile; they end what they have begun though this one has ended."""
 
 
+def _are_at_work() -> bool:
+    """Whether processes compile that this one has started while it goes on."""
+    _compilers[:] = [one for one in _compilers if one.poll() is None]
+    return bool(_compilers)
+
+
 class Meanwhile:
     """What goes on until there is machine code for a call.
 
@@ -220,11 +231,11 @@ class Meanwhile:
     def is_over(self, *, at_once: bool = False) -> bool:
         """Whether machine code is to be loaded, or compiled by this process, which then waits.
 
-        By this process where no other one can, or those that may are at work, as soon as plain
-        Python has taken as long as compiling will: that is never more than twice the shortest time.
+        By this process, too, as soon as plain Python has taken as long as compiling will: that is
+        never more than twice the shortest time.
         """
         if self._compiler is not None and self._compiler.poll() is None:
-            return False
+            return self._seconds >= time_for(self._jobs)
         try:
             if all(job.is_stored for job in self._jobs):
                 return True
@@ -240,8 +251,7 @@ class Meanwhile:
 
     def _has_started_compiler(self) -> bool:
         """Start one, unless others are at work; whether that has been done."""
-        _compilers[:] = [one for one in _compilers if one.poll() is None]
-        if self._alone or len(_compilers) >= max(1, processors() // 2):
+        if self._alone or (_are_at_work() and len(_compilers) >= processors() // 2):
             return False
         self._compiler = start_compiler(self._jobs)
         self._alone = self._compiler is None

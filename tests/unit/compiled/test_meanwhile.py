@@ -77,12 +77,38 @@ def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
     assert not one.is_over()
     assert not one.is_over()
     assert len(started) == 1
-    spend(one, 100.0)  # it is still compiling: longer, where the machine has other work
-    assert not one.is_over()
     for job in jobs:
         job.is_stored = True
     started[0].ended = 0
     assert one.is_over()
+
+
+def test_a_run_compiles_too_once_it_has_taken_as_long_as_both_need(jobs, started):
+    one = Meanwhile(jobs)
+    spend(one, 7.9)
+    assert not one.is_over()
+    assert not one.is_over()
+    spend(one, 0.2)
+    assert one.is_over()
+    assert len(started) == 1
+
+
+def test_two_processes_compile_from_both_ends(jobs, started, monkeypatch):
+    made = []
+
+    class Stored(Job):
+        file = None
+
+        def make(self, waiting):
+            made.append(self)
+            return self
+
+    monkeypatch.setattr(parallel, "_tell", lambda jobs: None)
+    monkeypatch.setattr(parallel, "_process", lambda *words: pytest.fail("a third one"))
+    parallel._compilers.append(Compiler())
+    some = [Stored(), Stored(), Stored()]
+    assert parallel.make_all(some) == some
+    assert made == some[::-1]
 
 
 def test_lanes_are_compiled_though_nothing_has_run(jobs, started):
