@@ -17,7 +17,7 @@ import numpy as np
 
 from rockframe.compiled.bound import Bound, Source
 from rockframe.compiled.called_back import raising
-from rockframe.compiled.language import NEEDED_BY, Vector, inlined
+from rockframe.compiled.language import NEEDED_BY, STILL_TAKES, Vector, inlined
 
 if TYPE_CHECKING:
     from rockframe.compiled.jobs import Job
@@ -276,6 +276,16 @@ def compiling_for(words: str) -> Generator[None]:
         yield
     finally:
         NEEDED_BY.reset(before)
+
+
+@contextmanager
+def still_taking(seconds: float) -> Generator[None]:
+    """Say how long what is called here will still take in plain Python, this time and later [s]."""
+    before = STILL_TAKES.set(seconds)
+    try:
+        yield
+    finally:
+        STILL_TAKES.reset(before)
 
 
 def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any:

@@ -31,6 +31,8 @@ KERNELS: Final[dict[Callable[..., Any], bool]] = {}
 
 NEEDED_BY: Final = ContextVar("needed_by", default="this")
 """What needs the machine code that is being compiled."""
+STILL_TAKES: Final = ContextVar("still_takes", default=0.0)
+"""Time that the caller will still take in plain Python, as far as it knows [s]."""
 
 
 def kernel(function: Function) -> Function:

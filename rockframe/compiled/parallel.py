@@ -5,7 +5,8 @@ both meet: each finds in the store what the other one has made. Or another proce
 all, and this one goes on in plain Python: compiled or not, a function gives the same numbers to
 the last bit, and a long run comes back now and then (``rockframe.solve.integrate``). So nobody
 waits for a compiler longer than for the run itself, and the run goes on as machine code as soon as
-there is some. When it has taken as long as both processes need for the rest, it compiles, too.
+there is some. When it has taken, or says that it will take, as long as both processes need for the
+rest, it compiles, too.
 """
 
 import logging
@@ -21,7 +22,7 @@ from typing import IO, Any, Final, cast
 
 from rockframe.compiled import store
 from rockframe.compiled.jobs import Job
-from rockframe.compiled.language import NEEDED_BY
+from rockframe.compiled.language import NEEDED_BY, STILL_TAKES
 
 _logger = logging.getLogger("rockframe")
 _announced: Final[set[str]] = set()
@@ -197,7 +198,10 @@ def processors() -> int:
 
 
 WORTHWHILE: Final = 0.25
-"""Time in plain Python from which on something is compiled: a few short runs need none [s]."""
+"""Time in plain Python from which on something is compiled: a few short runs need none [s].
+
+What takes less to compile is not run in plain Python.
+"""
 
 _compilers: Final[list["subprocess.Popen[bytes]"]] = []
 """Processes that compile; they end what they have begun though this one has ended."""
@@ -231,11 +235,11 @@ class Meanwhile:
     def is_over(self, *, at_once: bool = False) -> bool:
         """Whether machine code is to be loaded, or compiled by this process, which then waits.
 
-        By this process, too, as soon as plain Python has taken as long as compiling will: that is
-        never more than twice the shortest time.
+        By this process, too, as soon as plain Python has taken, or is known to take yet, as long
+        as compiling will: that is never more than twice the shortest time.
         """
         if self._compiler is not None and self._compiler.poll() is None:
-            return self._seconds >= time_for(self._jobs)
+            return self._is_worth_compiling()
         try:
             if all(job.is_stored for job in self._jobs):
                 return True
@@ -243,11 +247,16 @@ class Meanwhile:
             return True
         if self._compiler is not None:  # and it has failed
             self._compiler, self._alone = None, True
+        if time_for(self._jobs) < WORTHWHILE:
+            return True
         if self._seconds < WORTHWHILE and not at_once:
             return False
         if self._has_started_compiler():
             return False
-        return (at_once and self._alone) or self._seconds >= time_for(self._jobs)
+        return (at_once and self._alone) or self._is_worth_compiling()
+
+    def _is_worth_compiling(self) -> bool:
+        return max(self._seconds, STILL_TAKES.get()) >= time_for(self._jobs)
 
     def _has_started_compiler(self) -> bool:
         """Start one, unless others are at work; whether that has been done."""

@@ -82,14 +82,15 @@ def observed(
 class BoundEquations(NamedTuple):
     """A system, bound: its functions, its numbers, and how many there are of everything.
 
-    Two processes compile the functions from both ends, those that take longest first.
+    Two processes compile the functions from both ends. The march holds most of the others: whoever
+    compiles it has half of what these are made of.
     """
 
+    march: Bound
     switching: Bound
     slope: Bound
     guarding: Bound
     observing: Bound
-    march: Bound
     stored: Bound
     meaning: Bound
     numbers: Vector
@@ -109,7 +110,7 @@ def equations_of(system: Equations, *, fixed_steps: bool) -> BoundEquations:
     if fixed_steps:
         march = march_fixed_by_rates if gives_powers(system) else march_fixed
     functions = bound(
-        (switched, slope, guards_of_state, observed, march, energies, meaning), system
+        (march, switched, slope, guards_of_state, observed, energies, meaning), system
     )
     return BoundEquations(
         *functions,  # type: ignore[call-arg]

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from rockframe.compiled import COMPILED, Integers, Matrix, Vector, say_slow
+from rockframe.compiled import COMPILED, Integers, Matrix, Vector, say_slow, still_taking
 from rockframe.dynamics.events import FLIGHT, FULL
 from rockframe.dynamics.protocol import (
     IMPACT_LOSS,
@@ -291,24 +291,21 @@ def integrate(
     )
     equations = equations_of(model.system, fixed_steps=accuracy.rtol is None)
     workspace = make_workspace(equations, state, run.reference, run.limits)
-    as_python = 0.0  # time that it took in plain Python
+    as_python, rest = 0.0, 0.0  # time that it took in plain Python, and may still take
     while True:
         began = perf_counter()
         at_once = STEPS_UNHEARD if has_machine_code(equations) else STEPS_AT_ONCE
         tried = counters[at.STEPS] + counters[at.REJECTED]
         counters[at.PAUSE_AT] = min(tried + at_once, counters[at.MAX_STEPS])
-        result = advance(
-            equations,
-            run.tolerance,
-            memory,
-            pieces,
-            progress,
-            Output(out_state, out_mode, out_work, steps),
-            events,
-            workspace,
-        )
+        output = Output(out_state, out_mode, out_work, steps)
+        with still_taking(rest):
+            result = advance(
+                equations, run.tolerance, memory, pieces, progress, output, events, workspace
+            )
         if not steps_as_machine_code(equations):
             as_python += perf_counter() - began
+            done = max(clock[at.TIME], run.controls[at.TIME_STEP])
+            rest = as_python * (duration - done) / done
         if result not in (at.MORE_ROOM, at.PAUSED):
             break
         if counters[at.EVENTS] >= len(events.codes):

@@ -83,7 +83,7 @@ def equations_in(batch: Batch, row: Vector) -> BoundEquations:
     """Give the equations of a row's system."""
     one, shape = batch.equations, batch.shape
     return BoundEquations(
-        one.switching, one.slope, one.guarding, one.observing, one.march, one.stored, one.meaning,
+        one.march, one.switching, one.slope, one.guarding, one.observing, one.stored, one.meaning,
         stretch(row, shape.numbers, shape.number_count),
         one.coordinate_count, one.variable_count, one.guard_count,
     )  # fmt: skip

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.compiled import COMPILED, parallel
+from rockframe.compiled import COMPILED, parallel, still_taking
 from rockframe.compiled.parallel import WORTHWHILE, Meanwhile
 from rockframe.errors import SolverWarning
 from rockframe.solve import integrate
@@ -81,6 +81,23 @@ def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
         job.is_stored = True
     started[0].ended = 0
     assert one.is_over()
+
+
+def test_what_takes_a_moment_is_compiled_at_once(jobs, started, monkeypatch):
+    monkeypatch.setattr(parallel, "time_for", lambda jobs: 0.9 * WORTHWHILE)
+    assert Meanwhile(jobs).is_over()
+    assert not started
+
+
+def test_a_run_that_will_take_longer_than_both_need_compiles_too(jobs, started):
+    one = Meanwhile(jobs)
+    spend(one, 1.0)
+    with still_taking(7.9):
+        assert not one.is_over()
+        assert not one.is_over()
+    with still_taking(8.1):
+        assert one.is_over()
+    assert len(started) == 1
 
 
 def test_a_run_compiles_too_once_it_has_taken_as_long_as_both_need(jobs, started):
@@ -162,7 +179,9 @@ BLOCK = rf.Block(width="0.5 m", height="2 m", mass="1 t")
 RUN = """
 import sys, time
 import numpy as np
-from rockframe.compiled import Vector, entry_at_once
+from rockframe.compiled import Vector, entry_at_once, parallel
+
+parallel.WORTHWHILE = 0.0  # it would be compiled within that
 
 @entry_at_once
 def add_up(values: Vector) -> None:
