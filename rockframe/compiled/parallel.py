@@ -200,7 +200,7 @@ def processors() -> int:
 WORTHWHILE: Final = 0.25
 """Time in plain Python from which on something is compiled: a few short runs need none [s].
 
-What takes less to compile is not run in plain Python.
+An entry that takes less to compile, of whose functions all are compiled, waits for it.
 """
 
 _compilers: Final[list["subprocess.Popen[bytes]"]] = []
@@ -247,7 +247,7 @@ class Meanwhile:
             return True
         if self._compiler is not None:  # and it has failed
             self._compiler, self._alone = None, True
-        if time_for(self._jobs) < WORTHWHILE:
+        if len(self._jobs) == 1 and time_for(self._jobs) < WORTHWHILE:
             return True
         if self._seconds < WORTHWHILE and not at_once:
             return False

@@ -85,7 +85,8 @@ def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
 
 def test_what_takes_a_moment_is_compiled_at_once(jobs, started, monkeypatch):
     monkeypatch.setattr(parallel, "time_for", lambda jobs: 0.9 * WORTHWHILE)
-    assert Meanwhile(jobs).is_over()
+    assert Meanwhile(jobs[1:]).is_over()
+    assert not Meanwhile(jobs).is_over()  # a function that it calls is not compiled either
     assert not started
 
 
