@@ -206,15 +206,21 @@ class Entry:
             return self._compiled(structure, sources) is not None
 
     def _meanwhile(self, structure: tuple[Any, ...], sources: list[Source]) -> "Meanwhile | None":
-        """Give what goes on until there is machine code; None where there can be none, or is."""
-        if self._has_failed(structure, sources):
+        """Give what goes on until there is machine code; None where that is not worth it.
+
+        Where there can be none, there is some, or it is a matter of a moment, all functions being
+        compiled that the entry calls.
+        """
+        from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, time_for
+
+        jobs = self._jobs(structure, sources)
+        is_a_moment = sources and len(jobs) == 1 and time_for(jobs) < WORTHWHILE
+        if is_a_moment or self._has_failed(structure, sources):
             return None
         key = structure, *map(id, sources)
         found = self._awaited.get(key)
         if found is None:
-            from rockframe.compiled.parallel import Meanwhile
-
-            found = self._awaited[key] = Meanwhile(self._jobs(structure, sources))
+            found = self._awaited[key] = Meanwhile(jobs)
         return found
 
     def _has_failed(self, structure: tuple[Any, ...], sources: list[Source]) -> bool:

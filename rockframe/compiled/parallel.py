@@ -109,13 +109,14 @@ def _helped(jobs: Sequence[Job]) -> Generator[Callable[[], bool]]:
     if helper is None:
         yield lambda: True
         return
-    with helper:
-        try:
-            # one that has ended well has left nothing unfinished: what is, others compile
-            yield lambda: not helper.poll()
-        except BaseException:
-            helper.kill()
-            raise
+    try:
+        # one that has ended well has left nothing unfinished: what is, others compile
+        yield lambda: not helper.poll()
+    except BaseException:
+        helper.kill()
+        helper.wait()
+        raise
+    _compilers.append(helper)  # it ends by itself, half a second after its last function
 
 
 def _helper(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
@@ -198,10 +199,7 @@ def processors() -> int:
 
 
 WORTHWHILE: Final = 0.25
-"""Time in plain Python from which on something is compiled: a few short runs need none [s].
-
-An entry that takes less to compile, of whose functions all are compiled, waits for it.
-"""
+"""Time in plain Python from which on something is compiled: a few short runs need none [s]."""
 
 _compilers: Final[list["subprocess.Popen[bytes]"]] = []
 """Processes that compile; they end what they have begun though this one has ended."""
@@ -247,8 +245,6 @@ class Meanwhile:
             return True
         if self._compiler is not None:  # and it has failed
             self._compiler, self._alone = None, True
-        if len(self._jobs) == 1 and time_for(self._jobs) < WORTHWHILE:
-            return True
         if self._seconds < WORTHWHILE and not at_once:
             return False
         if self._has_started_compiler():

@@ -2,12 +2,23 @@
 
 import subprocess
 import sys
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.compiled import COMPILED, parallel, still_taking
+from rockframe.compiled import (
+    COMPILED,
+    Bound,
+    Vector,
+    bound,
+    kernel,
+    numbers_in,
+    parallel,
+    still_taking,
+)
+from rockframe.compiled.entries import Entry
 from rockframe.compiled.parallel import WORTHWHILE, Meanwhile
 from rockframe.errors import SolverWarning
 from rockframe.solve import integrate
@@ -81,13 +92,6 @@ def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
         job.is_stored = True
     started[0].ended = 0
     assert one.is_over()
-
-
-def test_what_takes_a_moment_is_compiled_at_once(jobs, started, monkeypatch):
-    monkeypatch.setattr(parallel, "time_for", lambda jobs: 0.9 * WORTHWHILE)
-    assert Meanwhile(jobs[1:]).is_over()
-    assert not Meanwhile(jobs).is_over()  # a function that it calls is not compiled either
-    assert not started
 
 
 def test_a_run_that_will_take_longer_than_both_need_compiles_too(jobs, started):
@@ -175,14 +179,43 @@ def test_what_cannot_be_described_is_compiled_at_once_so_that_it_is_said():
     assert Meanwhile([Broken()]).is_over()
 
 
+class Slope(NamedTuple):
+    slope: float
+
+
+@kernel
+def force_of(law: Slope, x: float) -> float:
+    return law.slope * x
+
+
+@kernel
+def stored_in(law: Slope, x: float) -> float:
+    return 0.5 * law.slope * x * x
+
+
+def call_on(function: Bound, values: Vector, numbers: Vector) -> int:
+    values[0] = function.call(values[0], numbers)
+    return 0
+
+
+def test_what_takes_a_moment_is_compiled_at_once(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
+    force, stored = bound((force_of, stored_in), Slope(2.0))
+    values, numbers = np.array([1.5]), numbers_in(Slope(2.0))
+    Entry(call_on)(force, values, numbers)
+    for function, code in ((force, True), (stored, False)):  # the one is compiled, the other not
+        later = Entry(call_on, waits=False)
+        assert later(function, values, numbers) == 0
+        assert any(later._routines.values()) is code
+    assert values.tolist() == [36.0]
+
+
 PADS = rf.TwoSpringSupport(stiffness="5 MN/m", damping_ratio=0.1)
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="1 t")
 RUN = """
 import sys, time
 import numpy as np
-from rockframe.compiled import Vector, entry_at_once, parallel
-
-parallel.WORTHWHILE = 0.0  # it would be compiled within that
+from rockframe.compiled import Vector, entry_at_once
 
 @entry_at_once
 def add_up(values: Vector) -> None:
