@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from rockframe.results.along_steps import AlongSteps, Values
-from rockframe.results.outcome import LEAST_SLIP, Generic
+from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 
@@ -123,26 +123,14 @@ def slips(found: Sequence[SlidingCheck]) -> Iterator[str]:
             yield f"{each.body} {each.words}; the model holds it"
 
 
-def count_words(would_slide: Generic) -> str:
-    """Say how many cases would slide and how many would not; nothing where none is known."""
-    slide, hold = _counts(would_slide)
-    return f"{slide} would slide and {hold} would not" if slide + hold else ""
-
-
-def slid_words(peaks: Generic) -> str:
-    """Say how many cases slid and how far; nothing where none did."""
-    slid = peaks > LEAST_SLIP
-    return f"{int(slid.sum())} slid, by {peaks[slid].max():.3g} m at most" if slid.any() else ""
-
-
 def share_words(would_slide: Generic, *, runs: str = "runs") -> str:
     """Say in how many of the runs that an analysis made its verdict supposes too much friction."""
-    slide, hold = _counts(would_slide)
+    slide, hold = counts_of_slides(would_slide)
     some = f"in {slide or 'none'} of {slide + hold} {runs}"
     return f"{some} the block would slide first" if slide + hold else ""
 
 
-def _counts(would_slide: Generic) -> tuple[int, int]:
+def counts_of_slides(would_slide: Generic) -> tuple[int, int]:
     """Give how many slide and how many do not; NaN is neither."""
     return int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
 

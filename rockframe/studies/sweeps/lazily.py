@@ -56,9 +56,11 @@ def lazy_dataset(kept: Store) -> xr.Dataset:
     dataset = dataset.assign({_STATUS: variable(_STATUS, "i1", ())})
     dataset = with_coordinates(dataset, labels, variable(MESSAGE, "O", ()))
     dataset.attrs |= kept.provenance()
-    if find_spec("dask") is None:
-        return dataset
-    return dataset.chunk(blocks(grid, max(_BLOCK, kept.chunk)), token=f"{kept.digest} {done}")
+    together = blocks(grid, max(_BLOCK, kept.chunk))
+    if find_spec("dask") is not None:
+        dataset = dataset.chunk(together, token=f"{kept.digest} {done}")
+    dataset[_STATUS].encoding["preferred_chunks"] = together
+    return dataset
 
 
 def blocks(grid: Grid, most: int) -> dict[str, int]:

@@ -63,11 +63,11 @@ def run_study(
         raise StudyError(msg)
     others = KnownCases(study, map(folder_of, known))
     if store is None:
-        dataset, whole = _in_memory(study, size, executor, bar)
+        dataset, unfinished = _in_memory(study, size, executor, bar)
     else:
-        dataset, whole = _kept(study, folder_of(store), size, executor, bar, others)
-    if not whole:
-        warn(f"{OWNER}: interrupted; {cases_verdict(dataset)}", SolverWarning)
+        dataset, unfinished = _kept(study, folder_of(store), size, executor, bar, others)
+    if unfinished:
+        warn(f"{OWNER}: interrupted; {unfinished}", SolverWarning)
     if not study.lazy:
         dataset = not_screened(dataset) if study.handed_over else dataset
         say_what_is_missing(dataset)
@@ -103,7 +103,8 @@ def _runs_as_python(study: Study) -> bool:
 
 def _in_memory(
     study: Study, size: int, executor: Executor | None, bar: ProgressBar
-) -> tuple[xr.Dataset, bool]:
+) -> tuple[xr.Dataset, str]:
+    """Give the results, and of an interrupted study how far it came."""
     chunks = [Chunk(k, cases) for k, cases in enumerate(chunks_of(study.grid.count, size))]
     found: list[tuple[range, CaseResults]] = []
     bar.expect(study.grid.count)
@@ -113,7 +114,8 @@ def _in_memory(
         bar.update(len(one.cases))
 
     whole = run_chunks(chunks, lambda one: study.job(one.cases), take, executor)
-    return sweep_dataset(sweep_labels(study), sorted(found, key=lambda one: one[0].start)), whole
+    dataset = sweep_dataset(sweep_labels(study), sorted(found, key=lambda one: one[0].start))
+    return dataset, "" if whole else cases_verdict(dataset)
 
 
 def _kept(
@@ -123,7 +125,8 @@ def _kept(
     executor: Executor | None,
     bar: ProgressBar,
     others: KnownCases,
-) -> tuple[xr.Dataset, bool]:
+) -> tuple[xr.Dataset, str]:
+    """Give the results, and of an interrupted study how far it came."""
     kept = Store.of_study(folder, study, size)
     every = kept.chunks()
     missing = [one for one in every if not kept.has(one)]
@@ -152,7 +155,12 @@ def _kept(
         claims.let_all_go()
     if whole:
         claims.clear()
-    return lazy_dataset(kept) if study.lazy else stored_dataset(kept), whole
+    if not study.lazy:
+        dataset = stored_dataset(kept)
+        return dataset, "" if whole else cases_verdict(dataset)
+    run = sum(len(one.cases) for one in every if kept.has(one))
+    some = "" if whole else f"{run} of {study.grid.count} cases have been run, and are kept"
+    return lazy_dataset(kept), some
 
 
 def _free(

@@ -1,8 +1,10 @@
 """What is said of a sweep in words: its verdict, its warnings, and texts that are alike."""
 
 import re
-from collections.abc import Iterable, Sequence
-from typing import Any, Final
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any, Final, Self
 
 import numpy as np
 import xarray as xr
@@ -10,10 +12,10 @@ import xarray as xr
 from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.outcome import Generic, overturned_by
+from rockframe.results.outcome import LEAST_SLIP, Generic, overturned_by
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
-from rockframe.simulation.friction import count_words, slid_words
+from rockframe.simulation.friction import counts_of_slides
 from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import OWNER
 
@@ -44,25 +46,75 @@ def whole_verdict(dataset: xr.Dataset) -> str:
 
 
 def cases_sentence(runs: xr.Dataset, these: str) -> str:
-    """Say in one sentence what became of cases."""
-    status = runs["status"].to_numpy()
-    overturned = overturned_by(status)
-    falls, stands = int((overturned == 1.0).sum()), int((overturned == 0.0).sum())
-    not_run = int((status == RunStatus.NOT_RUN).sum())
-    text = f"{these} {falls} overturned and {stands} did not"
-    if "would_slide" in runs and (sliding := count_words(runs["would_slide"].to_numpy())):
-        text += f"; {sliding}"
-    if slid := slid_words(slips_of_cases(runs)):
-        text += f"; {slid}"
-    lacking = status.size - not_run - falls - stands
+    """Say in one sentence what became of cases, counted in parts that memory holds."""
+    found = sum((_Counts.of(part) for part in _parts_of(runs)), _Counts())
+    text = f"{these} {found.overturned} overturned and {found.stood} did not"
+    if found.would_slide + found.would_hold:
+        text += f"; {found.would_slide} would slide and {found.would_hold} would not"
+    if found.slid:
+        text += f"; {found.slid} slid, by {found.farthest:.3g} m at most"
+    lacking = found.cases - found.not_run - found.overturned - found.stood
     if lacking:
         text += f"; {lacking} have no result"
-    if not_run:
-        text += f"; {not_run} have not been run"
-    if REPEATED in runs and runs[REPEATED].notnull().any():
-        again, changed = (int((runs[name] == 1.0).sum()) for name in SCREENED)
-        text += f"; {again} near a flip were run again by tolerance, which changed {changed}"
+    if found.not_run:
+        text += f"; {found.not_run} have not been run"
+    if found.screened:
+        again = f"{found.repeated} near a flip were run again by tolerance"
+        text += f"; {again}, which changed {found.changed}"
     return f"{text}."
+
+
+@dataclass(frozen=True)
+class _Counts:
+    """Numbers of cases, and how far one of them slid at most [m]."""
+
+    cases: int = 0
+    overturned: int = 0
+    stood: int = 0
+    not_run: int = 0
+    would_slide: int = 0
+    would_hold: int = 0
+    slid: int = 0
+    screened: int = 0
+    repeated: int = 0
+    changed: int = 0
+    farthest: float = 0.0
+
+    @classmethod
+    def of(cls, runs: xr.Dataset) -> Self:
+        """Count cases."""
+        status, slips = runs["status"].to_numpy(), slips_of_cases(runs)
+        overturned, slid = overturned_by(status), slips > LEAST_SLIP
+        slide, hold = (0, 0)
+        if "would_slide" in runs:
+            slide, hold = counts_of_slides(runs["would_slide"].to_numpy())
+        screened, repeated, changed = 0, 0, 0
+        if REPEATED in runs:
+            screened = int(runs[REPEATED].notnull().sum())
+            repeated, changed = (int((runs[name] == 1.0).sum()) for name in SCREENED)
+        return cls(
+            status.size, int((overturned == 1.0).sum()), int((overturned == 0.0).sum()),
+            int((status == RunStatus.NOT_RUN).sum()), slide, hold, int(slid.sum()), screened,
+            repeated, changed, float(slips[slid].max(initial=0.0)),
+        )  # fmt: skip
+
+    def __add__(self, other: Self) -> Self:
+        numbers = {name: getattr(self, name) + value for name, value in vars(other).items()} | {
+            "farthest": max(self.farthest, other.farthest)
+        }
+        return replace(self, **numbers)
+
+
+def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:
+    """Cut a dataset into those parts that its store has together."""
+    status = runs["status"]
+    lengths = status.encoding.get("preferred_chunks", {})
+    cuts = [
+        [slice(k, k + step) for k in range(0, size, step)]
+        for size, step in ((n, lengths.get(dim) or max(n, 1)) for dim, n in status.sizes.items())
+    ]
+    for part in product(*cuts):
+        yield runs.isel(dict(zip(status.dims, part, strict=True)))
 
 
 def slips_of_cases(runs: xr.Dataset) -> Generic:

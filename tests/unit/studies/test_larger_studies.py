@@ -6,12 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from interrupting import Interrupting
 from kept_sweep import as_bytes
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.sweeps import lazily, planning, running
+from rockframe.studies.sweeps import lazily, planning, running, words
 from rockframe.studies.sweeps.store import Store, read_shapes
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
@@ -87,14 +88,19 @@ def agrees(lazy, whole):
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 @pytest.mark.parametrize("run", STUDIES)
-def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there):
+def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there, monkeypatch):
+    monkeypatch.setattr(lazily, "_BLOCK", 1)
+    counted, of = [], words._Counts.of
+    monkeypatch.setattr(words._Counts, "of", lambda runs: counted.append(runs.sizes) or of(runs))
     whole = run(accuracy="fast", store=tmp_path / "study")
     lazy = rf.open_study(tmp_path / "study", lazy=True)
     assert (lazy.chunks != {}) == dask_is_there
     agrees(lazy, whole)
     said = {name: one for name, one in whole.attrs.items() if name not in ("verdict", "driver")}
     assert lazy.attrs == said
+    counted.clear()
     assert lazy.rockframe.verdict == whole.rockframe.verdict == whole.verdict
+    assert len(counted) > 1 or run is screened  # in parts of chunks
     rng = np.random.default_rng(1)
     for _ in range(20):  # whatever is picked, along one dimension or along all
         key = {
@@ -223,9 +229,23 @@ def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
     assert as_bytes(again) == as_bytes(whole)  # the same study, whatever memory there is
 
 
+def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatch):
+    monkeypatch.setattr(planning, "available", lambda: 2e4)
+    monkeypatch.setattr(Store, "get", lambda *_: pytest.fail("it has been read"))
+    stopped = Interrupting(2)
+    with pytest.warns(SolverWarning) as said:
+        runs = rf.sweep(
+            SYSTEM, MOTIONS["weak"], scale=np.linspace(0.1, 1, 100), free_vibration="5 s",
+            store=tmp_path / "study", chunk=30, executor=stopped,
+        )  # fmt: skip
+    assert any("interrupted; 60 of 100 cases have been run, and are kept" in str(one.message)
+               for one in said)  # fmt: skip
+    assert runs.status.size == 100
+
+
 def test_what_takes_days_is_told_of_before_it_begins(monkeypatch, tmp_path):
     monkeypatch.setattr(running, "_DAY", 1e-5)
-    for store, words in ((None, "no store: with one"), (tmp_path / "study", "jobs on it share")):
-        with pytest.warns(SolverWarning, match=rf"8 cases take about .* days with .* {words}"):
+    for store, ways in ((None, "no store: with one"), (tmp_path / "study", "jobs on it share")):
+        with pytest.warns(SolverWarning, match=rf"8 cases take about .* days with .* {ways}"):
             on = rf.sweep(SYSTEM, MOTIONS, scale=[1.0, 0.5], accuracy="fast", store=store)
         assert on.status.size == 8

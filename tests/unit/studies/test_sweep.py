@@ -14,6 +14,7 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 import xarray as xr
+from interrupting import Interrupting
 from records import record_path
 
 import rockframe as rf
@@ -227,22 +228,6 @@ def test_machine_code_leaves_the_interpreter_to_other_threads():
     watcher.join()
     assert took > 0.5
     assert longest[0] < 0.5 * took
-
-
-class Interrupting(Executor):
-    """Runs at once, and is interrupted from the keyboard after some chunks."""
-
-    def __init__(self, after):
-        self.left = after
-
-    def submit(self, function, /, *arguments, **options):
-        found = Future()
-        if self.left:
-            self.left -= 1
-            found.set_result(function(*arguments, **options))
-        else:
-            found.set_exception(KeyboardInterrupt())
-        return found
 
 
 def test_an_interrupt_gives_back_what_is_done():
