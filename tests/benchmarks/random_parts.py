@@ -1,4 +1,4 @@
-"""Random scenes of walls, frames, tendons and friction: none may end but by its verdict.
+"""Random scenes of walls, frames, tendons, friction and stacks: none may end but by its verdict.
 
 Run from the root, with ``PYTHONPATH=.``:
 ``python tests/benchmarks/random_parts.py --json docs/data/random_parts.json``; `--parts` for some.
@@ -20,9 +20,10 @@ GRAVITY = 9.80665
 COMPLETE = 2  # the last status of runs that come to their end: completed, overturned, toppled
 PARTS = (
     "stiff wall", "frame", "frame with tendons", "friction on pads", "friction on soil",
-    "elastic wall on rigid ground", "elastic wall on pads",
+    "elastic wall on rigid ground", "elastic wall on pads", "stack of mixed bases",
 )  # fmt: skip
 RUNS = 10_000
+NOT_UNIQUE = ("impacts_of_several_modes", "impacts_of_no_mode", "corners_held_without_pressing")
 
 
 def drawn_base(on, friction, rng):
@@ -55,6 +56,22 @@ def drawn_wall(width, height, rng):
     )  # fmt: skip
 
 
+def drawn_stack(width, height, rng):
+    """Give two or three blocks upon one another, each on a base of its own."""
+    shares = rng.dirichlet(np.full(int(rng.choice([2, 2, 3])), 4.0))
+    blocks, bases = [], []
+    for share in shares:  # from the ground up
+        blocks.insert(0, rf.Block(
+            width=f"{width} m", height=f"{max(share * height, 0.75 * width)} m",
+            mass=f"{2e3 * share} kg",
+        ))  # fmt: skip
+        kinds = ["rigid ground", "pads"] if bases else ["rigid ground", "pads", "soil"]
+        friction = drawn_friction(width, height, rng) if rng.random() < 0.7 else {}
+        bases.insert(0, drawn_base(str(rng.choice(kinds)), friction, rng))
+        width *= rng.uniform(0.5, 1.0)
+    return rf.System(rf.Stack(*blocks, interfaces=bases[:-1]), bases[-1])
+
+
 def drawn(part, rng):
     """Give a random scene of a part, and a motion."""
     height = rng.uniform(1.0, 12.0)
@@ -63,6 +80,8 @@ def drawn(part, rng):
     if part == "stiff wall":
         side = str(rng.choice(["left", "right"]))
         system = rf.System(block, rf.RearWall(side=side, restitution=rng.uniform(-1.0, 0.0)))
+    elif part == "stack of mixed bases":
+        system = drawn_stack(width, height, rng)
     elif " on " in part:
         what, on = part.split(" on ")
         slides = what == "friction" or rng.random() < 0.5
@@ -83,7 +102,7 @@ def drawn(part, rng):
         system = rf.System(frame, *(tendons if part == "frame with tendons" else []))
     noise = np.convolve(rng.normal(size=80), np.hanning(rng.integers(5, 25)), "same")
     noise *= GRAVITY * width / height * rng.uniform(0.8, 5.0) / np.abs(noise).max()
-    if " on " not in part or rng.random() < 0.5:
+    if not (" on " in part or part.startswith("stack")) or rng.random() < 0.5:
         return system, rf.GroundMotion.from_arrays((noise, "m/s^2"), time_step="0.04 s")
     up = (rng.uniform(0.1, 1.5) * GRAVITY * rng.normal(size=80), "m/s^2")
     motion = rf.GroundMotion.from_arrays((noise, "m/s^2"), time_step="0.04 s", vertical=up)
@@ -104,6 +123,7 @@ def main():
     for part in given.parts:
         for accuracy in ("fast", "standard"):
             begun, ends, worst, count = time.monotonic(), Counter(), 0.0, 0
+            unsure = Counter()
             while count < given.runs and time.monotonic() < begun + given.seconds:
                 try:
                     system, motion = drawn(part, np.random.default_rng(count))
@@ -112,6 +132,7 @@ def main():
                     if int(run.status) > COMPLETE:
                         print(part, accuracy, count, run.attrs["verdict"], flush=True)
                     worst = max(worst, float(run.energy_residual))
+                    unsure += Counter({name: run.attrs.get(name, 0) > 0 for name in NOT_UNIQUE})
                 except AssemblyError:  # nothing stands so, on pads that are too soft for it
                     ends["refused"] += 1
                 except Exception as fault:
@@ -120,6 +141,7 @@ def main():
                 count += 1
             table[f"{part}, {accuracy}"] = {
                 "runs": count, "ends": dict(ends), "worst energy balance": float(f"{worst:.2g}"),
+                **({"runs that tell of": dict(unsure)} if unsure else {}),
             }  # fmt: skip
             if given.json:
                 given.json.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
