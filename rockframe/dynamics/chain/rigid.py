@@ -298,10 +298,10 @@ class RigidChain(RigidCorners):
         slope = self.accelerate(mode, state, ground)
         for k in range(self.body_count):
             first, bears = BEFORE_HORIZONTAL * k, corners >> 2 * k & BOTH
-            if bears in (LEFT_ONLY, RIGHT_ONLY) and state[first + ROTATION] == 0.0:
+            if bears in (LEFT_ONLY, RIGHT_ONLY):
                 side, rate = -1.0 if bears == LEFT_ONLY else 1.0, state[n + first + ROTATION]
                 restoring = -side * slope[first + ROTATION]
-                least = REST_AMPLITUDE * self.on_base(k).body.angle
+                least = REST_AMPLITUDE * self.on_base(k).body.angle - abs(state[first + ROTATION])
                 if restoring > 0.0 and rate * rate < 2.0 * restoring * least:
                     small |= BOTH << 2 * k
                     count += 1

@@ -42,7 +42,7 @@ from rockframe.dynamics.chain.slips import (
     STATIC,
     TRIES,
 )
-from rockframe.dynamics.events import IMPACT, SILENT
+from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
@@ -353,11 +353,14 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
             new = self.rearrange(mode, state, ground, memory)
             memory[LAST_EVENT] = self.kind_of(k, mode, new)
             memory[HELD_PLACE + self.body_count] = k + 1.0
+            if memory[LAST_EVENT] == STICK:  # bounces in which a body slips end as it is held
+                new = self.rest_where_small(new, state, ground, memory)
+                new = self.hold_as_far(new, state, ground, memory)
         elif self.is_slippery(k):
             new = self.switch_beside(mode, guard, state, ground, memory)
         elif self.is_rigid(k):
             new = self.switch_contacts(mode, guard, state, ground, memory)
-            if memory[LAST_EVENT] == IMPACT:
+            if memory[LAST_EVENT] in (IMPACT, REST):
                 new = self.stop_creep(mode, new, state, ground, memory)
             new = self.hold_as_far(new, state, ground, memory)
         else:  # a change of what is held may be a blow
