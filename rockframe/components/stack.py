@@ -37,9 +37,9 @@ class Stack(Component):
         From the top down, two at least: statue and plinth, drums of a column.
     interfaces : sequence of Component
         The bases between them, from the top down, one less than bodies: each a
-        :class:`TwoSpringSupport` or a :class:`WinklerSoil`. What the lowest body stands on is a
-        part of the system. Frequency and damping ratios of a base are those of all that it
-        carries, as one body.
+        :class:`TwoSpringSupport`, a :class:`WinklerSoil` or a :class:`RigidGround`. What the
+        lowest body stands on is a part of the system. Frequency and damping ratios of a base are
+        those of all that it carries, as one body.
     offsets : sequence of str or pint.Quantity, optional
         How far the middle of the base of each body but the lowest is to the right of that of the
         body below [m]; none unless given.

@@ -74,7 +74,10 @@ class SlideSwitches(SlideMotion):
         tips = FULL
         if bears == FULL:
             tips = ON_RIGHT if guard == PRESSING else ON_LEFT if guard == TIPS_LEFT else FULL
-        new = self.go_on(mode, state, ground, guard in (SLIPS_RIGHT, SLIPS_LEFT), tips)
+        if bears != FULL and guard == PRESSING:  # of its force there is but rounding left
+            new = self.with_contact(mode, SLIPS * (bears + FLIES_RIGHT - ON_RIGHT))
+        else:
+            new = self.go_on(mode, state, ground, guard in (SLIPS_RIGHT, SLIPS_LEFT), tips)
         memory[LAST_EVENT] = self.kind_of(mode, new)
         return new
 
@@ -131,7 +134,9 @@ class SlideSwitches(SlideMotion):
                 if abs(held.along) <= self.static * held.normal:
                     return SLIPS * over + HELD
         sense = math.copysign(1.0, slip if slip != 0.0 else -across)
-        over = self.tips_over(-sense * self.kinetic * weight, loads)
+        over = tips if slip != 0.0 else FULL
+        if over == FULL:
+            over = self.tips_over(-sense * self.kinetic * weight, loads)
         return SLIPS * over + (TO_RIGHT if sense > 0.0 else TO_LEFT)
 
     @inlined

@@ -8,8 +8,23 @@ from plainly import plainly
 
 import rockframe as rf
 from rockframe.dynamics.events import EventKind
-from rockframe.dynamics.protocol import IMPACT_LOSS, Ground
-from rockframe.dynamics.slide_motion import REMEMBERED, ROTATION, SIZE, SLIP, SLIPS
+from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
+from rockframe.dynamics.slide_motion import (
+    FLIES_RIGHT,
+    HELD,
+    ON_LEFT,
+    ON_RIGHT,
+    PRESSING,
+    REMEMBERED,
+    ROTATION,
+    SIZE,
+    SLIP,
+    SLIPS,
+    TIPS_LEFT,
+    TO_LEFT,
+    TO_RIGHT,
+    Loads,
+)
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 
 pytestmark = pytest.mark.analytical
@@ -197,6 +212,38 @@ def test_impacts_that_stick_are_housners_whatever_the_friction():
     state[SIZE + ROTATION] = -0.3
     system.roll_over(SLIPS, state, Ground(0.0, 0.0), memory)
     assert state[SIZE + ROTATION] == pytest.approx(-0.3 * SLENDER.maximum_restitution, rel=1e-12)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_slip_tips_where_its_guard_says_so_though_rounding_says_no(side):
+    """Of kinetic friction b/h the centre of pressure is on the corner, to rounding."""
+    system = standing(SLENDER, 0.9, 0.25).assembly.model.system
+    system = system._replace(kinetic=system.kinetic * (1.0 - 1e-15))
+    state, memory = np.zeros(2 * SIZE), np.zeros(len(REMEMBERED))
+    state[SIZE + SLIP] = 0.1 * side
+    slips = TO_RIGHT if side > 0.0 else TO_LEFT
+    guard, corner = (PRESSING, ON_RIGHT) if side > 0.0 else (TIPS_LEFT, ON_LEFT)
+    assert system.switch(slips, guard, state, Ground(0.0, 0.0), memory) == SLIPS * corner + slips
+
+
+@pytest.mark.parametrize("slips", [HELD, TO_RIGHT, TO_LEFT])
+def test_a_corner_parts_whatever_rounding_leaves_of_its_force(slips):
+    """Where its guard has found it, a force of the last bit neither holds it nor presses it."""
+    friction = math.inf if slips == HELD else 0.3
+    system = standing(SLENDER, 0.3).assembly.model.system
+    system = system._replace(static=friction)
+    state, memory = np.zeros(2 * SIZE), np.zeros(len(REMEMBERED))
+    state[ROTATION], state[SIZE + ROTATION] = 0.02, 0.5
+    state[SIZE + SLIP] = {HELD: 0.0, TO_RIGHT: 0.1, TO_LEFT: -0.1}[slips]
+    mode, across = SLIPS * ON_RIGHT + slips, 5.0
+    forces = [
+        system.contact(mode, state, Loads(across, weight, 0.0)).normal for weight in (0.0, 1.0)
+    ]
+    weight = -forces[0] / (forces[1] - forces[0]) + 1e-9
+    ground = Ground(across, weight - system.gravity)
+    assert 0.0 < system.contact(mode, state, system.loads(mode, state, ground)).normal < 1e-8
+    assert system.switch(mode, PRESSING, state, ground, memory) == SLIPS * FLIES_RIGHT
+    assert memory[LAST_EVENT] == EventKind.SEPARATION
 
 
 def kinds_under(acceleration, friction, kinetic=None):

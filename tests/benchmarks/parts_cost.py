@@ -94,8 +94,8 @@ def scenes():
         },
         **{
             f"stack of {count}, friction that {name}, rigid joints": (
-                rf.System(block(high(count))), rf.System(stack(count, joint), joint),
-                peak / high(count),
+                rf.System(stack(count, rf.RigidGround()), rf.RigidGround()),
+                rf.System(stack(count, joint), joint), peak / high(count),
             )
             for name, joint, peak in (
                 ("holds", rf.RigidGround(friction=5.0, kinetic_friction=0.5), 10.4),

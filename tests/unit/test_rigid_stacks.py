@@ -5,10 +5,13 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from benchmarks.random_parts import drawn
+from plainly import plainly
 
 import rockframe as rf
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.errors import AssemblyError, ModelWarning
+from rockframe.solve.layout import Status
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
 PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
@@ -196,3 +199,26 @@ def test_more_links_than_can_be_numbered_are_refused():
     tie = rf.Restrainer(on=("-0.5 m", "0 m"), to=("-2 m", "0 m"), stiffness="1 MN/m")
     with pytest.raises(AssemblyError, match="3 links are more than 8 bodies can have"):
         _ = rf.System(column, tie, tie, tie).simulate(duration="0.1 s")
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize(
+    ("number", "ends"),
+    [
+        (19, "0.43 s"),  # bounces that die while friction on soil lets go and holds in turn
+        (5998, "0.32 s"),  # a corner whose blows break the hold of friction on pads
+        (483, "0.32 s"),  # two corners that throw one another up
+        (1284, "0.02 s"),  # a base that holds, whatever that takes, under one that slips
+        (5678, "0.6 s"),  # two slips that start at once, one against the other
+        (5699, "1.1 s"),  # a corner that bears again as the one let go would not press
+        (6897, "0.89 s"),  # two corners of which either pulls, and comes back, without the other
+    ],
+)
+def test_changes_of_contact_come_to_an_end(number, ends):
+    """Each stopped before it, by changes of contact without end, or by a force that is none."""
+    system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
+    with plainly():
+        found = system.simulate(
+            motion, duration=ends, accuracy="fast", outputs=None, second_look=False
+        )
+    assert int(found.status) == Status.COMPLETED

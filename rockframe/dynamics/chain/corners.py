@@ -264,7 +264,9 @@ class RigidCorners(Chain):
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
                 values[i] = -values[i]
                 rises = self.free_rises(k, mode, state, ground)
-                values[i + OPENING] = -rises[0 if left else 1] / self.number(k, at.GRAVITY)
+                comes_back = -rises[0 if left else 1] / self.number(k, at.GRAVITY)
+                # one that leaves another to pull in its place stays held
+                values[i + OPENING] = max(comes_back, self.most_pull(mode))
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
             if not self.is_rigid(k):
@@ -272,6 +274,18 @@ class RigidCorners(Chain):
                 put(found.values, GUARDS * k, values)
                 put(found.changes, GUARDS * k, changes)
         return Guards(values, changes)
+
+    @kernel
+    def most_pull(self, mode: int) -> float:
+        """Give the most that a corner that bears would pull, as solved for last, over its size."""
+        most = -math.inf
+        for k in range(self.body_count):
+            if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED == 0:
+                for side in range(2):
+                    if self.places()[k * PLACES + at.LEFT_CORNER + side] != NONE:
+                        pull = -self.corner_force(k, side == 0) / self.number(k, at.FORCE_SIZE)
+                        most = max(most, pull)
+        return most
 
     @kernel
     def free_rises(self, k: int, mode: int, state: Vector, ground: Ground) -> tuple[float, float]:

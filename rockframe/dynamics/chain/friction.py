@@ -1,12 +1,15 @@
 """A chain of bodies that all slip on bases that give way, :eq:`eq-slip-on-base`."""
 
+import math
+
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.impact import NEARLY_ZERO
 from rockframe.dynamics.chain.rows import GUARDS, PLACES
 from rockframe.dynamics.chain.slippery import SlipperyBases
-from rockframe.dynamics.chain.slips import OFFSET, ROUNDING, STATIC
+from rockframe.dynamics.chain.slips import KINETIC, OFFSET, ROUNDING, STATIC, TRIES
 from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
@@ -72,20 +75,48 @@ class SlippingChain(SlipperyBases):
     def let_slip(
         self, lets_go: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Give the mode in which no body is held that friction cannot hold."""
-        for _ in range(self.body_count):
-            self.forces_from(mode, state, self.accelerate(mode, state, ground), ground)
-            room, found, push = self.places(), -1, 0.0
-            for j in range(self.body_count):
-                if not self.on_base(j).is_free(self.part_mode(mode, j)):
-                    i, static = j * PLACES, self.friction_of(j, STATIC)
-                    thrust, most = room[i + at.THRUST], static * max(room[i + at.PRESS], 0.0)
-                    if j == lets_go or abs(thrust) > most + ROUNDING * self.number(j, at.GRAVITY):
-                        found, push = j, thrust
-                        break
-            if found < 0:
-                break
+        """Give the mode in which no body is held that friction cannot hold, and none starts back.
+
+        Where static friction leaves no such mode, what kinetic friction holds is held.
+        """
+        most = TRIES * self.body_count
+        for tries in range(2 * most):
+            slope = self.accelerate(mode, state, ground)
+            self.forces_from(mode, state, slope, ground)
+            holding = STATIC if tries < most else KINETIC
+            found, push = self.held_in_vain(lets_go, holding, mode)
+            if found >= 0:
+                mode = self.let_go(found, mode, state, memory)
+                mode = self.slipping(mode, found, -push)
+            else:
+                found = self.starts_back(mode, state, slope)
+                if found < 0:
+                    break
+                mode = self.with_slip(found, 0.0, mode, state, memory)
             lets_go = -1
-            mode = self.let_go(found, mode, state, memory)
-            mode = self.slipping(mode, found, -push)
         return mode
+
+    @kernel
+    def held_in_vain(self, lets_go: int, holding: int, mode: int) -> tuple[int, float]:
+        """Give a body that friction of a coefficient cannot hold, or -1, and what it would take."""
+        room = self.places()
+        for j in range(self.body_count):
+            if not self.on_base(j).is_free(self.part_mode(mode, j)):
+                i, friction = j * PLACES, self.friction_of(j, holding)
+                thrust, most = room[i + at.THRUST], friction * max(room[i + at.PRESS], 0.0)
+                if j == lets_go or abs(thrust) > most + ROUNDING * self.number(j, at.GRAVITY):
+                    return j, float(thrust)
+        return -1, 0.0
+
+    @kernel
+    def starts_back(self, mode: int, state: Vector, slope: Slope) -> int:
+        """Give a body that would start to slip against the sense in which it slips, or -1."""
+        for j in range(self.body_count):
+            part, standing = self.on_base(j), self.part_mode(mode, j)
+            if standing.slides and not part.flies(standing.contact):
+                rate, noise = self.slip_rate(j, mode, state)
+                least = NEARLY_ZERO * math.sqrt(part.body.gravity / part.body.size())
+                found = self.guards_of_slip(j, mode, state, slope, 0.0, 1.0)
+                if abs(rate) <= noise and found.slip_rate < -least:
+                    return j
+        return -1

@@ -202,7 +202,7 @@ def bearing_corners(
         near, bears = not many or size_of(some ^ reference) <= NEIGHBOURS, some | pulled
         if near and (leaving <= 0 or bears != before):
             found = system.try_corners(mode, bears, closed, impulsive, noise, state)
-            if found.fault < 0:
+            if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
                 loss = found.loss if impulsive else float(size_of(bears ^ before))
                 admissible += 1
                 if loss < least:
@@ -217,6 +217,18 @@ def bearing_corners(
     else:
         taken = before if leaving < 0 else before & ~leaving
     return Found(taken, admissible, other)
+
+
+@kernel
+def all_press(system: Any, corners: int) -> bool:
+    """Whether corners that have not borne would press under new forces, beyond rounding."""
+    for corner in range(2 * system.body_count):
+        if corners >> corner & 1 != 0:
+            k = corner // 2
+            least = NEARLY_ZERO * system.number(k, at.FORCE_SIZE)
+            if system.corner_force(k, corner % 2 == 0) < least:
+                return False
+    return True
 
 
 @kernel

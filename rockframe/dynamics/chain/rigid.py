@@ -176,14 +176,17 @@ class RigidChain(RigidCorners):
         closed |= self.land(k, left, standing, state)
         memory[LAST_EVENT] = IMPACT
         new = self.let_bear(mode, closed, before, 0, state, ground, memory)
-        new = self.hold_if_small(k, left, new, state, ground, memory)
+        for corner in range(2 * self.body_count):
+            if closed >> corner & 1 != 0:
+                left = corner % 2 == 0
+                new = self.hold_if_small(corner // 2, left, new, state, ground, memory)
         return self.rest_where_small(new, state, ground, memory)
 
     @kernel
     def hold_if_small(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Hold a corner that has landed, and that leaves only to come back at once."""
+        """Hold a corner that was closed in an impact, and that leaves only to come back at once."""
         part, corner = self.on_base(k), (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
         if not part.flies(self.part_mode(mode, k).contact):
             return mode
@@ -295,10 +298,10 @@ class RigidChain(RigidCorners):
         slope = self.accelerate(mode, state, ground)
         for k in range(self.body_count):
             first, bears = BEFORE_HORIZONTAL * k, corners >> 2 * k & BOTH
-            if bears in (LEFT_ONLY, RIGHT_ONLY) and state[first + ROTATION] == 0.0:
+            if bears in (LEFT_ONLY, RIGHT_ONLY):
                 side, rate = -1.0 if bears == LEFT_ONLY else 1.0, state[n + first + ROTATION]
                 restoring = -side * slope[first + ROTATION]
-                least = REST_AMPLITUDE * self.on_base(k).body.angle
+                least = REST_AMPLITUDE * self.on_base(k).body.angle - abs(state[first + ROTATION])
                 if restoring > 0.0 and rate * rate < 2.0 * restoring * least:
                     small |= BOTH << 2 * k
                     count += 1

@@ -40,19 +40,19 @@ from rockframe.dynamics.chain.slips import (
     OFFSET,
     ROUNDING,
     STATIC,
+    TRIES,
 )
-from rockframe.dynamics.events import IMPACT, SILENT
+from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
-from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground
+from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
+from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 from rockframe.dynamics.sliding import NOISE as NOISE_OF_SLIP
 
 FRICTION_ALONE: Final = -1
 """In place of the corner that leaves: what friction does has changed."""
 NOWHERE: Final = -1
 """In place of a pivot, where a body neither slips nor is held by friction."""
-TRIES: Final = 6
-"""Changes of what slips, of each body, after which a set of corners is given up."""
 
 
 class SlippingRigidChain(SlipperyBases, RigidChain):
@@ -227,15 +227,19 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
         for k in range(self.body_count):
             i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
             room[i + at.SLIPS] = 0.0
-            if pivot != NOWHERE and not impulsive:
+            slips = pivot != NOWHERE and self.friction_of(k, STATIC) < math.inf
+            if slips and not impulsive:
                 room[i + at.SLIPS] = room[i + at.STARTS]
                 rate, least = self.slip_before(k, pivot, mode, state)
                 if abs(rate) > least:
                     room[i + at.SLIPS] = math.copysign(1.0, rate)
         found = Attempt(0, math.inf)
-        for _ in range(TRIES * self.body_count):
+        most = TRIES * self.body_count
+        # what kinetic friction holds is held, too, if static friction leaves no other set
+        for tries in range(2 * most):
+            holding = IMPULSIVE if impulsive else STATIC if tries < most else KINETIC
             found = attempt(self, mode, some, closed, False, impulsive, noise, state)
-            k = self.otherwise(mode, some, closed, impulsive, state)
+            k = self.otherwise(mode, some, closed, impulsive, holding, state)
             if k < 0:
                 return found
         return Attempt(max(found.fault, 0), math.inf)
@@ -260,12 +264,17 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
         return self.slip_on(k, pivot, state)
 
     @kernel
-    def otherwise(self, mode: int, some: int, closed: int, impulsive: bool, state: Vector) -> int:
-        """Change how a body is tried that friction cannot hold, or that does not slip; else -1."""
+    def otherwise(
+        self, mode: int, some: int, closed: int, impulsive: bool, holding: int, state: Vector
+    ) -> int:
+        """Change how a body is tried that friction cannot hold, or that does not slip; else -1.
+
+        With the coefficient `holding` friction holds.
+        """
         room, rows = self.places(), self.constraints()
         for k in range(self.body_count):
             i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
-            friction = self.friction_of(k, IMPULSIVE if impulsive else STATIC)
+            friction = self.friction_of(k, holding)
             pulled = self.is_rigid(k) and some & closed & BOTH << 2 * k == 0
             if pivot == NOWHERE or friction == math.inf or pulled:
                 continue
@@ -344,10 +353,15 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
             new = self.rearrange(mode, state, ground, memory)
             memory[LAST_EVENT] = self.kind_of(k, mode, new)
             memory[HELD_PLACE + self.body_count] = k + 1.0
+            if memory[LAST_EVENT] == STICK:  # bounces in which a body slips end as it is held
+                new = self.rest_where_small(new, state, ground, memory)
+                new = self.hold_as_far(new, state, ground, memory)
         elif self.is_slippery(k):
             new = self.switch_beside(mode, guard, state, ground, memory)
         elif self.is_rigid(k):
             new = self.switch_contacts(mode, guard, state, ground, memory)
+            if memory[LAST_EVENT] in (IMPACT, REST):
+                new = self.stop_creep(mode, new, state, ground, memory)
             new = self.hold_as_far(new, state, ground, memory)
         else:  # a change of what is held may be a blow
             new = self.let_all_go(mode, state, memory)
@@ -356,6 +370,31 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
             new = self.hold_as_far(new, state, ground, memory)
         self.end_slips(new, state, memory)
         return new
+
+    @kernel
+    def stop_creep(
+        self, before: int, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Hold bodies again that an impact moves but so far along bases that give way.
+
+        A slip below all that counts ends by an impulse of friction; bounces may end with it.
+        """
+        new = mode
+        for k in range(self.body_count):
+            was, now, body = self.part_mode(before, k), self.part_mode(new, k), self.on_base(k).body
+            if not self.is_slippery(k) or was.slides or not now.slides:
+                continue
+            self.accelerate(new, state, ground)
+            rate, _ = self.slip_rate(k, new, state)
+            slows = -self.sense(new, k) * self.slips_on(k, now.pivot, False, state)
+            if rate * rate < 2.0 * slows * REST_AMPLITUDE * body.size():
+                had = self.energies(new, state).kinetic
+                _, slides = self.answers(k, 0.0, 0.0, 1.0, new, state)
+                self.answers(k, 0.0, 0.0, -rate / slides, new, state)
+                self.take_answer(state)
+                new = self.with_slip(k, 0.0, new, state, memory)
+                memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
+        return new if new == mode else self.rest_where_small(new, state, ground, memory)
 
     @kernel
     def switch_beside(

@@ -37,6 +37,8 @@ KEPT: Final = 3
 
 ROUNDING: Final = 1e-12
 """Accelerations over gravity that are rounding."""
+TRIES: Final = 6
+"""Changes of what slips, of each body, after which it is tried otherwise, or given up."""
 
 
 class SlippingBodies(Chain):
