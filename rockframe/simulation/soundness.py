@@ -11,7 +11,16 @@ from typing import Final
 import numpy as np
 
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
-from rockframe.dynamics.events import OVERTURNING, SEPARATION, SILENT, TOPPLED, UPLIFT
+from rockframe.dynamics.events import (
+    OVERTURNING,
+    REVERSAL,
+    SEPARATION,
+    SILENT,
+    SLIP,
+    STICK,
+    TOPPLED,
+    UPLIFT,
+)
 from rockframe.dynamics.protocol import ContactModel, Ending, Ground
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import Plan
@@ -154,7 +163,8 @@ def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
     events = run.events
     sets, taken, other = (events.memory[:, model.memory.index(name)] for name in KEPT)
     by_force = np.isin(events.kind, (UPLIFT, SEPARATION, SILENT))
-    impacts = ~by_force & ~np.isin(events.kind, (OVERTURNING, TOPPLED))
+    slips = np.isin(events.kind, (SLIP, STICK, REVERSAL))
+    impacts = ~by_force & ~slips & ~np.isin(events.kind, (OVERTURNING, TOPPLED))
     several, none = impacts & (sets > 1.0), impacts & (sets == 0.0)
     held = events.kind == SILENT
     held &= sets == 0.0
@@ -173,6 +183,14 @@ def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
             f"at {events.time[i]:.6g} s an impact has no mode, and is computed with every closed "
             f"contact held along itself: {_named(int(taken[i]), rigid)}; of such impacts there are "
             f"{none.sum()}: {_ONE_OF}"
+        )
+    unsure = slips & (sets != 1.0)
+    if unsure.any():
+        i = int(np.argmax(unsure))
+        cautions.append(
+            f"at {events.time[i]:.6g} s a slip begins or ends, and {int(sets[i]) or 'no'} sets of "
+            f"corners may bear then: taken is {_named(int(taken[i]), rigid)}; of such changes "
+            f"there are {unsure.sum()}: {_ONE_OF}"
         )
     if held.any():
         i = int(np.argmax(held))
