@@ -290,7 +290,7 @@ class TestMechanics:
 
 
 @pytest.mark.skipif(not COMPILED, reason="this run does without compilation")
-@pytest.mark.parametrize("scene", ["alone", "coupled"])
+@pytest.mark.parametrize("scene", ["alone", pytest.param("coupled", marks=pytest.mark.long)])
 def test_compiled_and_plain_agree(pads, scene):
     """Alone whole runs do; coupled what is observed along a run, of all equations of motion."""
     system = in_scene(pads, scene)

@@ -200,6 +200,8 @@ CAPABILITIES = (
     sweep_and_fragility, files, report_and_table, links,
 )  # fmt: skip
 SLOWEST = (ladder_and_tradeoff, certificate)  # of many steps, or of many runs
+QUICK = ("stiff wall", "frame", "tendon")
+"""Scenes of which even these take little."""
 
 
 @pytest.mark.usefixtures("no_pictures")
@@ -208,7 +210,7 @@ SLOWEST = (ladder_and_tradeoff, certificate)  # of many steps, or of many runs
     [
         pytest.param(
             name, one, id=f"{name}-{one.__name__}",
-            marks=[pytest.mark.long] if name == MIXED and one in SLOWEST else [],
+            marks=[pytest.mark.long] if name not in QUICK and one in SLOWEST else [],
         )
         for name in SCENES for one in CAPABILITIES
     ],

@@ -81,7 +81,7 @@ def exact_peak(name):
     [
         ("re-engagement within a step", "standard"),
         ("re-engagement within a step", "reference"),
-        ("hand-over of a cascade, hard pads", "standard"),
+        pytest.param("hand-over of a cascade, hard pads", "standard", marks=pytest.mark.long),
         pytest.param("hand-over of a cascade, soft soil", "standard", marks=pytest.mark.long),
         pytest.param("hand-over of a cascade, soft soil", "reference", marks=pytest.mark.long),
     ],

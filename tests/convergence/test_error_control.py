@@ -121,6 +121,7 @@ def share(values):
     return np.mean(list(values))
 
 
+@pytest.mark.long
 def test_the_error_is_hardly_ever_more_than_ten_times_the_tolerance(measured):
     assert share(outcome.ratio <= 10.0 for outcome in measured) >= 0.95
 

@@ -110,7 +110,14 @@ def slope(error: np.ndarray) -> float:
     return -float(np.polyfit(np.arange(SETTLED), last, 1)[0])
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize(
+    "scene",
+    # equations that nothing else compiles for fixed steps
+    [
+        pytest.param(one, marks=[pytest.mark.long] * (one in ("stack", "coupled", "cascade")))
+        for one in SCENES
+    ],
+)
 def test_third_order_with_events(scene):
     system, fewest, wanted = SCENES[scene]
     error, happened = errors(system, fewest)

@@ -21,6 +21,7 @@ def test_the_extremes_of_a_subject_keep_to_the_bounds(subject, accuracy):
         assert not failures, f"scene {number}: {'; '.join(failures)}\n{scene}"
 
 
+@pytest.mark.long
 @given(st.integers(0, 2**32 - 1), st.sets(st.sampled_from(list(SUBJECTS)), min_size=2, max_size=3))
 @settings(max_examples=25 * MORE, deadline=None)
 def test_extremes_together_keep_to_the_bounds(seed, subjects):

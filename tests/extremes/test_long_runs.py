@@ -43,6 +43,7 @@ def test_without_losses_ten_thousand_cycles_keep_their_energy(name):
     assert float(run.peak_rotation) == pytest.approx(share * THETA, rel=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "parts",
     [

@@ -57,6 +57,7 @@ def widths(scenario):
 # energy ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 @given(soil_scenarios())
 @example(
     # a cap in long flights between touches of the soil, its dashpots relaxing
@@ -79,6 +80,7 @@ def test_energy_balances(scenario):
     assert reference.energy_residual.item() <= 1e-8
 
 
+@pytest.mark.long
 @every_kind
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("forced", [True, False])

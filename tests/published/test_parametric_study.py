@@ -54,6 +54,7 @@ def reference(restraint):
     return study(restraint=restraint, accuracy="reference")
 
 
+@pytest.mark.long
 def test_every_run_ends_as_it_should(standard, reference):
     for runs in (standard, reference):
         assert runs.peak_rotation.size == 108

@@ -91,6 +91,7 @@ def test_restitution_of_pads_is_found_with_their_other_parameters():
     np.testing.assert_allclose(found.fitted_value, [20.0, 0.1, BLOCK.maximum_restitution], 1e-6)
 
 
+@pytest.mark.long
 def test_intervals_hold_the_true_values_as_often_as_they_say():
     system, rotation = rf.System(BLOCK), on_rigid_ground()
     fits = [read_back(system, rotation, "restitution", 1e-3, seed) for seed in range(24)]
@@ -100,6 +101,7 @@ def test_intervals_hold_the_true_values_as_often_as_they_say():
     assert 0.90 <= inside.mean() <= 0.99
 
 
+@pytest.mark.long
 def test_intervals_of_pads():
     fits = [read_back(pads(), on_pads(), PADS, 5e-4, seed) for seed in range(6)]
     scores = [errors(found, [20.0, 0.1]) for found in fits]

@@ -105,7 +105,7 @@ def member(name, kind, by):
     return ExactRun(changed(block, by, kind), across, up)
 
 
-@pytest.mark.parametrize("tolerance", [1e-9, 1e-6])
+@pytest.mark.parametrize("tolerance", [1e-9, pytest.param(1e-6, marks=pytest.mark.long)])
 @pytest.mark.parametrize("kind", SETS)
 @pytest.mark.parametrize("name", ["symmetric", "skew, with vertical motion"])
 def test_a_run_with_another_number_is_inside_a_set_of_them(name, kind, tolerance):

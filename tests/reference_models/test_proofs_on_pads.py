@@ -307,6 +307,7 @@ def test_enclosures_hold_the_run_of_fifty_digits(case):
     assert max(float(one.rad()) for one in found.last) < 1e-15
 
 
+@pytest.mark.long
 def test_all_contacts_occur():
     kinds = {one for case in CASES for one in exact(case, NOWHERE).kinds}
     assert {(TOUCHES, "force"), (RELAXES, "level"), (CLEAR, "gap"), (LEAVES, "force")} <= kinds

@@ -154,6 +154,7 @@ def test_landings_of_two_equal_blocks_in_exact_numbers(before, after, rates, ene
     assert share == pytest.approx(energy, abs=1e-14)
 
 
+@pytest.mark.long
 def test_random_impacts_of_two_blocks():
     """As in the reference model, and as seldom without one admissible pattern."""
     rng, others = np.random.default_rng(5), dict.fromkeys(KINDS, 0)

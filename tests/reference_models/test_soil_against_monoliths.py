@@ -177,6 +177,7 @@ def compare_stacked(ours, theirs):
     assert float(ours.flight_time) == pytest.approx(theirs.block_flight_time, abs=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize(("seed", "smooth", "across"), [(0, 10, 8.0), (0, 20, 4.0)])
 def test_random_motion_coupled(rule, seed, smooth, across):

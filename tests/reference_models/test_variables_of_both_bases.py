@@ -120,6 +120,7 @@ def observed(model, run):
     return observe_states(model, run.mode, run.state, *memory_at_outputs(run), ground)
 
 
+@pytest.mark.long
 @pytest.mark.reference_models
 def test_each_base_has_its_own_variables_and_states():
     plain = stack(lambda pads: pads, lambda pads: pads)

@@ -210,6 +210,7 @@ def test_between_the_samples_of_a_pulse_lines_take_the_place_of_its_polynomials(
     assert "replaced by straight lines" in matched.history[-1]
 
 
+@pytest.mark.long
 def test_what_cannot_be_reached_is_told():
     """A spectrum with a jump: no oscillator of 5 % damping follows it."""
     jump = rf.TargetSpectrum.from_table(

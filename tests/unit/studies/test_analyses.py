@@ -103,6 +103,7 @@ def test_a_dynamic_analysis_agrees_with_the_critical_scale(analysis):
         assert looked.critical_scale.item() <= least * (1.0 + 1e-3)
 
 
+@pytest.mark.long
 def test_the_period_of_a_spectral_intensity_is_kept_and_told():
     from matplotlib import pyplot
 
@@ -240,6 +241,7 @@ def test_a_fragility_of_capacities(analysis):
         rf.fragility(analysis, limits=[0.7])
 
 
+@pytest.mark.long
 def test_capacities_hang_neither_on_the_first_row_nor_on_its_step():
     suite = motions()
     found = {
@@ -391,6 +393,7 @@ BODIES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", BODIES)
 def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(name):
     body = BODIES[name]
@@ -512,6 +515,7 @@ def test_the_ranking_is_that_of_sobol_indices():
 # ensembles -----------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_bands_of_ensembles_hold_as_often_as_they_say():
     rng = np.random.default_rng(4)
     held = {"pointwise": 0, "everywhere": 0, "quantile": 0}

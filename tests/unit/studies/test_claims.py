@@ -61,6 +61,7 @@ def is_whole(folder, whole, *, killed=False):
     assert left == {path.name for path in whole[0].iterdir()}
 
 
+@pytest.mark.long
 def test_two_jobs_run_each_case_once(whole, tmp_path, another, this):
     assert as_bytes(this()) == as_bytes(whole[1])  # each gives the whole
     out, err = another.communicate(timeout=300)

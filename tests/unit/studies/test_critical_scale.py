@@ -96,6 +96,7 @@ def test_every_run_is_told(found):
         assert np.count_nonzero(np.diff(told.outcome)) == told.flip.size
 
 
+@pytest.mark.long
 def test_a_mirrored_motion_gives_the_same_scales():
     for system in (RIGID, ON_PADS):
         one, other = (

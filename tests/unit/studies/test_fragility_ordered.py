@@ -58,6 +58,7 @@ def test_one_limit_state_is_the_usual_fit():
         np.testing.assert_allclose(one.covariance, usual.covariance, rtol=1e-6)
 
 
+@pytest.mark.long
 def test_bounds_hold_the_median_and_the_dispersion():
     """Of 60 samples of 40 runs, by the jackknife, on logarithms: nominal 95 %."""
     held = np.zeros(2)

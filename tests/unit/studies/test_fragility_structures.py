@@ -166,6 +166,7 @@ def test_runs_without_a_verdict_are_counted(runs):
     assert "left out" not in rf.fragility(runs).verdict
 
 
+@pytest.mark.long
 def test_capacities_that_nobody_knows_are_left_out():
     """A motion whose runs failed is none that the block withstood."""
     analysis = rf.incremental_dynamic_analysis(

@@ -36,6 +36,7 @@ def test_runs_exceed_where_the_variable_does(runs):
     assert rotation.median_intensity == found.median_intensity[0]
 
 
+@pytest.mark.long
 def test_a_dynamic_analysis_narrows_them_too():
     """A slip of so many metres is exceeded between two runs that tell it."""
     slides = rf.System(BLOCK, rf.RigidGround(friction=0.1))

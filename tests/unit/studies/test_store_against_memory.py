@@ -144,6 +144,7 @@ def test_an_opened_study_and_its_cases_are_those_of_memory(run, tmp_path, monkey
         assert again.peak_rotation.item() == one.peak_rotation.item()
 
 
+@pytest.mark.long
 def test_another_process_finds_motions_by_their_names(tmp_path):
     plain = swept(store=tmp_path / "study")
     told = subprocess.run(

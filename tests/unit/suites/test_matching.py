@@ -47,6 +47,7 @@ def test_all_motions_have_the_spectrum_of_the_target():
     assert "target" in axes.get_legend_handles_labels()[1]
 
 
+@pytest.mark.long
 def test_what_was_not_reached_is_told_once_for_all():
     jump = rf.TargetSpectrum.from_table(
         (["0.1 s", "0.4 s", "0.401 s", "1 s"]), ([9, 9, 1, 1], "m/s^2")

@@ -82,6 +82,7 @@ def test_bounds():
         FIRSTS.selection_for(TARGET, 12, periods=PERIODS, bounds=(low, high))
 
 
+@pytest.mark.long
 def test_both_components_have_one_factor():
     suite = rf.read_suite(packed(download(STATIONS[:4])))
     names = {
