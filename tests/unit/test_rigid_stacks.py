@@ -222,3 +222,15 @@ def test_changes_of_contact_come_to_an_end(number, ends):
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
     assert int(found.status) == Status.COMPLETED
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize(("number", "ends", "most"), [(684, "0.5 s", 1e-5), (434, "0.53 s", 1e-3)])
+def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
+    """A body that is held begins to slip as another one, on pads, changes its contact."""
+    system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
+    with plainly():
+        found = system.simulate(
+            motion, duration=ends, accuracy="fast", outputs=None, second_look=False
+        )
+    assert float(found.energy_residual) < most

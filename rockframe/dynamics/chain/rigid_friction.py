@@ -472,6 +472,7 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
     def rearrange(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Give the mode in which the forces have what bears and what slips as it is then."""
         kept, before = HELD_PLACE + self.body_count, self.bearing(mode)
+        self.write_contacts(mode, state, memory)  # of those that were held and may slip
         self.note_slips(mode)
         flying, pulled = self.with_bearing(mode, 0, 0), self.pulled(mode)
         closed = before | self.resting_corners(mode, state)
