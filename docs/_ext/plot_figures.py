@@ -21,7 +21,8 @@ def _run() -> xr.Dataset:
 
 def response_with_events() -> Panels:
     """Draw the response of a block on pads."""
-    return rf.plot.response(_run(), rotation="deg", vertical="mm", acceleration="g_0", events=True)
+    units = {"angle": "deg", "length": "mm", "acceleration": "g"}
+    return rf.plot.response(_run(), units=units, events=True)
 
 
 def compared_runs() -> Panels:
