@@ -109,14 +109,13 @@ def _helped(jobs: Sequence[Job]) -> Generator[Callable[[], bool]]:
     if helper is None:
         yield lambda: True
         return
-    try:
-        # one that has ended well has left nothing unfinished: what is, others compile
-        yield lambda: not helper.poll()
-    except BaseException:
-        helper.kill()
-        helper.wait()
-        raise
-    _compilers.append(helper)  # it ends by itself, half a second after its last function
+    with helper:
+        try:
+            # one that has ended well has left nothing unfinished: what is, others compile
+            yield lambda: not helper.poll()
+        except BaseException:
+            helper.kill()
+            raise
 
 
 def _helper(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
@@ -139,8 +138,8 @@ def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None"
     if processors() < 2 or getattr(sys, "frozen", False) or not sys.executable:
         return None
     program = (
-        f"import sys; sys.path[:] = sys.argv[1:]; from {__name__} import {task}; "
-        f"{task}(sys.stdin.buffer.read())"
+        f"import os, sys; sys.path[:] = sys.argv[1:]; from {__name__} import {task}; "
+        f"{task}(sys.stdin.buffer.read()); os._exit(0)"  # to tidy up takes half a second
     )
     try:
         if any(job.file is None for job in jobs):
