@@ -234,3 +234,13 @@ def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
     assert float(found.energy_residual) < most
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
+    system, motion = drawn("stack of mixed bases", np.random.default_rng(38))
+    with plainly():
+        found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
+    told = "a slip begins or ends, and 2 sets of corners may bear then: taken is body 1 in full"
+    assert told in found.attrs["cautions"]
+    assert found.attrs["impacts_of_several_modes"] == 0
