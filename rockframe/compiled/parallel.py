@@ -9,6 +9,7 @@ there is some. When it has taken, or says that it will take, as long as both pro
 rest, it compiles, too.
 """
 
+import gc
 import logging
 import os
 import pickle
@@ -21,7 +22,7 @@ from time import perf_counter
 from typing import IO, Any, Final, cast
 
 from rockframe.compiled import store
-from rockframe.compiled.jobs import Job
+from rockframe.compiled.jobs import Job, seconds_of
 from rockframe.compiled.language import NEEDED_BY, STILL_TAKES
 
 _logger = logging.getLogger("rockframe")
@@ -46,12 +47,31 @@ def make_all(jobs: Sequence[Job]) -> list[Any]:
     ordered = [*enumerate(jobs)]
     if _are_at_work():
         ordered.reverse()  # they begin with the first
-    with _helped(jobs) as waiting:
+    with _helped(jobs) as waiting, without_collection():
         for now in (True, False):
             for place, job in ordered:
                 if place not in made and not (now and _is_at_work_on(job)):
                     made[place] = _made(place, job, waiting)
     return [made[place] for place in range(len(jobs))]
+
+
+@contextmanager
+def without_collection() -> Generator[None]:
+    """Let no memory be collected in this block: of all that numba makes, little is let go.
+
+    To look for it takes a fifth of the time of a compilation. What was made counts as old
+    afterwards, so that it is not looked through at once.
+    """
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            if not gc.get_freeze_count():  # else others have set something aside
+                gc.freeze()
+                gc.unfreeze()
+            gc.enable()
 
 
 def _is_at_work_on(job: Job) -> bool:
@@ -66,12 +86,11 @@ def _is_at_work_on(job: Job) -> bool:
 def time_for(jobs: Sequence[Job]) -> float:
     """Give about how long jobs take that have not been kept, on a machine that is idle [s]."""
     try:
-        seconds = [job.seconds for job in jobs if not job.is_stored]
+        missing = [job for job in jobs if not job.is_stored]
+        longest = max((job.seconds for job in missing), default=0.0)
+        return max(longest, seconds_of(missing) / min(2, processors()))
     except Exception:  # said where it is compiled
         return 0.0
-    if not seconds:
-        return 0.0
-    return max(*seconds, sum(seconds) / min(2, processors())) if len(seconds) > 1 else seconds[0]
 
 
 def _tell(jobs: Sequence[Job]) -> None:
@@ -138,7 +157,8 @@ def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None"
     if processors() < 2 or getattr(sys, "frozen", False) or not sys.executable:
         return None
     program = (
-        f"import os, sys; sys.path[:] = sys.argv[1:]; from {__name__} import {task}; "
+        f"import gc, os, sys; gc.disable(); sys.path[:] = sys.argv[1:]; "
+        f"from {__name__} import {task}; "
         f"{task}(sys.stdin.buffer.read()); os._exit(0)"  # to tidy up takes half a second
     )
     try:
@@ -200,6 +220,9 @@ def processors() -> int:
 WORTHWHILE: Final = 0.25
 """Time in plain Python from which on something is compiled: a few short runs need none [s]."""
 
+PRUDENCE: Final = 1.7
+"""How many times longer compiling may take than it is said to: machines are seldom idle."""
+
 _compilers: Final[list["subprocess.Popen[bytes]"]] = []
 """Processes that compile; they end what they have begun though this one has ended."""
 
@@ -233,7 +256,7 @@ class Meanwhile:
         """Whether machine code is to be loaded, or compiled by this process, which then waits.
 
         By this process, too, as soon as plain Python has taken, or is known to take yet, as long
-        as compiling will: that is never more than twice the shortest time.
+        as compiling will, at the worst: that is never more than twice the shortest time.
         """
         if self._compiler is not None and self._compiler.poll() is None:
             return self._is_worth_compiling()
@@ -251,7 +274,7 @@ class Meanwhile:
         return (at_once and self._alone) or self._is_worth_compiling()
 
     def _is_worth_compiling(self) -> bool:
-        return max(self._seconds, STILL_TAKES.get()) >= time_for(self._jobs)
+        return max(self._seconds, STILL_TAKES.get()) >= PRUDENCE * time_for(self._jobs)
 
     def _has_started_compiler(self) -> bool:
         """Start one, unless others are at work; whether that has been done."""

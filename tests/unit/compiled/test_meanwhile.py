@@ -50,7 +50,7 @@ class Job:
 def jobs(monkeypatch):
     monkeypatch.setattr(parallel, "_compilers", [])
     monkeypatch.setattr(parallel, "processors", lambda: 2)
-    monkeypatch.setattr(parallel, "time_for", lambda jobs: 8.0)
+    monkeypatch.setattr(parallel, "time_for", lambda jobs: 8.0 / parallel.PRUDENCE)
     return [Job(), Job()]
 
 
