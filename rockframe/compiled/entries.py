@@ -41,8 +41,9 @@ _HAS_NUMBA: Final = find_spec("numba") is not None
 _ASKED: Final = os.environ.get("ROCKFRAME_COMPILE", "")
 COMPILED: Final = _ASKED != "0" and _HAS_NUMBA
 """Whether functions are compiled."""
-WAITS: Final = _ASKED == "wait"
-"""Whether all entries wait for their machine code."""
+WAITS: Final = _ASKED in {"wait", "often"}
+"""Whether all entries wait for their machine code; `often`, but for what they call seldom."""
+_CALLS_BACK: Final = _ASKED != "wait"
 CALLED_BACK: Final = 1.0 / 3.0
 """Share of the time of a compilation that may be spent before it in what is called back.
 
@@ -73,7 +74,7 @@ def entry_at_once(function: Function) -> Function:
     """
     if not COMPILED:
         return cast("Function", _as_python(function))
-    return cast("Function", Entry(function, WAITS, calls_back=True))
+    return cast("Function", Entry(function, WAITS, calls_back=_CALLS_BACK))
 
 
 def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:

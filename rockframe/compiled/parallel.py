@@ -156,8 +156,10 @@ def start_compiler(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
 def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
     if processors() < 2 or getattr(sys, "frozen", False) or not sys.executable:
         return None
+    # as the command line is called, which waits for none of the libraries of datasets and units
+    name = __name__.partition(".")[0]
     program = (
-        f"import gc, os, sys; gc.disable(); sys.path[:] = sys.argv[1:]; "
+        f"import gc, os, sys; gc.disable(); sys.path[:] = sys.argv[1:]; sys.argv[:] = [{name!r}]; "
         f"from {__name__} import {task}; "
         f"{task}(sys.stdin.buffer.read()); os._exit(0)"  # to tidy up takes half a second
     )
