@@ -217,7 +217,8 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     def observe_bodies(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Write motion, reactions and slip of the block."""
+        """Write motion, reactions and slip of the block, and where it is."""
+        self.set_out(mode, state, self.places())  # links that do nothing are shown, too
         out = self.column_room()
         put(self.columns_under(mode, state, slope, self.loads(mode, state, ground)), 0, out)
         return out
