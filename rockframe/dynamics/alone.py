@@ -139,21 +139,22 @@ class Alone(InState, OnePart):
     ) -> tuple[float, ...]:
         """Give motion and reactions, :eq:`eq-reactions`, and what the base shows."""
         standing, body = self.part.mode_of(mode), self.state_of(0, state)
+        attitude = self.part.body.attitude(body.rotation)
         shear = slope[HORIZONTAL] + ground.x
         return (
             body.rotation,
             body.angular_velocity,
             body.vertical,
             body.vertical_velocity,
-            self.place(0, mode, state, memory),
+            self.part.horizontal_place(standing, body, attitude, memory[HELD_PLACE]),
             shear,
-            self.part.sway(standing, body, self.part.body.attitude(body.rotation)),
+            self.part.sway(standing, body, attitude),
             slope[ROTATION],
             slope[HORIZONTAL],
             slope[VERTICAL],
             shear,
             slope[VERTICAL] + self.part.body.gravity + ground.y,
-        ) + self.part.observed_base(standing, body, self.own_in(state))
+        ) + self.part.observed_base(standing, body, attitude, self.own_in(state))
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
@@ -168,8 +169,9 @@ class Alone(InState, OnePart):
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Give x of the centre of mass: about the held point, or free."""
-        standing = self.part.mode_of(mode)
-        return self.part.horizontal_place(standing, self.state_of(k, state), memory[HELD_PLACE])
+        standing, body = self.part.mode_of(mode), self.state_of(k, state)
+        attitude = self.part.body.attitude(body.rotation)
+        return self.part.horizontal_place(standing, body, attitude, memory[HELD_PLACE])
 
     @kernel
     def response(
@@ -360,7 +362,7 @@ def _starting(part: OnBase, rest_rotation: float) -> Callable[[Start], tuple[int
         pin = part.body.pin(mode.pivot)
         x = 0.0
         if part.is_free(mode):
-            x = pin + part.body.about_pin(pin, body.rotation)
+            x = pin + part.body.about_pin(pin, part.body.attitude(body.rotation))
         places = (body.rotation, body.vertical, x)
         rates = (body.angular_velocity, body.vertical_velocity, 0.0)
         memory = np.array([pin if k == HELD_PLACE else 0.0 for k in range(len(MEMORY))])

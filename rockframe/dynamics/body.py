@@ -208,13 +208,10 @@ class Body(NamedTuple):
             pin * attitude.cosine - self.height * attitude.sine,
         )
 
-    @kernel
-    def about_pin(self, pin: float, rotation: float) -> float:
+    @inlined
+    def about_pin(self, pin: float, attitude: Attitude) -> float:
         """Give h sin a - e cos a, the centre of mass seen from the held point."""
-        if self.small:
-            return self.height * rotation - pin
-        sine, cosine = sine_cosine(rotation)
-        return self.height * sine - pin * cosine
+        return self.height * attitude.sine - pin * attitude.cosine
 
     @kernel
     def size(self) -> float:

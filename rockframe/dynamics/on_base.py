@@ -258,11 +258,13 @@ class OnBase(NamedTuple):
         return 0.5 * (self.body.inertia * rate * rate + speed * speed + sway * sway)
 
     @kernel
-    def horizontal_place(self, mode: Mode, state: BodyState, held_at: float) -> float:
+    def horizontal_place(
+        self, mode: Mode, state: BodyState, attitude: Attitude, held_at: float
+    ) -> float:
         """Give x of the centre of mass: about the held point, or free."""
         if self.is_free(mode):
             return state.horizontal
-        return held_at + self.body.about_pin(self.body.pin(mode.pivot), state.rotation)
+        return held_at + self.body.about_pin(self.body.pin(mode.pivot), attitude)
 
     @kernel
     def end_rises(self, state: BodyState, vertical: float, angular: float) -> tuple[float, float]:
@@ -276,9 +278,11 @@ class OnBase(NamedTuple):
         return self.base.energy(self.body.base_line_at(state), own)
 
     @kernel
-    def observed_base(self, mode: Mode, state: BodyState, own: Any) -> tuple[float, ...]:
+    def observed_base(
+        self, mode: Mode, state: BodyState, attitude: Attitude, own: Any
+    ) -> tuple[float, ...]:
         """Give what users see of the base."""
-        line = self.body.base_line_at(state)
+        line = self.body.base_line(state, attitude)
         return self.base.observed(self.contact_with_force(mode), line, own)
 
     @inlined

@@ -184,8 +184,13 @@ class Stacked(InState):
     def bases_observed(self, mode: int, state: Vector) -> tuple[float, ...]:
         """Give what both bases show."""
         modes, states = self.modes_in(mode), self.states_in(state)
-        upper = self.upper.observed_base(modes.upper, states.upper, self.upper_own(state))
-        return upper + self.lower.observed_base(modes.lower, states.lower, self.lower_own(state))
+        return self.upper.observed_base(
+            modes.upper, states.upper, self.upper.body.attitude(states.upper.rotation),
+            self.upper_own(state),
+        ) + self.lower.observed_base(
+            modes.lower, states.lower, self.lower.body.attitude(states.lower.rotation),
+            self.lower_own(state),
+        )  # fmt: skip
 
 
 @kernel

@@ -93,7 +93,7 @@ def repin(
         system.set_sway(k, place, sway, state)
         return
     pin = part.body.pin(mode.pivot)
-    memory[HELD_PLACE + k] = place - part.body.about_pin(pin, body.rotation)
+    memory[HELD_PLACE + k] = place - part.body.about_pin(pin, attitude)
     slip = sway - part.body.reach(pin, attitude).rate * body.angular_velocity
     response = system.response(k, new, 0.0, 0.0, slip, state)
     system.respond(k, new, response, state)

@@ -264,8 +264,11 @@ class Cascade(Stacked, Stages):
         """Give x of a centre of mass: about the held point, or free."""
         modes, body = self.modes_in(mode), self.state_of(k, state)
         if k == UPPER:
-            return self.upper.horizontal_place(modes.upper, body, memory[HELD_PLACE])
-        return self.lower.horizontal_place(modes.lower, body, memory[HELD_PLACE + LOWER])
+            attitude = self.upper.body.attitude(body.rotation)
+            return self.upper.horizontal_place(modes.upper, body, attitude, memory[HELD_PLACE])
+        attitude = self.lower.body.attitude(body.rotation)
+        held_at = memory[HELD_PLACE + LOWER]
+        return self.lower.horizontal_place(modes.lower, body, attitude, held_at)
 
     @kernel
     def response(

@@ -306,9 +306,9 @@ class RigidCorners(Chain):
     def sway_at(self, k: int, standing: Mode, held: float, state: Vector) -> tuple[float, float]:
         """Give where a body is along its base, and its rate, by the place of what holds it."""
         part, body = self.on_base(k), self.standing_state(k, standing, state)
-        pin = part.body.pin(standing.pivot)
-        reach = part.body.reach(pin, part.body.attitude(body.rotation))
-        place = held + part.body.about_pin(pin, body.rotation)
+        pin, attitude = part.body.pin(standing.pivot), part.body.attitude(body.rotation)
+        reach = part.body.reach(pin, attitude)
+        place = held + part.body.about_pin(pin, attitude)
         return place, reach.rate * body.angular_velocity
 
     @kernel
@@ -391,8 +391,8 @@ class RigidCorners(Chain):
             part, standing = self.on_base(k), self.part_mode(mode, k)
             if self.is_rigid(k) and not part.is_free(standing):
                 pin, place = part.body.pin(standing.pivot), state[self.horizontal_of(k)]
-                rotation = self.standing_state(k, standing, state).rotation
-                memory[HELD_PLACE + k] = place - part.body.about_pin(pin, rotation)
+                attitude = part.body.attitude(self.standing_state(k, standing, state).rotation)
+                memory[HELD_PLACE + k] = place - part.body.about_pin(pin, attitude)
         self.write_contacts(mode, state, memory)
         self.keep_hold(mode, state, memory)
 

@@ -133,7 +133,8 @@ class RestOnGround(ChainLinks):
         k = self.body_count - 1
         part = self.on_base(k)
         pin = part.body.pin(self.part_mode(mode, k).pivot)
-        return float(body.horizontal + part.body.about_pin(pin, body.rotation))
+        attitude = part.body.attitude(body.rotation)
+        return float(body.horizontal + part.body.about_pin(pin, attitude))
 
     @kernel
     def keep_hold(self, mode: int, state: Vector, memory: Vector) -> None:

@@ -320,10 +320,11 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
         memory[HELD_PLACE + k] = pin + offset
         free = part.is_free(standing)
         moves = tied or k + 1 < count
+        attitude = part.body.attitude(body.rotation)
         if moves or free:
-            state[x] = pin + offset + part.body.about_pin(pin, body.rotation)
+            state[x] = pin + offset + part.body.about_pin(pin, attitude)
         if moves and not free:
-            reach = part.body.reach(pin, part.body.attitude(body.rotation))
+            reach = part.body.reach(pin, attitude)
             state[n + x] = reach.rate * body.angular_velocity
         mode = system.with_part(mode, k, standing)
     if isinstance(system, RigidChain):

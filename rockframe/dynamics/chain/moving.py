@@ -274,9 +274,10 @@ class MovingBodies(Rows):
         """Give the horizontal place of a centre of mass: along the body below, or on the ground."""
         if k + 1 < self.body_count:
             return state[self.horizontal_of(k)]
-        body = self.state_of(k, state)
-        return self.on_base(k).horizontal_place(
-            self.part_mode(mode, k), body, memory[HELD_PLACE + k]
+        part, body = self.on_base(k), self.state_of(k, state)
+        attitude = part.body.attitude(body.rotation)
+        return part.horizontal_place(
+            self.part_mode(mode, k), body, attitude, memory[HELD_PLACE + k]
         )
 
     @kernel

@@ -95,8 +95,11 @@ class SlippingBodies(Chain):
     def point_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
         """Give the place of the point that is held, or would be."""
         part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(self.part_mode(mode, k).pivot)
-        return self.place(k, mode, state, memory) - part.body.about_pin(pin, body.rotation)
+        pin, attitude = (
+            part.body.pin(self.part_mode(mode, k).pivot),
+            part.body.attitude(body.rotation),
+        )
+        return self.place(k, mode, state, memory) - part.body.about_pin(pin, attitude)
 
     @inlined
     def kept(self, k: int) -> int:

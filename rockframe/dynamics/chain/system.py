@@ -202,4 +202,4 @@ class Chain(MovingBodies):
         part = self.on_base(k)
         if self.is_slippery(k):
             return part.base.observed(standing.contact, part.body.base_line_at(body), ())
-        return part.observed_base(standing, body, ())
+        return part.observed_base(standing, body, part.body.attitude(body.rotation), ())

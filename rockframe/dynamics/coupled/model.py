@@ -134,19 +134,21 @@ def state_at(
     leaning = cap if cap.rotation != 0.0 else block
     of_cap = lower.standing(under, leaning)
     pin, beside = upper.body.pin(standing.pivot), system.beside
+    attitude = upper.body.attitude(block.rotation)
     state[ROTATION], state[VERTICAL] = block.rotation, block.vertical
     state[LOWER_ROTATION], state[LOWER_VERTICAL] = cap.rotation, cap.vertical
     state[COORDINATES + ROTATION] = block.angular_velocity
     state[COORDINATES + VERTICAL] = block.vertical_velocity
-    state[HORIZONTAL] = pin + beside + upper.body.about_pin(pin, block.rotation)
+    state[HORIZONTAL] = pin + beside + upper.body.about_pin(pin, attitude)
     if not upper.is_free(standing):
-        reach = upper.body.reach(pin, upper.body.attitude(block.rotation))
+        reach = upper.body.reach(pin, attitude)
         state[COORDINATES + HORIZONTAL] = reach.rate * block.angular_velocity
     memory[HELD_PLACE + UPPER] = pin + beside
     cap_pin = lower.body.pin(of_cap.pivot)
     memory[HELD_PLACE + LOWER] = cap_pin
     if lower.is_free(of_cap):
-        state[LOWER_HORIZONTAL] = cap_pin + lower.body.about_pin(cap_pin, cap.rotation)
+        leant = lower.body.attitude(cap.rotation)
+        state[LOWER_HORIZONTAL] = cap_pin + lower.body.about_pin(cap_pin, leant)
     return system.with_part(upper.number_of(standing), LOWER, of_cap), state, memory
 
 

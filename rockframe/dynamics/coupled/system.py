@@ -252,7 +252,8 @@ class Coupled(Stacked, Pair):
         if k == UPPER:
             return state[HORIZONTAL]
         standing, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
-        return self.lower.horizontal_place(standing, body, memory[HELD_PLACE + LOWER])
+        attitude = self.lower.body.attitude(body.rotation)
+        return self.lower.horizontal_place(standing, body, attitude, memory[HELD_PLACE + LOWER])
 
     @kernel
     def response(
