@@ -93,8 +93,9 @@ class AlongSteps:
 
     def _promising(self, shown: Array) -> Integers:
         """Find the steps in which a peak of some row may lie, by the rows of their ends."""
-        promise = np.empty_like(shown)
-        promise_of_steps(shown, np.ascontiguousarray(self.steps.length), promise)
+        promise, length = np.empty_like(shown), np.ascontiguousarray(self.steps.length)
+        per_length = np.divide(1.0, length, out=np.full(len(length), np.nan), where=length > 0.0)
+        promise_of_steps(shown, length, per_length, promise)
         tops = np.fmax.reduce(shown, axis=1)
         rows = zip(promise[:, 1:], tops, strict=True)
         return np.unique(np.concatenate([1 + _largest(row, top) for row, top in rows]))
@@ -107,23 +108,23 @@ def greater(a: float, b: float) -> float:
 
 
 @inlined
-def slope_in(shown: Matrix, row: int, i: int, length: Vector) -> float:
+def slope_in(shown: Matrix, row: int, i: int, per_length: Vector) -> float:
     """Give the mean slope of a row in the step that ends at `i`; NaN where steps begin anew."""
-    if i == len(length) or length[i] == 0.0:
+    if i == len(per_length):
         return math.nan
-    return (shown[row, i] - shown[row, i - 1]) / length[i]
+    return (shown[row, i] - shown[row, i - 1]) * per_length[i]
 
 
 @entry_at_once
-def promise_of_steps(shown: Matrix, length: Vector, out: Matrix) -> None:
+def promise_of_steps(shown: Matrix, length: Vector, per_length: Vector, out: Matrix) -> None:
     """Fill what rows may rise to in each step, by its ends and by how slopes differ there.
 
-    Nothing where steps begin anew: what a jump tells nothing of.
+    Nothing where steps begin anew, and `per_length` is NaN: what a jump tells nothing of.
     """
     for row in range(shown.shape[0]):
-        bend, slope = math.nan, slope_in(shown, row, 1, length)
+        bend, slope = math.nan, slope_in(shown, row, 1, per_length)
         for i in range(1, len(length)):
-            next_slope = slope_in(shown, row, i + 1, length)
+            next_slope = slope_in(shown, row, i + 1, per_length)
             next_bend = abs(next_slope - slope)
             bulge = greater(bend, next_bend) * length[i]
             if not bulge < math.inf:

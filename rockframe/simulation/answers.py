@@ -40,7 +40,7 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
 from rockframe.simulation.friction import SlidingCheck, sliding_scalars, slidings
 from rockframe.simulation.plan import Plan
-from rockframe.solve.observe import memory_at_outputs, observe_states, observe_steps
+from rockframe.solve.observe import memory_at_outputs, observe_run, observe_states
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
@@ -72,7 +72,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
     """Give what the samples of a run tell: histories, if they are kept, peaks and points."""
     setting, load, count = system.setting, system.setting.load, len(run.time)
-    shown_at, ground, moved = _everything_of(system, plan, run)
+    along, shown_at, ground, moved = _everything_of(system, plan, run)
     values = {name: each[:count] for name, each in shown_at.items()}
     # energies are worked out apart; what else is no column may follow from columns
     if _everything(plan) or set(plan.requested).difference(values, ENERGIES):
@@ -85,7 +85,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     values |= ground_histories(ground[:count], has_vertical_motion=vertical)
     values["time"] = run.time
     events = _events_in(shown_at, run, setting)
-    along, upright = _along(system, plan, run), events
+    upright = events
     if not along.steps.complete:
         missing.append(
             f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
@@ -175,25 +175,29 @@ def _energies(
 
 def _everything_of(
     system: Assembly, plan: Plan, run: Trajectory
-) -> tuple[dict[str, Generic], Array, Array]:
-    """Give what the model shows at the samples, then before and then after all events.
+) -> tuple[AlongSteps, dict[str, Generic], Array, Array]:
+    """Give what the model shows along the steps, and at samples, then before and after all events.
 
-    With it, the ground's acceleration there as it was given, and along and normal to the base.
+    With the latter, the ground's acceleration there as it was given, and along and normal to the
+    base.
     """
-    events = run.events
-    memory, row = memory_at_outputs(run)
-    before = np.arange(len(events.time))
+    events, slope = run.events, system.options.slope
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
-    moved, resolved = ground_on_slope(ground, system.options.slope)
-    shown = _shown(
-        system,
-        np.concatenate([run.mode, events.mode_before, events.mode_after]),
-        np.concatenate([run.state, events.state_before, events.state_after]),
-        memory,
-        np.concatenate([row, before, before + 1]),
-        resolved,
-    )
-    return shown, ground, moved
+    moved, resolved = ground_on_slope(ground, slope)
+    names = None if _everything(plan) else _peaked(system)
+    along, shown = observe_run(system.model, run, names, resolved)
+    shown = without_gravity(shown, slope)
+    return _along(system, plan, run, along), shown, ground, moved
+
+
+def _peaked(system: Assembly) -> tuple[str, ...]:
+    """Name the columns whose peaks are told."""
+    names = BODY_FORCES + OF_SETTLEMENT
+    if system.setting.stacked:
+        names += OF_SOIL_FRICTION
+    if system.model.shows_bodies:
+        names += rotations_of(system.model.system.bodies())
+    return names + forces_of_links(system.model.links)
 
 
 def _shown(
@@ -209,27 +213,20 @@ def _shown(
     return without_gravity(shown, system.options.slope)
 
 
-def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
-    """Give what the model shows along the steps, up to overturning."""
-    if run.steps is None:
-        msg = "no steps were kept"
-        raise ValueError(msg)
+def _along(
+    system: Assembly, plan: Plan, run: Trajectory, columns: dict[str, Generic]
+) -> AlongSteps:
+    """Give what is shown along the steps, up to overturning, by what is shown along all."""
     slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
     until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
-    steps = run.steps.until(until)
+    steps = run.kept_steps.until(until)
+    shown = {name: each[: len(steps.time)] for name, each in columns.items()}
     if _everything(plan):
-        shown = without_gravity(observe_steps(system.model, steps, memory, None), slope)
+        shown = without_gravity(shown, slope)
         moved = steps.ground - np.array([slope.along_gravity, 0.0])
         shown |= force_histories(shown, moved, load)
         shown |= _state_of(shown, steps.time, _level(moved, slope))
     else:
-        names = BODY_FORCES + OF_SETTLEMENT
-        if system.setting.stacked:
-            names += OF_SOIL_FRICTION
-        if system.model.shows_bodies:
-            names += rotations_of(system.model.system.bodies())
-        names += forces_of_links(system.model.links)
-        shown: dict[str, Generic] = {**observe_steps(system.model, steps, memory, names)}
         shown |= friction_demands(shown, load)
 
     def inside(which: Integers) -> dict[str, Generic]:

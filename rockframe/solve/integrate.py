@@ -272,13 +272,16 @@ def integrate(
         kept = int(counters[at.STEPS_KEPT])
         return steps_of(table, kept, width, exact=accuracy.rtol is not None)
 
-    def take_samples(steps: Steps) -> int:
-        """Fill the first outputs by the steps that end there; give how many outputs there are."""
+    def take_samples(steps: Steps) -> Integers:
+        """Count the first outputs by the steps that end there, and take their modes."""
         which = steps.first_at_multiples(output_step or 1.0, ON_SAMPLE)[:sampled]
         count = 1 + len(which)
-        out_state[1:count], out_mode[1:count] = steps.state[which], steps.mode[which]
-        return count if count <= sampled else int(counters[at.OUTPUTS])
+        out_mode[1:count] = steps.mode[which]
+        if count <= sampled:  # there are no more
+            counters[at.OUTPUTS] = count
+        return which
 
+    taken = np.empty(0, dtype=np.int64)
     steps = no_steps()
     if keep_steps:
         intervals = duration / run.controls[at.TIME_STEP]
@@ -315,14 +318,15 @@ def integrate(
                 steps = StepTable(*_longer(*steps))
             else:
                 first_steps, steps = replace(steps_in(steps), complete=False), no_steps()
-                counters[at.OUTPUTS] = take_samples(first_steps)
-                sampled = 0
+                taken, sampled = take_samples(first_steps), 0
 
     if not COMPILED or not runs_as_python(equations):  # of which more has been said
         say_slow(as_python)
 
     kept = (first_steps or steps_in(steps)) if keep_steps else None
-    stored = int(counters[at.OUTPUTS]) if not sampled or kept is None else take_samples(kept)
+    if sampled and kept is not None:
+        taken = take_samples(kept)
+    stored = int(counters[at.OUTPUTS])
     time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)
     end = float(clock[at.TIME])
     out_state, out_mode, out_work = out_state[:stored], out_mode[:stored], out_work[:stored]
@@ -336,7 +340,7 @@ def integrate(
             out_work = np.vstack([out_work, [clock[at.DISSIPATED], clock[at.SUPPLIED]]])
     return Trajectory(
         time=time,
-        state=out_state,
+        other_state=out_state,
         mode=out_mode,
         work=out_work,
         start_mode=mode,
@@ -349,6 +353,7 @@ def integrate(
         start_energy=float(clock[at.START_ENERGY]),
         as_python=runs_as_python(equations),
         steps=kept,
+        outputs_in_steps=taken,
     )
 
 

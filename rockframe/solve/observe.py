@@ -18,7 +18,7 @@ from rockframe.compiled import (
 )
 from rockframe.dynamics.protocol import POWERS, Column, ContactModel, Equations
 from rockframe.solve.equations import energies, observed, slope
-from rockframe.solve.trajectory import Steps, Trajectory
+from rockframe.solve.trajectory import Trajectory
 from rockframe.solve.workspace import BESIDE
 
 
@@ -84,10 +84,16 @@ def observe_kept(
     codes: IntegerMatrix,
     memory: Matrix,
     wanted: Integers,
+    samples: Integers,
     room: Room,
     out: Matrix,
+    shown: Matrix,
 ) -> None:
-    """Do the same for each row of steps, by the slopes that stand there if they are exact."""
+    """Do the same for each row of steps, by the slopes that stand there if they are exact.
+
+    With it, fill all columns for some rows, `samples`, behind a first that is none of them.
+    """
+    sample = 0
     width, slopes = len(room.state), values.shape[1] - BESIDE - len(room.state)
     for i in range(len(codes)):
         for j in range(width):
@@ -104,6 +110,10 @@ def observe_kept(
         )
         for j in range(len(wanted)):
             out[j, i] = room.columns[wanted[j]]
+        if sample < len(samples) and samples[sample] == i:
+            sample += 1
+            for j in range(len(room.columns)):
+                shown[j, sample] = room.columns[j]
 
 
 @entry_at_once
@@ -157,6 +167,17 @@ def observe_states(
     dict of str to ndarray
         By the names in ``model.columns``.
     """
+    return _named(model, model.columns, _rows(model, mode, state, memory, memory_row, ground))
+
+
+def _rows(
+    model: ContactModel,
+    mode: Integers,
+    state: Matrix,
+    memory: Matrix,
+    memory_row: Integers,
+    ground: Matrix,
+) -> Matrix:
     wanted = np.arange(len(model.columns))
     out = np.empty((len(wanted), len(mode)))
     moves, shows = _of(model.system, slope, observed)
@@ -172,17 +193,54 @@ def observe_states(
         _room(model, memory),
         out,
     )
-    return _named(model, model.columns, out)
+    return out
 
 
-def observe_steps(
-    model: ContactModel, steps: Steps, memory: Matrix, names: tuple[str, ...] | None
-) -> dict[str, Vector]:
-    """Give columns at the ends and starts of steps."""
-    columns = model.columns
-    chosen = [i for i, one in enumerate(columns) if names is None or one.name in names]
-    wanted = np.array(chosen, dtype=np.int64)
-    out = np.empty((len(wanted), len(steps.time)))
+def observe_run(
+    model: ContactModel, run: Trajectory, names: tuple[str, ...] | None, ground: Matrix
+) -> tuple[dict[str, Vector], dict[str, Vector]]:
+    """Give some columns at the ends and starts of steps, and all at samples and events.
+
+    Parameters
+    ----------
+    model : ContactModel
+        The equations.
+    run : Trajectory
+        With its steps.
+    names : tuple of str or None
+        Columns along the steps; None for all.
+    ground : ndarray, shape (samples + 2 events, 2)
+        Horizontal and vertical ground acceleration at the output times, and twice at the events
+        [m s^-2].
+
+    Returns
+    -------
+    along : dict of str to ndarray, shape (rows,)
+        In the rows of the steps.
+    shown : dict of str to ndarray, shape (samples + 2 events,)
+        At the output times, then before, then after all events.
+
+    Raises
+    ------
+    ValueError
+        Of a run without its steps.
+    """
+    steps, events, in_steps = run.kept_steps, run.events, run.outputs_in_steps
+    memory, row = memory_at_outputs(run)
+    before, samples = np.arange(len(events.time)), np.arange(len(run.time))
+    apart = np.delete(samples, slice(1, 1 + len(in_steps)))
+    places = np.concatenate([apart, np.arange(len(samples), len(ground))])
+    shown = np.empty((len(model.columns), len(ground)))
+    shown[:, places] = _rows(
+        model,
+        np.concatenate([run.mode[apart], events.mode_before, events.mode_after]),
+        np.concatenate([run.other_state[apart], events.state_before, events.state_after]),
+        memory,
+        np.concatenate([row[apart], before, before + 1]),
+        ground[places],
+    )
+    chosen = [i for i, one in enumerate(model.columns) if names is None or one.name in names]
+    out = np.empty((len(chosen), len(steps.time)))
     moves, shows = _of(model.system, slope, observed)
     observe_kept(
         moves,
@@ -191,11 +249,14 @@ def observe_steps(
         steps.values,
         steps.codes,
         memory,
-        wanted,
+        np.array(chosen, dtype=np.int64),
+        in_steps,
         _room(model, memory),
         out,
+        shown,
     )
-    return _named(model, [columns[i] for i in chosen], out)
+    along = _named(model, [model.columns[i] for i in chosen], out)
+    return along, _named(model, model.columns, shown)
 
 
 def _room(model: ContactModel, memory: Matrix) -> Room:

@@ -6,6 +6,7 @@ Also the steps of a run as they were made, and the solution inside them.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Final, cast
 
 import numpy as np
@@ -180,7 +181,8 @@ class Trajectory(Summary):
     """A run."""
 
     time: Vector  # output times [s]
-    state: Matrix  # coordinates, then their rates
+    # states there, but for those that stand in the steps
+    other_state: Matrix
     mode: Integers  # modes of the model
     work: Matrix  # energies dissipated by dashpots and put in by the ground, if asked for
     start_mode: int  # the model's mode at the start
@@ -189,6 +191,24 @@ class Trajectory(Summary):
     start_energy: float  # kinetic, gravity and elastic energy at the start, from that at rest
     as_python: bool  # whether it was made in plain Python, not by machine code
     steps: Steps | None  # both ends of all steps, if they are kept
+    # rows of steps at whose ends the output times behind the first lie, as far as they do
+    outputs_in_steps: Integers
+
+    @cached_property
+    def state(self) -> Matrix:
+        """Coordinates, then their rates, at the output times, shape (times, 2 n + variables)."""
+        count = len(self.outputs_in_steps)
+        if count:
+            self.other_state[1 : 1 + count] = self.kept_steps.state[self.outputs_in_steps]
+        return self.other_state
+
+    @property
+    def kept_steps(self) -> Steps:
+        """The steps of a run that kept them; ValueError of another one."""
+        if self.steps is None:
+            msg = "no steps were kept"
+            raise ValueError(msg)
+        return self.steps
 
 
 def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:

@@ -1,0 +1,106 @@
+"""What a model shows of a state is that state's, whatever was looked at before.
+
+Equations of several bodies and links keep room for what they work out; nothing that an earlier
+state left there may be shown of another one.
+"""
+
+import numpy as np
+import pytest
+from plainly import plainly
+
+import rockframe as rf
+from rockframe.dynamics.protocol import Start
+from rockframe.solve.accuracy import LEVELS
+from rockframe.solve.integrate import integrate
+from rockframe.solve.observe import energies_of, memory_at_outputs, observe_run, observe_states
+
+BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
+STATUE = rf.Block(width="0.8 m", height="1.2 m", mass="1 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=10, damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2)
+CAP = rf.CushionCap(height="0.5 m", mass="1 t")
+SLIPPERY = {"friction": 0.2}
+JOINT = rf.RigidGround(**SLIPPERY)
+WALL = rf.RearWall(stiffness="1 MN/m", gap="5 mm")
+TIE = rf.Restrainer(on=("-0.5 m", "3 m"), to=("-1.5 m", "3 m"), stiffness="0.2 MN/m", slack="5 mm")
+FRAME = rf.RockingFrame(BLOCK, columns=2, beam_mass="6 t")
+PULSE = rf.GroundMotion.from_arrays(
+    (3.5 * np.sin(np.linspace(0.0, 2.0 * np.pi, 41)), "m/s^2"), time_step="0.02 s"
+)
+SCENES = {
+    "rigid ground": (BLOCK,),
+    "slippery ground": (BLOCK, rf.RigidGround(**SLIPPERY)),
+    "pads": (BLOCK, PADS),
+    "slippery pads": (BLOCK, PADS.replace(**SLIPPERY)),
+    "soil": (BLOCK, SOIL),
+    "coupled": (BLOCK, PADS, CAP, SOIL),
+    "cascade": (BLOCK, PADS, CAP, SOIL, {"coupling": "cascade"}),
+    "wall on rigid ground": (BLOCK, WALL),
+    "wall on slippery ground": (BLOCK, rf.RigidGround(**SLIPPERY), WALL),
+    "wall on pads": (BLOCK, PADS, WALL),
+    "tie on rigid ground": (BLOCK, TIE),
+    "tie on slippery pads": (BLOCK, PADS.replace(**SLIPPERY), TIE),
+    "frame with tendons": (FRAME, rf.Tendon(stiffness="0.2 MN/m", preload="5 kN")),
+    "stack on rigid joints": (rf.Stack(STATUE, BLOCK, interfaces=[rf.RigidGround()]),),
+    "stack that slides": (rf.Stack(STATUE, BLOCK, interfaces=[JOINT]), JOINT),
+    "stack on pads": (rf.Stack(STATUE, BLOCK, interfaces=[PADS]), PADS),
+    "stack of both": (rf.Stack(STATUE, BLOCK, interfaces=[JOINT]), PADS),
+    "stack with a wall": (rf.Stack(STATUE, BLOCK, interfaces=[JOINT]), JOINT, WALL),
+}
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def run(request):
+    """Give a model, and a run of it."""
+    parts = [part for part in SCENES[request.param] if not isinstance(part, dict)]
+    options = [part for part in SCENES[request.param] if isinstance(part, dict)]
+    model = rf.System(*parts, **dict(*options)).assembly.model
+    with plainly():
+        return model, integrate(
+            model, Start(), PULSE.si, LEVELS["standard"], duration=1.2, output_step=0.06,
+            keep_steps=True,
+        )  # fmt: skip
+
+
+def shown(model, run, order):
+    memory, row = memory_at_outputs(run)
+    ground = PULSE.si.horizontal.at(run.time)
+    with plainly():
+        return observe_states(
+            model, run.mode[order], run.state[order], memory, row[order],
+            np.column_stack([ground, np.zeros_like(ground)])[order],
+        )  # fmt: skip
+
+
+def test_columns_do_not_depend_on_what_was_shown_before(run):
+    model, trajectory = run
+    forwards = np.arange(len(trajectory.time))
+    assert np.ptp(trajectory.state[:, :3], axis=0).max() > 0.0  # something moves
+    expected, found = (shown(model, trajectory, order) for order in (forwards, forwards[::-1]))
+    for name, values in expected.items():
+        np.testing.assert_array_equal(found[name][::-1], values, err_msg=name)
+
+
+def test_energies_do_not_depend_on_what_was_shown_before(run):
+    model, trajectory = run
+    with plainly():
+        expected = energies_of(model, trajectory)
+        shown(model, trajectory, np.array([len(trajectory.time) // 2]))
+        np.testing.assert_array_equal(energies_of(model, trajectory), expected)
+
+
+def test_samples_at_ends_of_steps_are_shown_as_by_themselves(run):
+    model, trajectory = run
+    assert len(trajectory.outputs_in_steps) == len(PULSE) // 3  # as long as the ground has samples
+    events = trajectory.events.time
+    times = np.concatenate([trajectory.time, events, events])
+    ground = PULSE.si.horizontal.at(times)
+    with plainly():
+        _, found = observe_run(
+            model, trajectory, (), np.column_stack([ground, np.zeros_like(ground)])
+        )
+    for name, values in shown(model, trajectory, np.arange(len(trajectory.time))).items():
+        size = np.abs(values).max()
+        np.testing.assert_allclose(
+            found[name][: len(values)], values, rtol=0.0, atol=1e-12 * size, err_msg=name
+        )
