@@ -330,6 +330,11 @@ def integrate(
     time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)
     end = float(clock[at.TIME])
     out_state, out_mode, out_work = out_state[:stored], out_mode[:stored], out_work[:stored]
+    happened = _events(events, int(counters[at.EVENTS]), width)
+    at_once = int(np.count_nonzero(happened.time == 0.0))
+    if rows and at_once:  # before that, nothing was as it is shown
+        out_state[0] = happened.state_after[at_once - 1]
+        out_mode[0] = happened.mode_after[at_once - 1]
     unfinished = result != at.COMPLETED
     if rows and unfinished and end - time[-1] > ON_SAMPLE * (output_step or 1.0):
         # the instant at which the run ended belongs to its history
@@ -345,7 +350,7 @@ def integrate(
         work=out_work,
         start_mode=mode,
         start_memory=run.start_memory,
-        events=_events(events, int(counters[at.EVENTS]), width),
+        events=happened,
         status=Status(result),
         **run_counts(clock, counters),
         substeps=run.substeps,

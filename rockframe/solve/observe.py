@@ -129,10 +129,15 @@ def energy_rows(
 
 
 def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
-    """Give the memories of a run, and which of them holds at each output time."""
-    memory = np.vstack([trajectory.start_memory, trajectory.events.memory])
+    """Give the memories of a run, and which of them holds at each output time.
+
+    At an event that is what was before; at the start, after all that happens at once.
+    """
+    events = trajectory.events
+    memory = np.vstack([trajectory.start_memory, events.memory])
     # of the few events is asked when they are, not of each of many times what was before
-    behind = np.searchsorted(trajectory.time, trajectory.events.time, side="right")
+    behind = np.searchsorted(trajectory.time, events.time, side="right")
+    behind[events.time == 0.0] = 0
     counts = np.diff(behind, prepend=0, append=len(trajectory.time))
     return memory, np.repeat(np.arange(len(memory)), counts)
 

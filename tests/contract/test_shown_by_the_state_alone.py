@@ -104,3 +104,20 @@ def test_samples_at_ends_of_steps_are_shown_as_by_themselves(run):
         np.testing.assert_allclose(
             found[name][: len(values)], values, rtol=0.0, atol=1e-12 * size, err_msg=name
         )
+
+
+def test_the_first_sample_shows_what_holds_after_all_that_happens_at_once():
+    push = rf.GroundMotion.from_arrays(
+        (np.repeat([5.0, 0.0], [10, 10]), "m/s^2"), time_step="0.02 s"
+    )
+    stack = rf.Stack(STATUE, BLOCK, interfaces=[rf.RigidGround()])
+    for parts in ((BLOCK,), (BLOCK, rf.RigidGround(friction=0.6)), (stack,), (FRAME,)):
+        with plainly():
+            response = rf.System(*parts).simulate(push, outputs="energy")
+        assert response.event_time[0] == 0.0
+        assert response.contact_state[0] == response.contact_state[1]
+        assert abs(response.base_shear[0]) <= response.peak_base_shear * (1.0 + 1e-12)
+        assert response.impact_energy[0] == response.kinetic_energy[0] == 0.0
+        if "left_reaction" in response:
+            assert response.left_reaction[0] >= 0.0
+            assert response.right_reaction[0] >= 0.0
