@@ -14,7 +14,15 @@ import numpy as np
 
 from rockframe.compiled import Vector
 from rockframe.dynamics.base import BaseForce
-from rockframe.dynamics.body import Attitude, BaseLine, BodyState, Reach
+from rockframe.dynamics.bed import both_contacts
+from rockframe.dynamics.body import (
+    PIVOT_LEFT,
+    PIVOT_RIGHT,
+    Attitude,
+    BaseLine,
+    BodyState,
+    Reach,
+)
 from rockframe.dynamics.following import Path, Sizes, followed
 from rockframe.dynamics.on_base import Mode, OnBase
 from rockframe.dynamics.trigonometry import sine_cosine, versine
@@ -47,6 +55,8 @@ class StandingBody(NamedTuple):
     beside: float  # of its centre of mass to the right of that beneath, upright
     settlement: float  # of its base, a typical size
     own: Any  # variables of its base's own, as they are before any run
+    # by which it has lifted from a rigid base: 1 bears on its right corner, -1 on its left one
+    corner: int = 0
 
     @property
     def allowed_rotation(self) -> float:
@@ -259,13 +269,19 @@ class StandingChain(NamedTuple):
             path: Path | None = start
             here = [i for i, each in enumerate(rotations) if math.copysign(1.0, each) == side]
             for i in sorted(here, key=lambda i: abs(rotations[i])):
-                to = rotations[i]
-                path = followed(lambda at, others: self._lack(1.0, at, others), sizes, path, to)
+                path, found[i] = self.held(path, rotations[i])
                 if path is None:
                     break
-                others = path.place.tolist()
-                found[i] = self.settled([to - sum(others), *others])
         return found
+
+    def held(self, path: Path, rotation: float) -> tuple[Path | None, list[Stand] | None]:
+        """Give how the bodies stand at a rotation of the highest one, followed along a path."""
+        sizes = self._sizes(self.links[1:])
+        further = followed(lambda at, others: self._lack(1.0, at, others), sizes, path, rotation)
+        if further is None:
+            return None, None
+        others = further.place.tolist()
+        return further, self.settled([rotation - sum(others), *others])
 
     def _turning(self, share: float, rotations: Sequence[float]) -> list[float] | None:
         """Give the moments under a share of what makes the bodies lean."""
@@ -304,6 +320,8 @@ def settled(link: StandingBody, rotation: float, press: float) -> Stand:
     The force of a base falls with the height of the body on it. The height at which the base
     carries the weight is a first guess, which a secant between bounds refines.
     """
+    if link.corner:
+        return _on_corner(link, rotation, press)
     body, base = link.part
     own = link.own if isinstance(link.own, tuple) else np.array(link.own)
     attitude = body.attitude(rotation)
@@ -331,6 +349,19 @@ def settled(link: StandingBody, rotation: float, press: float) -> Stand:
             height = 0.5 * (low + high)
     mode = link.part.standing(contact, state)
     return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, press, own)
+
+
+def _on_corner(link: StandingBody, rotation: float, press: float) -> Stand:
+    """Give how a body stands on a corner of a rigid base."""
+    body, right = link.part.body, link.corner > 0
+    attitude = body.attitude(rotation)
+    level = attitude.rise + (-body.right if right else body.left) * attitude.sine
+    state = BodyState(rotation, -level, 0.0, 0.0, 0.0, 0.0)
+    line = body.base_line(state, attitude)
+    force = BaseForce(press, press * (line.right_lever if right else line.left_lever), 0.0)
+    contact = both_contacts(int(right), int(not right))
+    mode = Mode(contact, PIVOT_RIGHT if right else PIVOT_LEFT, False)
+    return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, press, link.own)
 
 
 def uplift_rotation(link: StandingBody, press: float) -> float:

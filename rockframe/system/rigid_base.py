@@ -3,11 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+import numpy as np
 
 from rockframe.components import RigidGround
+from rockframe.dynamics.following import Path
 from rockframe.system.bodies import BaseLoad
-from rockframe.system.statics import Statics, work_against
+from rockframe.system.statics import StandingBodies, Statics, work_against
 from rockframe.system.support import BaseWords, Support
 from rockframe.system.words import uplift_words
 
@@ -15,6 +18,7 @@ if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
     from rockframe.dynamics.body import Body
     from rockframe.dynamics.tied import Tied
+    from rockframe.signals.arrays import Array
     from rockframe.system.stack import StackSetting
 
 NO_VERTICAL_START = (
@@ -186,3 +190,89 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
         reactions = (0.0, down) if right else (down, 0.0)
     shown: dict[str, float] = dict(zip(REACTIONS, map(float, reactions), strict=True))
     return Statics(rise, float(base_moment), float(moment), state, shown if alone else {})
+
+
+def beyond_lift(
+    setting: "StackSetting", rotations: Sequence[float], closed: Sequence[Statics | None]
+) -> list[Statics | None]:
+    """Give the equilibria with the highest body held at rotations, where joints may lift.
+
+    From those in which all rigid bases are in full contact: farther out than where a couple first
+    lifts a corner from one, all above that base rocks about the other corner, on what is below.
+    """
+    found: list[Statics | None] = [None] * len(rotations)
+    for side in (1, -1):
+        before, lifted, path = 0.0, None, None
+        here = [i for i, each in enumerate(rotations) if math.copysign(1.0, each) == side]
+        for i in sorted(here, key=lambda i: abs(rotations[i])):
+            if lifted is None:
+                lifted = _first_lift(setting, before, rotations[i], side)
+                if lifted is None:
+                    before, found[i] = rotations[i], closed[i]
+                    continue
+                path = Path(lifted.rotation, lifted.lower, np.zeros(len(lifted.lower)))
+            if path is None:
+                break
+            path, stands = lifted.bodies.chain.held(path, rotations[i])
+            found[i] = None if stands is None else lifted.bodies.statics_of(stands)
+    return found
+
+
+class _Lift(NamedTuple):
+    """Where a couple lifts a corner from a rigid base."""
+
+    bodies: StandingBodies  # all above that base on its other corner
+    rotation: float  # of the highest body
+    lower: "Array"  # rotations of all but the highest of these, on what they stand on
+
+
+def _first_lift(setting: "StackSetting", before: float, rotation: float, side: int) -> _Lift | None:
+    """Give the first lift between two rotations of the highest body, if there is one."""
+    from scipy.optimize import brentq
+
+    first: _Lift | None = None
+    for k, rigid in enumerate(setting.rigid):
+        if not rigid:
+            continue
+        joint = _Joint(setting, k, side)
+        if joint.spare(rotation) >= 0.0:
+            continue
+        at = before
+        if joint.spare(before) > 0.0:
+            at = cast("float", brentq(joint.spare, before, rotation))
+        if first is None or abs(at) < abs(first.rotation):
+            first = _Lift(joint.bodies, at, np.array(joint.rotations(at)[1:]))
+    return first
+
+
+class _Joint:
+    """A rigid base in full contact, beside bases that give way."""
+
+    def __init__(self, setting: "StackSetting", k: int, side: int) -> None:
+        self.closed = setting.standing.chain
+        whole = [*setting.groups]
+        self.place = next((i for i, some in enumerate(whole) if k in some), len(whole))
+        if self.place == len(whole):  # what is below stands still, on rigid ground
+            whole.append(range(whole[-1][-1] + 1, k + 1))
+        else:
+            some = whole[self.place]
+            whole[self.place : self.place + 1] = [range(some[0], k + 1), range(k + 1, some[-1] + 1)]
+        self.bodies = setting.standing_in(whole, k, side)
+        self.side = side
+
+    def rotations(self, rotation: float) -> list[float]:
+        """Give the rotations of all bodies on what they stand on; that on this base has none."""
+        (stands,) = self.closed.curve([rotation])
+        found = [] if stands is None else [one.state.rotation for one in stands]
+        return [*found[: self.place], 0.0, *found[self.place :]]
+
+    def spare(self, rotation: float) -> float:
+        """Give what the couple that holds the highest body lacks to lift a corner here."""
+        (stands,) = self.closed.curve([rotation])
+        if stands is None:
+            return math.inf  # something else has given way before
+        here = self.bodies.chain.settled(self.rotations(rotation))
+        if here is None:
+            return math.inf
+        lifts = self.bodies.chain.moments(here)[self.place]
+        return self.side * (self.closed.moments(stands)[0] - lifts)

@@ -18,6 +18,7 @@ from rockframe.system.parts import support_of
 from rockframe.system.rigid_base import (
     REACTIONS,
     RigidBase,
+    beyond_lift,
     pressed,
     rocked_statics,
     rocking_energy,
@@ -175,16 +176,23 @@ class StackSetting(Setting):
         return tuple(one.chain_link(self.body.mass) for one in self.ties)
 
     @cached_property
-    def _standing(self) -> StandingBodies:
+    def standing(self) -> StandingBodies:
+        """The bodies on all bases that give way, those on rigid ones as one with what is below."""
+        return self.standing_in(self.groups)
+
+    def standing_in(
+        self, groups: Sequence[range], lifted: int = -1, side: int = 0
+    ) -> StandingBodies:
+        """Give groups of bodies on their bases, of which one may have lifted from a rigid base."""
         from rockframe.dynamics.on_base import OnBase
 
         found, numbers = list[StandingBody](), list["BaseNumbers"]()
         mass = self.body.mass
-        for some in self.groups:
+        for some in groups:
             body, lowest = self._joined(some), some[-1]
             # how far its centre of mass is beside that of what it stands on
             beside = self.offsets[lowest] + body.eccentricity
-            for below in self.groups:
+            for below in groups:
                 if below[0] == lowest + 1:
                     shift = math.fsum(self.offsets[below[0] : below[-1]])
                     beside += shift - self._joined(below).eccentricity
@@ -193,19 +201,23 @@ class StackSetting(Setting):
             carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
             numbers.append(self.bases[lowest].law(law, mass, carried))
             part = OnBase(law, numbers[-1].law)
-            found.append(link_of(part, body.mass / mass, height - body.centre_height, beside))
-        ties = tuple(self._between_groups(one) for one in self.ties)
+            link = link_of(part, body.mass / mass, height - body.centre_height, beside)
+            if lowest == lifted:
+                small = min(one.settlement for one in self.standing.chain.links)
+                link = link._replace(corner=side, settlement=small)
+            found.append(link)
+        ties = tuple(self._between_groups(one, groups) for one in self.ties)
         chain = StandingChain(tuple(found), self.slope.along_gravity, ties)
         return StandingBodies(chain, mass, tuple(numbers))
 
-    def _between_groups(self, tie: PlacedLink) -> "ChainLink":
+    def _between_groups(self, tie: PlacedLink, groups: Sequence[range]) -> "ChainLink":
         """Give a tie between bodies that rigid bases make one; what is on the ground stays."""
         found = tie.chain_link(self.body.mass)
         if not any(self.rigid):
             return found
         which, points = [-1, -1], [(0.0, 0.0), (0.0, 0.0)]
         for i, (body, (x, y)) in enumerate(zip((tie.on, tie.to), tie.ends, strict=True)):
-            for number, some in enumerate(self.groups):
+            for number, some in enumerate(groups):
                 if body in some:
                     one, (place, level) = self._joined(some), self.base_of(some[-1])
                     which[i] = number
@@ -227,7 +239,7 @@ class StackSetting(Setting):
 
     @cached_property
     def _rest(self) -> list[Stand]:
-        found = self._standing.rest if self.groups else []
+        found = self.standing.rest if self.groups else []
         if found is None:
             raise AssemblyError([NO_REST])
         faults = list[str]()
@@ -265,13 +277,13 @@ class StackSetting(Setting):
         if not self.groups:
             return None
         if len(self.bodies) == 1:
-            found = self._standing.small_motion(self._rest)
+            found = self.standing.small_motion(self._rest)
             return SmallMotion(
                 ("vertical_displacement", "rotation"), *(one[::-1, ::-1] for one in found)
             )
         names = ("body_rotation", "body_vertical_displacement") * len(self.groups)
         which = tuple(some[-1] + 1 for some in self.groups)
-        return SmallMotion(names, *self._standing.small_motion(self._rest), bodies=which)
+        return SmallMotion(names, *self.standing.small_motion(self._rest), bodies=which)
 
     def without_small_motion(self) -> str:
         """Say why there are no such equations."""
@@ -293,20 +305,16 @@ class StackSetting(Setting):
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Give the equilibria with the highest body held at rotations.
 
-        On rigid bases beside others, up to the couple at which a corner lifts from one.
+        On rigid bases beside others, also beyond the couple at which a corner lifts from one.
         """
         if not self.groups:
             return [rocked_statics(self, rotation) for rotation in rotations]
-        found = self._standing.held(rotations)
+        found = self.standing.held(rotations)
         if len(self.bodies) == 1:
             return found
-        held = [pressed(self, k, self._tied_at_rest) for k, rigid in enumerate(self.rigid) if rigid]
-        return [
-            replace(one, reactions={})
-            if one is not None and all(base.bears(one.restoring_moment) for base in held)
-            else None
-            for one in found
-        ]
+        if any(self.rigid):
+            found = beyond_lift(self, rotations, found)
+        return [None if one is None else replace(one, reactions={}) for one in found]
 
     def equilibrium(self) -> dict[str, float]:
         """Give what the one base and the ties show at rest; each of several has its own."""
@@ -319,7 +327,7 @@ class StackSetting(Setting):
                 f"static_{name}": value for name, value in zip(REACTIONS, reactions, strict=True)
             }
         elif len(self.bodies) == 1:
-            shown = self._standing.reactions(self._rest)
+            shown = self.standing.reactions(self._rest)
             found = {
                 self.bases[0].settlement_name: self.bases[0].settlement,
                 **{f"static_{name}": value for name, value in shown.items()},
@@ -333,7 +341,7 @@ class StackSetting(Setting):
 
         if not self.groups:
             return at_rest(self.chain_ties)
-        return self._standing.chain.tied(self._standing.rest or [])
+        return self.standing.chain.tied(self.standing.rest or [])
 
     def tied_at_rest(self) -> dict[str, Any]:
         """Give forces and elongations of ties at rest, by their names in the schema."""
@@ -363,7 +371,7 @@ class StackSetting(Setting):
 
     def _held_height(self, rotation: float) -> float:
         """Give the height at which the one body starts at a rotation, with its ties."""
-        stands = self._standing.chain.settled([rotation])
+        stands = self.standing.chain.settled([rotation])
         if stands is None:
             raise AssemblyError([NO_REST])
         return stands[0].state.vertical

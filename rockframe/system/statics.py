@@ -85,7 +85,7 @@ class StandingBodies:
     def held(self, rotations: Sequence[float]) -> list[Statics | None]:
         """Give the states with the highest body held at rotations; None where there is none."""
         curve = self.chain.curve(rotations)
-        found = [None if stands is None else self._statics_of(stands) for stands in curve]
+        found = [None if stands is None else self.statics_of(stands) for stands in curve]
         least = LEAST * self.chain.links[0].allowed_rotation if self.chain.upright else 0.0
         for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
             if state is not None and abs(rotation) < least:
@@ -103,7 +103,8 @@ class StandingBodies:
             restoring_moment=share * (8.0 * near.restoring_moment - far.restoring_moment),
         )
 
-    def _statics_of(self, stands: list[Stand]) -> Statics:
+    def statics_of(self, stands: list[Stand]) -> Statics:
+        """Give the moments by which bodies stand so, and what their bases show."""
         (part, *_), lowest = self.chain.links[0], stands[-1]
         body = self.chain.links[-1].part.body
         attitude = body.attitude(lowest.state.rotation)
@@ -121,6 +122,8 @@ class StandingBodies:
         """Give what the bases show, by the names of the schema."""
         found = dict[str, float]()
         for link, stand, numbers in zip(self.chain.links, stands, self.bases, strict=True):
+            if link.corner:
+                continue
             base = link.part.base
             shown = base.observed(stand.mode.contact, stand.line, stand.own)
             for column, value in zip(numbers.columns, shown, strict=True):

@@ -1,0 +1,92 @@
+"""Stacks of rigid bases and others held at a rotation, where a corner lifts from a rigid base."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+
+pytestmark = pytest.mark.analytical
+
+GRAVITY = 9.80665
+BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
+STATUE = rf.Block(width="0.8 m", height="1.2 m", mass="1 t")
+PADS = rf.TwoSpringSupport(stiffness="2 MN/m", damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.1)
+JOINT = rf.RigidGround()
+ABOVE_LIFT = np.array([0.03, 0.06, 0.12, 0.2])
+
+
+def held(*parts, angles=ABOVE_LIFT):
+    return rf.System(*parts).moment_rotation((angles, "rad"))
+
+
+def statue_alone(angles):
+    return 1e3 * GRAVITY * (0.4 * np.cos(angles) - 0.6 * np.sin(angles))
+
+
+SCENES = {
+    "statue on a block on pads": (rf.Stack(STATUE, BLOCK, interfaces=[JOINT]), PADS),
+    "on soil": (rf.Stack(STATUE, BLOCK, interfaces=[JOINT]), SOIL),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_beyond_its_lift_the_highest_body_rocks_whatever_it_stands_on(name):
+    state = held(*SCENES[name])
+    np.testing.assert_allclose(state.restoring_moment, statue_alone(ABOVE_LIFT), rtol=1e-12)
+    assert (state.held_contact_state == 2).all()  # on its right corner
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_both_branches_meet_where_the_corner_lifts(name):
+    angles = np.linspace(0.0005, 0.03, 60)
+    state = held(*SCENES[name], angles=angles)
+    couple, lifts = state.restoring_moment.values, statue_alone(angles)
+    assert couple == pytest.approx(np.minimum(couple, lifts), rel=1e-9)
+    lifted = state.held_contact_state.values == 2
+    assert not lifted[0]
+    assert np.flatnonzero(np.diff(lifted)).size == 1  # and stays so
+    steps = np.abs(np.diff(couple))
+    assert steps[lifted[1:] & ~lifted[:-1]].max() <= 1.01 * steps[~lifted[1:]].max()
+    opposite = held(*SCENES[name], angles=-angles)
+    np.testing.assert_allclose(opposite.restoring_moment, -couple, rtol=1e-9)
+    np.testing.assert_allclose(opposite.base_moment, -state.base_moment, rtol=1e-9)
+
+
+def test_what_is_below_carries_the_weight_at_the_corner():
+    (moment,) = np.unique(held(*SCENES["statue on a block on pads"]).base_moment.values.round(6))
+    # the block with a mass of 1 t at its upper right corner of the joint
+    middle, level = (1.0 * 0.4) / 5.0, (4.0 * 2.0 + 1.0 * 4.0) / 5.0
+    loaded = rf.Block(
+        width="1 m", height="4 m", mass="5 t",
+        centre_of_mass=(f"{level} m", f"{middle} m"),
+    )  # fmt: skip
+    rotation = rf.System(loaded, PADS).equilibrium().rest_rotation.item()
+    across = middle * np.cos(rotation) + level * np.sin(rotation)
+    assert moment == pytest.approx(5e3 * GRAVITY * across, rel=1e-9)
+
+
+def test_bodies_that_give_way_above_the_base_that_lifts():
+    # a statue that is tied down to a block on rigid ground, on stiff pads between them
+    stiff = rf.TwoSpringSupport(stiffness="400 MN/m", damping_ratio=0.1)
+    ties = [
+        rf.Restrainer(
+            on=(f"{x} m", "0.3 m"), to=(f"{x} m", "3.8 m"), on_body=1, to_body=2,
+            stiffness="200 MN/m",
+        )
+        for x in (-0.4, 0.4)
+    ]  # fmt: skip
+    angles = np.array([0.02, 0.05])
+    state = held(rf.Stack(STATUE, BLOCK, interfaces=[stiff]), JOINT, *ties, angles=angles)
+    level = (1.0 * 4.6 + 4.0 * 2.0) / 5.0
+    about = 5e3 * GRAVITY * (0.5 * np.cos(angles) - level * np.sin(angles))
+    np.testing.assert_allclose(state.restoring_moment, about, rtol=0.01)
+
+
+def test_a_tie_pulls_on_what_has_lifted():
+    tie = rf.Restrainer(on=("-0.4 m", "4.5 m"), to=("-2 m", "0 m"), stiffness="20 kN/m")
+    scene = SCENES["statue on a block on pads"]
+    tied, free = held(*scene, tie), held(*scene)
+    assert (tied.restoring_moment > free.restoring_moment + 1e3).all()
+    other = held(*scene, tie, angles=-ABOVE_LIFT)  # slack to that side
+    np.testing.assert_allclose(other.restoring_moment, -free.restoring_moment, rtol=1e-9)
