@@ -82,7 +82,7 @@ def incremental_dynamic_analysis(
         Factors of the motions at which all of them are run first, above zero; 0.1 to 4 in steps
         of 0.1 unless given [1].
     limits : iterable, optional
-        Limit states beside overturning: ``"uplift"``, and peak rotations over the
+        Limit states before overturning, in their order: ``"uplift"``, and peak rotations over the
         overturning angle, such as 0.5; or variables of runs, as for
         :func:`rockframe.fragility` [1].
     intensity : str, optional

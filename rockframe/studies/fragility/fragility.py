@@ -87,7 +87,7 @@ def fragility(
         numbers of one's own along dimensions of the runs, with a name and ``units``. Two
         give a fragility over both.
     limits : iterable, optional
-        Limit states beside overturning: ``"uplift"``, and peak rotations over the
+        Limit states before overturning, in their order: ``"uplift"``, and peak rotations over the
         overturning angle; uplift unless given, and of a dynamic analysis those that it has [1].
         Or on any scalar of the runs whose size tells: its name and a value with a unit, such
         as ``("peak_slip", "5 cm")`` or ``("broken_restrainer_count", 1)``; and third, of points,
