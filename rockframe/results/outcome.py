@@ -1,7 +1,7 @@
 """A finished run in plain values: what the dataset is built from."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -104,11 +104,13 @@ def link_histories(model: ContactModel, values: Mapping[str, Generic]) -> dict[s
     return {name: np.array([values[column_of(name, i)] for i in links]) for name in OF_EACH_LINK}
 
 
-def broken_links(model: ContactModel, ending: Ending) -> int:
-    """Tell how many restrainers are broken at the end of a run; once broken, they stay so."""
+def broken_links(model: ContactModel, ending: Ending) -> list[int]:
+    """Tell which restrainers are broken at the end of a run; once broken, they stay so."""
     system = cast("Any", model.system)
     rows = [system.row_of_link(i) for i in range(model.links)]
-    return sum(system.link_state(ending.mode, row) == LinkState.BROKEN for row in rows)
+    return [
+        i for i, row in enumerate(rows) if system.link_state(ending.mode, row) == LinkState.BROKEN
+    ]
 
 
 def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
@@ -270,13 +272,18 @@ _ENDINGS = {
 }
 
 
-def verdict(run: Summary, setting: Setting, *, end: float) -> str:
-    """Say in one sentence what became of the block, whose rotation was `end` at last [rad]."""
+def verdict(
+    run: Summary, setting: Setting, *, end: float, of: str = "", broken: Sequence[str] = ()
+) -> str:
+    """Say in one sentence what became of the block, whose rotation was `end` at last [rad].
+
+    `of` tells which body of several it is, `broken` which restrainers broke.
+    """
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
     nearest = peak_of(run, setting.overturning_angles)
     peak = (
         f"peak rotation {nearest.rotation:.4g} rad, "
-        f"{100.0 * nearest.share:.3g} % of the overturning angle"
+        f"{100.0 * nearest.share:.3g} % of the overturning angle{of}"
     )
     if setting.leans and nearest.rotation > 0.0:
         peak += f" to the {nearest.side.name.lower()}"
@@ -290,6 +297,8 @@ def verdict(run: Summary, setting: Setting, *, end: float) -> str:
         text += ", no uplift from the pads" if setting.stacked else ", no uplift"
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
+    if broken:
+        text += f"; {', '.join([*broken[:-2], ' and '.join(broken[-2:])])} broke"
     if run.passed and not run.status.finished:
         text += f". Not finished: {_cut_off(run)}"
     slid = [_slid(slips) for slips in setting.slips_of(run.ending)]

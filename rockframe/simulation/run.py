@@ -26,6 +26,7 @@ from rockframe.results.outcome import (
 from rockframe.results.schema import schema_row
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
+from rockframe.signals.arrays import Array
 from rockframe.simulation.answers import Answers, answers_of, ground_at
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
@@ -61,6 +62,8 @@ _SAMPLES: Final = "histories, and the peaks of forces and at points,"
 _SECOND: Final = "a second run with more steps"
 _FRICTION: Final = "whether the base has the friction that is needed"
 _LEAVING: Final = "whether the block would leave the ground"
+SAME: Final = 1e-6
+"""Share by which a body comes no closer to overturning than another."""
 TENSION: Final = 1e-9
 """Share of the largest reaction below which a pull is rounding."""
 
@@ -171,7 +174,7 @@ def scalars_of(
     uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
     found = scalars(summary, setting, uplift_angle=uplift)
     if system.model.links:
-        found["broken_restrainer_count"] = broken_links(system.model, summary.ending)
+        found["broken_restrainer_count"] = len(broken_links(system.model, summary.ending))
     return found
 
 
@@ -192,6 +195,8 @@ def run(
     attributes |= end_attributes(summary.ending)
     if response.uniqueness is not None:
         attributes |= response.uniqueness.attributes()
+    if not summary.passed:
+        attributes["verdict"] = f"{attributes['verdict']}{_nearest(response.answers.shares)}"
     if summary.status.finished and not system.setting.slides:
         answers = response.answers
         friction = or_missing(
@@ -315,8 +320,24 @@ def has_no_cautions(system: Assembly, summary: Summary) -> bool:
 
 
 def _verdict(system: Assembly, summary: Summary) -> str:
-    end = system.model.rotation_in(summary.ending.state)
-    return verdict(summary, system.setting, end=end)
+    setting, ending = system.setting, summary.ending
+    return verdict(
+        summary,
+        setting,
+        end=system.model.rotation_in(ending.state),
+        of=" of body 1" if system.model.shows_bodies else "",
+        broken=[setting.link_names[i] for i in broken_links(system.model, ending)],
+    )
+
+
+def _nearest(shares: Array) -> str:
+    """Say which body of several came closest to overturning, where it was not the highest."""
+    if len(shares) < 2 or shares.max() <= (1.0 + SAME) * shares[0]:
+        return ""
+    return (
+        f" Body {np.argmax(shares) + 1} came closest: {100.0 * shares.max():.3g} % of the angle at "
+        "which it overturns with all above it."
+    )
 
 
 def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:

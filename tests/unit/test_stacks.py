@@ -145,6 +145,11 @@ def test_a_stack_overturns_where_a_lower_body_does():
     at_end = np.abs(run.body_rotation[:, -1].to_numpy())
     assert at_end[0] < 0.5 * float(run.overturning_angle)
     assert run.event_body[-1] == 1
+    stands = system.simulate(PULSE, free_vibration="1 s", second_look=False)
+    angle = np.arctan2(0.5, (2.0 * 6.4 + 9.0 * 3.0) / 11.0)  # of both as one
+    share = 100.0 * float(stands.peak_body_rotation[1]) / angle
+    assert f" Body 2 came closest: {share:.3g} % of the angle" in stands.attrs["verdict"]
+    assert " % of the overturning angle of body 1;" in stands.attrs["verdict"]
 
 
 def test_offsets_lean_a_stack_at_rest():
