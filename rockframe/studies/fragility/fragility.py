@@ -98,8 +98,8 @@ def fragility(
     motions : GroundMotion, or sequence or mapping of them, optional
         The records of the sweep, where neither the dataset nor this process has them.
     pooled : iterable of str, optional
-        Axes of the sweep, or columns of its table, of which all values are taken for one
-        structure, whose dispersion then holds their differences too.
+        Axes of the sweep, or columns of its table (all of them by ``"case"``), of which all
+        values are taken for one structure, whose dispersion then holds their differences too.
     trials : {"runs", "capacities"}, optional
         What is fitted: all runs, each as it went; or, of a dynamic analysis, the least scale
         that was found to exceed under each motion, above which a block may stand again. The

@@ -87,6 +87,7 @@ def test_rows_of_a_table_are_of_one_structure_where_they_are_alike(runs):
     assert_same_fit(rf.fragility(apart, "PGV", limits=()), found)
     both = rf.fragility(apart, "PGV", limits=(), pooled="width")
     assert both.trial_count.item() == apart.status.size
+    assert_same_fit(rf.fragility(apart, "PGV", limits=(), pooled="case"), both)
     with pytest.raises(SchemaError, match="without its coordinate 'width'"):
         rf.fragility(table.drop_vars("width"))
 
