@@ -1,11 +1,19 @@
 """Histories, forces and points of a run, as far as they are asked for."""
 
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 import numpy as np
 
 from rockframe.compiled import Integers
-from rockframe.dynamics.events import IMPACT, SILENT
+from rockframe.dynamics.events import (
+    IMPACT,
+    PIVOT_CHANGE,
+    REENGAGEMENT,
+    SEPARATION,
+    SILENT,
+    STICK,
+)
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
@@ -22,6 +30,7 @@ from rockframe.results.forces import (
     residuals,
 )
 from rockframe.results.outcome import (
+    LEAST_SLIP,
     Generic,
     body_histories,
     cap_histories,
@@ -45,6 +54,9 @@ from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
 from rockframe.system.setting import Setting
+
+HELD_ANEW: Final = (SEPARATION, REENGAGEMENT, PIVOT_CHANGE)
+"""Events that change the point of a base that is held."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +99,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     values |= ground_histories(ground[:count], has_vertical_motion=vertical)
     values["time"] = run.time
     events = _events_in(shown_at, run, setting)
-    along, upright = _along(system, plan, run), events
+    along, upright = _along(system, plan, run, events), events
     if not along.steps.complete:
         missing.append(
             f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
@@ -212,14 +224,21 @@ def _shown(
     return without_gravity(shown, system.options.slope)
 
 
-def _along(system: Assembly, plan: Plan, run: Trajectory) -> AlongSteps:
-    """Give what the model shows along the steps, up to overturning."""
+def _along(system: Assembly, plan: Plan, run: Trajectory, events: EventStates) -> AlongSteps:
+    """Give what the model shows along the steps, up to overturning.
+
+    Without those in which friction stops a new held point: bases that hold need an impulse there,
+    which is no force either.
+    """
     if run.steps is None:
         msg = "no steps were kept"
         raise ValueError(msg)
     slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
     until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
     steps = run.steps.until(until)
+    kept = ~np.isin(steps.memory_row, _stops(run, events))
+    if not kept.all():
+        steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
     if _everything(plan):
         shown = without_gravity(observe_steps(system.model, steps, memory, None), slope)
         moved = steps.ground - np.array([slope.along_gravity, 0.0])
@@ -273,6 +292,14 @@ def _of_links(system: Assembly, along: AlongSteps) -> dict[str, Generic | float]
     names = forces_of_links(system.model.links)
     peaks = along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
     return {"peak_restrainer_force": peaks}
+
+
+def _stops(run: Trajectory, events: EventStates) -> Integers:
+    """Give the numbers, from one, of events behind which friction stops a new held point."""
+    changes = np.isin(run.events.kind[:-1], HELD_ANEW) & (run.events.kind[1:] == STICK)
+    for name in (one for one in events.after if one == "slip" or one.startswith("slip_of_")):
+        changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < LEAST_SLIP
+    return 1 + np.flatnonzero(changes)
 
 
 def _peak_rotations(system: Assembly, along: AlongSteps) -> tuple[Array, Array]:
