@@ -121,7 +121,9 @@ class Response:
         )
         slidings = self.answers.slidings
         slides = float(any(each.slides for each in slidings)) if slidings else math.nan
-        return replace(shown, slides=slides)
+        slips = self.system.setting.slips_of(self.trajectory.ending)
+        slip = max((one.peak for one in slips), default=math.nan)
+        return replace(shown, slides=slides, slip=slip)
 
     def cautions(self) -> list[Caution]:
         """Give what is to be warned of."""
