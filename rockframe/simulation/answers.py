@@ -6,14 +6,7 @@ from typing import Final
 import numpy as np
 
 from rockframe.compiled import Integers
-from rockframe.dynamics.events import (
-    IMPACT,
-    PIVOT_CHANGE,
-    REENGAGEMENT,
-    SEPARATION,
-    SILENT,
-    STICK,
-)
+from rockframe.dynamics.events import IMPACT, REVERSAL, SILENT, SLIP, STICK
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
@@ -55,8 +48,8 @@ from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
 from rockframe.system.setting import Setting
 
-HELD_ANEW: Final = (SEPARATION, REENGAGEMENT, PIVOT_CHANGE)
-"""Events that change the point of a base that is held."""
+OF_SLIPS: Final = (SLIP, REVERSAL, STICK)
+"""Events by which a base that could not be held any longer slips, and holds again."""
 
 
 @dataclass(frozen=True)
@@ -227,8 +220,8 @@ def _shown(
 def _along(system: Assembly, plan: Plan, run: Trajectory, events: EventStates) -> AlongSteps:
     """Give what the model shows along the steps, up to overturning.
 
-    Without those in which friction stops a new held point: bases that hold need an impulse there,
-    which is no force either.
+    Without those in which friction stops what an impact or a new held point has left: bases that
+    hold need an impulse there, which is no force either.
     """
     if run.steps is None:
         msg = "no steps were kept"
@@ -295,8 +288,9 @@ def _of_links(system: Assembly, along: AlongSteps) -> dict[str, Generic | float]
 
 
 def _stops(run: Trajectory, events: EventStates) -> Integers:
-    """Give the numbers, from one, of events behind which friction stops a new held point."""
-    changes = np.isin(run.events.kind[:-1], HELD_ANEW) & (run.events.kind[1:] == STICK)
+    """Give the numbers, from one, of events whose small velocity friction stops at once."""
+    kind = run.events.kind
+    changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
     for name in (one for one in events.after if one == "slip" or one.startswith("slip_of_")):
         changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < LEAST_SLIP
     return 1 + np.flatnonzero(changes)
