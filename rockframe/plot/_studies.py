@@ -303,6 +303,8 @@ def _draw_lines(
     if not _is_axis(given, along) and along in given.coords:
         names = [str(name) for name in given[along].to_numpy()]
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
+    elif places.dtype.kind in "iu":  # no half of an earthquake or a body
+        axes.locator_params(axis="x", integer=True)
     axes.set(xlabel=words, ylabel=label_of(values))
     grid(axes)
     if others:
