@@ -36,6 +36,8 @@ MOST_OF_IT: Final = 0.95
 """Share of the largest slip below which that is told beside what is left at the end."""
 NOTHING_OF_IT: Final = 1e-9
 """Share of the largest slip below which what is left is rounding."""
+SAME: Final = 1e-6
+"""Share by which one body comes no closer to overturning than another."""
 LEAST_SLIP: Final = 1e-6
 """Slip that is worth telling; changes of the held point leave less [m]."""
 Generic = NDArray[Any]
@@ -60,8 +62,9 @@ def peak_of(run: Summary, angles: OverturningAngles) -> Peak:
 
 
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
-    """Give the share of the overturning angle in :func:`peak_of`."""
-    return largest(run.peak_right / angles.right, run.peak_left / angles.left)
+    """Give the share of the overturning angle in :func:`peak_of`; of several bodies the largest."""
+    own = largest(run.peak_right / angles.right, run.peak_left / angles.left)
+    return largest(own, run.other_share)
 
 
 def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
@@ -287,6 +290,8 @@ def verdict(
     )
     if setting.leans and nearest.rotation > 0.0:
         peak += f" to the {nearest.side.name.lower()}"
+    if run.other_share > (1.0 + SAME) * nearest.share:
+        peak += f", a lower body {100.0 * run.other_share:.3g} % of its own"
     if run.passed:
         text = f"{_overturned(run, setting, end)}, after {impacts}"
     elif not run.status.finished:

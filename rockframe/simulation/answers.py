@@ -10,7 +10,7 @@ from rockframe.dynamics.events import IMPACT, REVERSAL, SILENT, SLIP, STICK
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
-from rockframe.results.along_steps import FRACTIONS, AlongSteps, Values
+from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.dataset import fitting
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.forces import (
@@ -64,8 +64,6 @@ class Answers:
     points: dict[str, Generic] = field(default_factory=dict[str, Generic])
     # whether bases have friction enough, of those to which it was given
     slidings: list[SlidingCheck] = field(default_factory=list[SlidingCheck])
-    # of the overturning angle of each body of several that its greatest rotation reached [1]
-    shares: Array = field(default_factory=lambda: np.zeros(0))
 
 
 def ground_at(motion: GroundMotion | None, time: Array) -> Array:
@@ -107,9 +105,8 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     }  # fmt: skip
     if "slip" in values:
         scalars["residual_displacement"] = float(values["horizontal_displacement"][-1])
-    shares = np.zeros(0)
     if system.model.shows_bodies:
-        scalars["peak_body_rotation"], shares = _peak_rotations(system, along)
+        scalars["peak_body_rotation"] = _peak_rotations(system, along)
     places: dict[str, Generic] = {}
     if system.model.links:
         scalars |= _of_links(system, along)
@@ -140,7 +137,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         for name, each in everything.items()
         if name not in ON_REQUEST or name in plan.requested
     }
-    return Answers(kept if plan.histories else {}, scalars, places, found, shares)
+    return Answers(kept if plan.histories else {}, scalars, places, found)
 
 
 def _everything(plan: Plan) -> bool:
@@ -296,22 +293,10 @@ def _stops(run: Trajectory, events: EventStates) -> Integers:
     return 1 + np.flatnonzero(changes)
 
 
-def _peak_rotations(system: Assembly, along: AlongSteps) -> tuple[Array, Array]:
-    """Give the greatest rotation of each body, and that over the angle at which it overturns."""
-    model = system.model
-    names = rotations_of(model.system.bodies())
-    others = model.other_limits.reshape(-1, 2 + len(model.rotation_weights))[:, :2]
-    left, right = np.array([model.rotation_limits, *others]).T[..., None]
-
-    def rotations(shown: Values) -> Array:
-        return np.array([shown[name] for name in names])
-
-    def shares(shown: Values) -> Array:
-        found = rotations(shown)
-        return np.maximum(-found / left, found / right)
-
-    (peaks, _), (nearest, _) = along.each_largest(lambda shown: np.abs(rotations(shown)), shares)
-    return peaks, nearest
+def _peak_rotations(system: Assembly, along: AlongSteps) -> Array:
+    """Give the greatest rotation of each body."""
+    names = rotations_of(system.model.system.bodies())
+    return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
 
 
 def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[str, Generic]:

@@ -18,7 +18,7 @@ from rockframe.results.outcome import (
     broken_links,
     event_columns,
     ground_on_slope,
-    peak_of,
+    peak_share,
     scalars,
     slope_attributes,
     verdict,
@@ -26,7 +26,6 @@ from rockframe.results.outcome import (
 from rockframe.results.schema import schema_row
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
-from rockframe.signals.arrays import Array
 from rockframe.simulation.answers import Answers, answers_of, ground_at
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
@@ -62,8 +61,6 @@ _SAMPLES: Final = "histories, and the peaks of forces and at points,"
 _SECOND: Final = "a second run with more steps"
 _FRICTION: Final = "whether the base has the friction that is needed"
 _LEAVING: Final = "whether the block would leave the ground"
-SAME: Final = 1e-6
-"""Share by which a body comes no closer to overturning than another."""
 TENSION: Final = 1e-9
 """Share of the largest reaction below which a pull is rounding."""
 
@@ -115,7 +112,7 @@ class Response:
 
     def summary(self) -> RunSummary:
         """Tell what a certificate asks of the run."""
-        share = peak_of(self.trajectory, self.system.setting.overturning_angles).share
+        share = peak_share(self.trajectory, self.system.setting.overturning_angles)
         shown = run_summary(
             self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
         )
@@ -197,8 +194,6 @@ def run(
     attributes |= end_attributes(summary.ending)
     if response.uniqueness is not None:
         attributes |= response.uniqueness.attributes()
-    if not summary.passed:
-        attributes["verdict"] = f"{attributes['verdict']}{_nearest(response.answers.shares)}"
     if summary.status.finished and not system.setting.slides:
         answers = response.answers
         friction = or_missing(
@@ -329,16 +324,6 @@ def _verdict(system: Assembly, summary: Summary) -> str:
         end=system.model.rotation_in(ending.state),
         of=" of body 1" if system.model.shows_bodies else "",
         broken=[setting.link_names[i] for i in broken_links(system.model, ending)],
-    )
-
-
-def _nearest(shares: Array) -> str:
-    """Say which body of several came closest to overturning, where it was not the highest."""
-    if len(shares) < 2 or shares.max() <= (1.0 + SAME) * shares[0]:
-        return ""
-    return (
-        f" Body {np.argmax(shares) + 1} came closest: {100.0 * shares.max():.3g} % of the angle at "
-        "which it overturns with all above it."
     )
 
 
