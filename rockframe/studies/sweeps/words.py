@@ -43,7 +43,9 @@ def cases_verdict(dataset: xr.Dataset) -> str:
 
 def whole_verdict(dataset: xr.Dataset) -> str:
     """Say what became of all cases of a sweep, in words that stay true of a part of it."""
-    return cases_sentence(dataset, f"Of all {dataset['status'].size} cases of the sweep")
+    count = dataset["status"].size
+    these = "Of 1 case" if count == 1 else f"Of all {count} cases"
+    return cases_sentence(dataset, f"{these} of the sweep")
 
 
 def cases_sentence(runs: xr.Dataset, these: str) -> str:
