@@ -212,7 +212,7 @@ def test_figures_tell_structures_apart(runs):
     panels = rf.plot.fragility(found)
     assert [axes.get_title() for axes in panels] == ["rotation 0.3", "overturning"]
     names = [text.get_text() for text in panels.figure.legends[0].get_texts()]
-    assert names == ["width 0.4", "width 0.5", "width 0.8"]
+    assert names == ["width 0.4 m", "width 0.5 m", "width 0.8 m"]
     axes = rf.plot.fragility(found.isel(width=1))
     told = axes.figure.get_suptitle().replace("\n", " ")
     assert f"{found.median_intensity[1, 1].item():.4g}" in told
