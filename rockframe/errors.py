@@ -204,10 +204,33 @@ def shown(value: object) -> str:
     return line if len(line) <= LONGEST_SHOWN else f"{line[: LONGEST_SHOWN - 3]}..."
 
 
+_SYMBOLS: Final = {
+    "m": ("mass",),
+    "e": ("restitution",),
+    "epsilon": ("restitution",),
+    "mu": ("friction",),
+    "mu_s": ("friction",),
+    "mu_k": ("kinetic_friction",),
+    "beta": ("frequency_ratio",),
+    "xi": ("damping_ratio",),
+    "zeta": ("damping_ratio",),
+    "dt": ("time_step",),
+    "pga": ("peak_ground_acceleration", "peak_acceleration", "peak"),
+    "pgv": ("peak_ground_velocity", "peak_velocity"),
+    "im": ("intensity",),
+    "ida": ("incremental_dynamic_analysis",),
+    "prestress": ("preload",),
+}
+"""What is written in papers for names of arguments, parameters and functions; but not b and h,
+which are halves of the width and of the height there."""
+
+
 def nearest(given: object, known: Iterable[str]) -> str:
     """Ask whether a similar word was meant, behind what was given; nothing where there is none."""
     words = {one.casefold(): one for one in known}
-    near = get_close_matches(str(given).casefold(), words, n=3)
+    wanted = str(given).casefold()
+    near = [one for one in _SYMBOLS.get(wanted, ()) if one in words]
+    near = near or get_close_matches(wanted, words, n=3)
     return f"; was {' or '.join(repr(words[one]) for one in near)} meant?" if near else ""
 
 

@@ -35,7 +35,12 @@ def rocking_block(
         ):
             return setting
     carried = ", which may carry loads that are masses," if carries else ","
-    msg = f"{owner}: the check is of a block on level rigid ground{carried} got {setting.model}"
+    found = ", ".join(type(part).__name__ for part in system.parts.structural())
+    slope = "" if level else " on a slope"
+    msg = (
+        f"{owner}: the check is of a block on level rigid ground{carried} got {found}{slope}, "
+        f"{setting.model}; check the block alone, rf.System(block)"
+    )
     raise ComponentError(msg)
 
 

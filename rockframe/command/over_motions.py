@@ -17,6 +17,7 @@ from rockframe.command.shared import (
     values_of,
 )
 from rockframe.errors import ComponentError, FileError
+from rockframe.results.schema import SCHEMA
 
 SCALE: Final = "scale"
 _NO_MOTIONS: Final = (
@@ -62,6 +63,9 @@ def _limit(word: str) -> object:
             msg = f"--limits: expected a number, a name or NAME=VALUE, got {word!r}"
             raise ComponentError(msg) from None
     name, equals, value = word.partition("=")
+    if not equals and name in SCHEMA:
+        msg = f"--limits: {name} needs the value from which on it exceeds, as in 'peak_slip=5 cm'"
+        raise ComponentError(msg)
     if not equals:
         return word
     return name.strip(), float(value) if re.fullmatch(r"[\d.]+", value.strip()) else value.strip()

@@ -268,6 +268,26 @@ class FrameEquivalent(Block):
         arguments = self._plain_arguments()
         return type(self).from_members(**replaced(arguments, changes, RegularFrame.alternatives))
 
+    def parameters(self) -> tuple[str, ...]:
+        """Name the numbers of the block that the frame stands for, other than zero.
+
+        Returns
+        -------
+        tuple of str
+            Also of a frame that was built from its members; one of which such a number is
+            scaled is given by its equivalent parameters.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> tower = rf.Member.box("tower", "column", 2400.0, (0.0, 4.5), (1.0, 9.0, 1.0))
+        >>> rf.FrameEquivalent.from_members([tower], width="1 m", height="9 m").parameters()
+        ('width', 'height', 'mass', 'shape_factor', 'centre_height')
+        """
+        if self._building is None:
+            return super().parameters()
+        return type(self).from_dict(super()._arguments()).parameters()
+
     @property
     def members(self) -> tuple[Member, ...]:
         """Members that the frame was built from; none if it was built from its parameters."""

@@ -375,6 +375,15 @@ class ContactModel:
         """Give the block's rotation in a state."""
         return plain(self.rotation_weights @ state[: len(self.rotation_weights)])
 
+    def other_share_in(self, state: Vector) -> float:
+        """Give the largest share of another body's rotation in its limit; zero without one."""
+        size = len(self.rotation_weights)
+        share = 0.0
+        for left, right, *weights in self.other_limits.reshape(-1, 2 + size).tolist():
+            rotation = float(np.dot(weights, state[:size]))
+            share = max(share, -rotation / left, rotation / right)
+        return share
+
 
 def _of_each(function: Callable[[int], int], modes: Integers) -> Integers:
     """Ask what modes mean, each once; most last for many samples."""

@@ -37,6 +37,8 @@ _PELICUN_MEASURES: Final = {
     SHORT["PGV"]: ("Peak Ground Velocity", "mps", 1.0),
     SHORT["SA"]: ("Peak Spectral Acceleration", "g", STANDARD_GRAVITY),
 }
+_QUANTITIES: Final = frozenset({"spectral", "acceleration", "velocity", "displacement", "drift"})
+"""Words by which the type of a demand tells its quantity."""
 _OPENQUAKE_MEASURES: Final = {
     # (intensity measure type, SI units in its unit)
     SHORT["PGA"]: ("PGA", STANDARD_GRAVITY),
@@ -83,7 +85,8 @@ def to_pelicun(
     SchemaError
         Not a fragility over one such measure.
     ComponentError
-        A limit state has no fit, or dispersion zero; or there are several structures.
+        A limit state has no fit, or dispersion zero; there are several structures; or the
+        demand is of another quantity than the fragility.
 
     Notes
     -----
@@ -102,12 +105,12 @@ def to_pelicun(
     import pandas as pd
 
     identifier = text(component, owner=_PELICUN, name="component")
-    if demand is not None:
-        text(demand, owner=_PELICUN, name="demand")
     storeys = whole_number(offset, owner=_PELICUN, name="offset", lowest=-_MOST_STOREYS)
     truth(directional, owner=_PELICUN, name="directional")
     measure, states = _fits(fragility, _PELICUN_MEASURES, owner=_PELICUN)
     kind, unit, size = _PELICUN_MEASURES[measure]
+    if demand is not None:
+        _check_demand(text(demand, owner=_PELICUN, name="demand"), measure, kind)
     if measure == SHORT["SA"]:
         kind = f"{kind}|{_period(fragility, _PELICUN):g}"
     row: dict[str, Any] = {
@@ -125,6 +128,19 @@ def to_pelicun(
             f"LS{number}-DamageStateWeights": None,
         }
     return pd.DataFrame([row], index=pd.Index([identifier], name="ID"))
+
+
+def _check_demand(demand: str, measure: str, kind: str) -> None:
+    """Refuse a demand whose words tell another quantity than that of the fragility."""
+    told, own = (
+        _QUANTITIES.intersection(re.findall("[a-z]+", of.lower())) for of in (demand, kind)
+    )
+    if told and told != own:
+        msg = (
+            f"{_PELICUN}: the demand must be of the measure of the fragility, {measure}, as "
+            f"{kind!r} is, got {demand!r}; fit a fragility over the measure of the demand"
+        )
+        raise ComponentError(msg)
 
 
 @hinted()

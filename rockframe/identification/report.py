@@ -36,7 +36,7 @@ def fit_sentence(
 ) -> str:
     """Say in one sentence what was found."""
     found = ", ".join(
-        f"{name} {_with_error(value, reach * error)}"
+        f"{name.replace('_', ' ')} {_with_error(value, reach * error)}"
         for name, value, error in zip(
             names, values["fitted_value"], values["standard_error"], strict=True
         )

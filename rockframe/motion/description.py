@@ -168,7 +168,7 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
                 found = f"{shown(name)}{nearest(name, OPERATIONS)}"
                 msg = f"found the operation {found}; expected one of {', '.join(OPERATIONS)}"
                 raise SchemaError(msg)
-            if "other" in given:
+            if given.get("other") is not None:
                 given = {**given, "other": from_dict(kind, given["other"])}
             motion = getattr(motion, name)(**given)
     except TypeError as problem:

@@ -102,6 +102,13 @@ def label_of(values: xr.DataArray) -> str:
     return axis_label(str(values.name).replace("_", " "), str(values.attrs.get("units", "1")))
 
 
+def label_of_value(value: xr.DataArray) -> str:
+    """Give a value along an axis with its unit, for a legend."""
+    unit = str(value.attrs.get("units", "1"))
+    text = f"{value.item():.4g}" if value.dtype.kind == "f" else str(value.item())
+    return text if unit == "1" else f"{text} {powers_in_mathtext(unit)}"
+
+
 def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
     """Give name, period and unit of an intensity measure of a study, for an axis."""
     words = measure_words(str(values.name), study.attrs.get(PERIOD_OF))

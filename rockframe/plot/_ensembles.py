@@ -12,6 +12,7 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
+    label_of_value,
     style_of,
     units_of,
 )
@@ -306,9 +307,7 @@ def _each(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]
     for place in np.ndindex(*(one.sizes[dim] for dim in structures)):
         part = one.isel(dict(zip(structures, place, strict=True)))
         words = [
-            f"{str(name).replace('_', ' ')} {part[name].item():.4g}"
-            if part[name].dtype.kind == "f"
-            else f"{str(name).replace('_', ' ')} {part[name].item()}"
+            f"{str(name).replace('_', ' ')} {label_of_value(part[name])}"
             for name in one.coords
             if set(one[name].dims) & set(structures)
         ]

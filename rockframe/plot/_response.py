@@ -193,7 +193,7 @@ def response(
         in a list, runs are called by their motions, models or accuracies, or else numbered.
     panels : str or tuple of str, optional
         Which are drawn, of ``"ground"``, ``"rotation"``, ``"vertical"`` and ``"contact"``, and
-        any history that the runs hold, by its name, such as ``"base_shear"``; these four unless
+        any history that some run holds, by its name, such as ``"base_shear"``; these four unless
         given, and the slip where a body slid. Contact is a strip for each run; for each of its
         bases, where a cap carries the block.
     window : (str or Quantity or None, str or Quantity or None), optional
@@ -301,16 +301,14 @@ def has_slid(run: xr.Dataset) -> bool:
 
 def usual_panels(runs: list[Run]) -> tuple[str, ...]:
     """Give the panels of runs unless others are chosen."""
-    of_runs = [run.dataset for run in runs]
-    slid = any(map(has_slid, of_runs)) and all(SLIP in one for one in of_runs)
+    slid = any(has_slid(run.dataset) for run in runs)
     *above, contact = _HEIGHTS
     return (*above, *([SLIP] if slid else []), contact)
 
 
 def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
     chosen: tuple[object, ...] = tuple(panels) if isinstance(panels, tuple | list) else (panels,)
-    histories = [name for name in histories_of(runs[0].dataset)
-                 if all(name in run.dataset for run in runs)]  # fmt: skip
+    histories = list(dict.fromkeys(name for run in runs for name in histories_of(run.dataset)))
     known_names = [*_HEIGHTS, *histories]
     unknown = [one for one in chosen if not isinstance(one, str) or one not in known_names]
     if not chosen or unknown:
@@ -318,8 +316,8 @@ def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
         found = unknown[0] if unknown else panels
         near = nearest(found, [*_HEIGHTS, *histories]) or "."
         msg = (
-            f"rf.plot.response: panels are some of {known}, and histories of the run, got "
-            f"{shown(found)}{near} The run holds {', '.join(map(repr, histories))}"
+            f"rf.plot.response: panels are some of {known}, and histories of the runs, got "
+            f"{shown(found)}{near} They hold {', '.join(map(repr, histories))}"
         )
         raise ComponentError(msg)
     return tuple(map(str, chosen))
@@ -368,7 +366,11 @@ def _ground(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
 
 
 def _history(axes: "Axes", runs: list[Run], name: str, units: ReaderUnits) -> None:
-    """Draw a history that has no panel of its own kind; of several points, a line for each."""
+    """Draw a history without a panel of its own kind, of those runs that hold it.
+
+    Of several points there is a line for each.
+    """
+    runs = [run for run in runs if name in run.dataset]
     unit = units.of(str(runs[0].dataset[name].attrs.get("units", "1")))
     for run in runs:
         values = run.dataset[name]

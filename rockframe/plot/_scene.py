@@ -231,7 +231,8 @@ class Moving:
         angle = float(self.angle.of(self._columns["rotation"][place]))
         share = float(self.run["relative_rotation"][place])
         turned = f"{angle:.2f}°" if self.angle.words == "°" else f"{angle:.3g} {self.angle.words}"
-        text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.0f} % of overturning"
+        whose = " of body 1" if "body" in self.run.dims else ""
+        text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.0f} % of overturning{whose}"
         factor = self.drawer.magnify
         return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
 

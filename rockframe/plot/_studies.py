@@ -16,6 +16,7 @@ from rockframe.plot._axes import (
     ink,
     key,
     label_of,
+    label_of_value,
     style_of,
     units_of,
     zero_line,
@@ -155,7 +156,7 @@ def sweep(
     return on.axes
 
 
-@draws("free_decay", ax="two Axes", title="the fitted values")
+@draws("free_decay", ax="two Axes", title="the verdict")
 def free_decay(
     dataset: xr.Dataset,
     *,
@@ -197,7 +198,8 @@ def free_decay(
     'rotation [°]'
     """
     given = drawable(dataset, "free_decay")
-    unit = units_of(units, "free_decay").of(ANGLE, "deg", rotation=rotation)
+    chosen = units_of(units, "free_decay")
+    unit = chosen.of(ANGLE, "deg", rotation=rotation)
     histories = "measured_rotation" in given
     if histories:
         names = ("measured_rotation", "fitted_rotation", "rotation_residual")
@@ -226,20 +228,8 @@ def free_decay(
         grid(axes)
     below.set_xlabel("time [s]" if histories or "measured_peak_time" in given else "peak")
     key(above)
-    on.entitle(_fitted_words(given), title)
+    on.entitle(chosen.reader.of_sentence(str(given.attrs.get("verdict", ""))), title)
     return on.panels
-
-
-def _fitted_words(given: xr.Dataset) -> str:
-    values = zip(
-        given["parameter"].to_numpy(),
-        given["fitted_value"].to_numpy(),
-        given["standard_error"].to_numpy(),
-        strict=True,
-    )
-    return "; ".join(
-        f"{str(name).replace('_', ' ')} {value:.4g} ± {error:.2g}" for name, value, error in values
-    )
 
 
 def _without_single_values(given: xr.Dataset, variable: object) -> xr.Dataset:
@@ -300,8 +290,8 @@ def _draw_lines(
         line = rows.isel({across: number}).to_numpy().astype(np.float64)
         label = None
         if others:
-            name = given[across][number].item() if across in given.coords else number
-            text = name if isinstance(name, str) else f"{name:.4g}"
+            known = across in given.coords
+            text = label_of_value(given[across][number]) if known else str(number)
             label = text if across == "motion" else f"{across.replace('_', ' ')} {text}"
         axes.plot(
             places, line, marker="o", markersize=3.0, color=colour_of(number),
@@ -313,6 +303,8 @@ def _draw_lines(
     if not _is_axis(given, along) and along in given.coords:
         names = [str(name) for name in given[along].to_numpy()]
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
+    elif places.dtype.kind in "iu":  # no half of an earthquake or a body
+        axes.locator_params(axis="x", integer=True)
     axes.set(xlabel=words, ylabel=label_of(values))
     grid(axes)
     if others:

@@ -41,6 +41,9 @@ _MOST_VARIABLES: Final = 100
 _EXPECTED: Final = "a motion as GroundMotion.to_dataset().to_netcdf(...) writes it"
 _SI: Final = RecordUnit("m/s^2", 1.0)
 _EVEN: Final = 1e-6
+_OF_SUITES: Final = "sample_count"
+_A_SUITE: Final = "a suite of motions"
+_ONE_MOTION: Final = "one motion; rockframe.read_suite reads suites"
 _A_MOTION: Final = "a dataset of GroundMotion.to_dataset"
 _RESULT_ATTRIBUTE: Final = "system_json"
 _OF_A_RESULT: Final = (
@@ -92,6 +95,8 @@ def _stored(source: Source) -> StoredMotion:
             # before xarray, which loads the axes at once: a file may declare more than it holds
             with netCDF4.Dataset("in memory", memory=source.data) as file:
                 check_no_result(file.ncattrs())
+                if _OF_SUITES in file.variables:
+                    raise NoMotionError(_A_SUITE, _ONE_MOTION)
                 _check_declared(source, file.variables)
                 # undecoded: the numbers as they were written
                 dataset = xr.open_dataset(NetCDF4DataStore(file), decode_cf=False)

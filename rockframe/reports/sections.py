@@ -10,7 +10,7 @@ from typing import Any, Final
 import xarray as xr
 
 from rockframe import plot
-from rockframe.components import Component
+from rockframe.components import Component, component_from_dict
 from rockframe.components.parameters import Declared
 from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
@@ -110,8 +110,7 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits
     if system is not None:
         yield from _drawing(system, units)
         for part in system.parts.structural():
-            yield page.subtitle(type(part).__name__)
-            yield page.rows(_parameters(part, units))
+            yield from _part(type(part).__name__, part, units)
         yield page.subtitle("Options")
         yield page.rows(
             (name, _value(value, units))
@@ -228,6 +227,26 @@ def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
     yield page.picture(figure_of(drawn), "The scene, to scale.")
 
 
+def _part(title: str, part: Component, units: ReaderUnits) -> Iterator[str]:
+    """Show a part with its parameters, and the parts that it is made of."""
+    yield page.subtitle(title)
+    yield page.rows(_parameters(part, units))
+    described: dict[str, Any] = dict(part.to_dict())
+    for name, value in described.items():
+        if isinstance(value, dict):
+            yield from _part(
+                f"{name.capitalize()}: {value['type']}", component_from_dict(value), units
+            )
+        for number, one in enumerate(_made_of(value), 1):
+            which = {"bodies": "Body"}.get(name, name.removesuffix("s").capitalize())
+            yield from _part(f"{which} {number}: {one['type']}", component_from_dict(one), units)
+
+
+def _made_of(value: object) -> list[Any]:
+    """Give the descriptions of parts in an argument of a part."""
+    return [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
+
+
 def _parameters(part: Component, units: ReaderUnits) -> list[tuple[str, str, str]]:
     """Give the parameters of a part as they were given, with what they are."""
     declared = part.declared()
@@ -238,7 +257,7 @@ def _parameters(part: Component, units: ReaderUnits) -> list[tuple[str, str, str
             _meaning(declared[name]) if name in declared else "",
         )
         for name, value in part.to_dict().items()
-        if name != "type"
+        if name != "type" and not isinstance(value, dict) and not _made_of(value)
     ]
 
 
@@ -248,7 +267,9 @@ def _meaning(one: Declared[Any, Any]) -> str:
 
 
 def _value(given: object, units: ReaderUnits) -> str:
-    """Write a number with its unit, as far as six digits show it."""
+    """Write a number with its unit, as far as six digits show it; several in a row."""
+    if isinstance(given, list):
+        return ", ".join(_value(one, units) for one in given)
     number, blank, unit = units.of_sentence(str(given)).partition(" ")
     try:
         return f"{float(number):.6g}{blank}{powers_in_html(unit)}"

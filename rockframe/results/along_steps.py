@@ -30,6 +30,9 @@ BULGE: Final = 0.25
 """Share of its second difference by which a function may rise above both ends of a step: twice
 that of a parabola."""
 
+KINK: Final = 2.0
+"""How many times as large or small as that at a top second differences beside it may be."""
+
 
 @dataclass(frozen=True)
 class AlongSteps:
@@ -143,16 +146,27 @@ def _largest(promise: Array, top: float) -> Integers:
 
 
 def _tops(known: Array) -> tuple[Array, Array]:
-    """Give the top of each row of values, and its place: that of a parabola where there is one."""
+    """Give the top of each row of values, and its place: that of a parabola where there is one.
+
+    Where second differences beside a top are not about its own there is a kink, such as that of
+    a base that begins to press: no parabola goes through it.
+    """
     largest = np.argmax(known, axis=-1)
     middle = np.clip(largest, 1, known.shape[-1] - 2)
-    a, b, c, most = (
-        np.take_along_axis(known, place[..., None], axis=-1)[..., 0]
-        for place in (middle - 1, middle, middle + 1, largest)
-    )
+    with np.errstate(invalid="ignore"):
+        bends = np.diff(known, 2, axis=-1)
+    last = bends.shape[-1] - 1
+
+    def at(values: Array, place: Integers) -> Array:
+        return np.take_along_axis(values, place[..., None], axis=-1)[..., 0]
+
+    a, b, c, most = (at(known, place) for place in (middle - 1, middle, middle + 1, largest))
+    before, bend, after = (at(bends, np.clip(middle - k, 0, last)) for k in (2, 1, 0))
     with np.errstate(divide="ignore", invalid="ignore"):
-        bend, slope = a - 2.0 * b + c, 0.5 * (c - a)
+        slope = 0.5 * (c - a)
         beside = -slope / bend
         top = b + 0.5 * slope * beside
-        better = (bend < 0.0) & (np.abs(beside) <= 1.0) & (top > most)
+        smooth = np.minimum(before, after) >= KINK * bend
+        smooth &= np.maximum(before, after) <= bend / KINK
+        better = (bend < 0.0) & smooth & (np.abs(beside) <= 1.0) & (top > most)
     return np.where(better, top, most), np.where(better, middle + beside, largest)

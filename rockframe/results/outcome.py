@@ -1,7 +1,7 @@
 """A finished run in plain values: what the dataset is built from."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -36,6 +36,8 @@ MOST_OF_IT: Final = 0.95
 """Share of the largest slip below which that is told beside what is left at the end."""
 NOTHING_OF_IT: Final = 1e-9
 """Share of the largest slip below which what is left is rounding."""
+SAME: Final = 1e-6
+"""Share by which one body comes no closer to overturning than another."""
 LEAST_SLIP: Final = 1e-6
 """Slip that is worth telling; changes of the held point leave less [m]."""
 Generic = NDArray[Any]
@@ -60,8 +62,9 @@ def peak_of(run: Summary, angles: OverturningAngles) -> Peak:
 
 
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
-    """Give the share of the overturning angle in :func:`peak_of`."""
-    return largest(run.peak_right / angles.right, run.peak_left / angles.left)
+    """Give the share of the overturning angle in :func:`peak_of`; of several bodies the largest."""
+    own = largest(run.peak_right / angles.right, run.peak_left / angles.left)
+    return largest(own, run.other_share)
 
 
 def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
@@ -104,11 +107,13 @@ def link_histories(model: ContactModel, values: Mapping[str, Generic]) -> dict[s
     return {name: np.array([values[column_of(name, i)] for i in links]) for name in OF_EACH_LINK}
 
 
-def broken_links(model: ContactModel, ending: Ending) -> int:
-    """Tell how many restrainers are broken at the end of a run; once broken, they stay so."""
+def broken_links(model: ContactModel, ending: Ending) -> list[int]:
+    """Tell which restrainers are broken at the end of a run; once broken, they stay so."""
     system = cast("Any", model.system)
     rows = [system.row_of_link(i) for i in range(model.links)]
-    return sum(system.link_state(ending.mode, row) == LinkState.BROKEN for row in rows)
+    return [
+        i for i, row in enumerate(rows) if system.link_state(ending.mode, row) == LinkState.BROKEN
+    ]
 
 
 def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
@@ -270,16 +275,23 @@ _ENDINGS = {
 }
 
 
-def verdict(run: Summary, setting: Setting, *, end: float) -> str:
-    """Say in one sentence what became of the block, whose rotation was `end` at last [rad]."""
+def verdict(
+    run: Summary, setting: Setting, *, end: float, of: str = "", broken: Sequence[str] = ()
+) -> str:
+    """Say in one sentence what became of the block, whose rotation was `end` at last [rad].
+
+    `of` tells which body of several it is, `broken` which restrainers broke.
+    """
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
     nearest = peak_of(run, setting.overturning_angles)
     peak = (
         f"peak rotation {nearest.rotation:.4g} rad, "
-        f"{100.0 * nearest.share:.3g} % of the overturning angle"
+        f"{100.0 * nearest.share:.3g} % of the overturning angle{of}"
     )
     if setting.leans and nearest.rotation > 0.0:
         peak += f" to the {nearest.side.name.lower()}"
+    if run.other_share > (1.0 + SAME) * nearest.share:
+        peak += f", a lower body {100.0 * run.other_share:.3g} % of its own"
     if run.passed:
         text = f"{_overturned(run, setting, end)}, after {impacts}"
     elif not run.status.finished:
@@ -290,6 +302,8 @@ def verdict(run: Summary, setting: Setting, *, end: float) -> str:
         text += ", no uplift from the pads" if setting.stacked else ", no uplift"
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
+    if broken:
+        text += f"; {', '.join([*broken[:-2], ' and '.join(broken[-2:])])} broke"
     if run.passed and not run.status.finished:
         text += f". Not finished: {_cut_off(run)}"
     slid = [_slid(slips) for slips in setting.slips_of(run.ending)]

@@ -12,6 +12,8 @@ from rockframe.arguments import checked_dataset, one_of_words
 from rockframe.errors import SchemaError
 from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.bodies import BODY, RESTRAINER
+from rockframe.results.variables.requests import POINT
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import EVENT, TIME, TRUTH
 from rockframe.units import Unit
@@ -29,6 +31,7 @@ class Contents(StrEnum):
     EVENTS = "events"
 
 
+_PLACES: Final = (POINT, BODY, RESTRAINER)
 _ALONG: Final = {Contents.HISTORIES: TIME[0], Contents.EVENTS: EVENT[0]}
 _MISSING: Final = {
     Contents.SCALARS: "rf.table(response, 'histories') and 'events' give what is along time",
@@ -62,7 +65,8 @@ def table(
     pandas.DataFrame
         A column is headed by name and unit, such as ``peak_rotation [rad]``, and by the name
         alone where there is no unit or it is 1. Flags are words, such as ``right``; truth
-        values are True and False.
+        values are True and False. Of runs what is told of each point, body or restrainer
+        has a column for each, such as ``peak_body_slip 1 [m]``.
 
         Index, of joined runs: their dimensions, one row for each combination. Variables of unlike
         dimensions, such as responses over the intensity and intensities over the response, have
@@ -97,15 +101,32 @@ def table(
     kind = one_of_words(Contents, contents, owner=_OWNER, name="contents")
     chosen = reader_units(units, owner=_OWNER)
     if isinstance(runs, xr.Dataset):
-        return _of_one(chosen.of_all(runs), kind)
+        return _of_one(_each_alone(chosen.of_all(runs), kind), kind)
     labels: pd.MultiIndex | pd.Index | None = None
     if isinstance(runs, Mapping):
         labels, runs = _keys(runs), runs.values()
-    given = [chosen.of_all(checked_dataset(run, owner=_OWNER)) for run in _each(runs)]
+    given = [
+        _each_alone(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in _each(runs)
+    ]
     if not given:
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)
     return _below_one_another(given, kind, _labels(given) if labels is None else labels)
+
+
+def _each_alone(run: xr.Dataset, kind: Contents) -> xr.Dataset:
+    """Give what scalars are told of points, bodies and restrainers a variable for each of these."""
+    if kind is not Contents.SCALARS or "status" not in run.data_vars:
+        return run
+    alone: dict[str, xr.DataArray] = {}
+    for name, values in run.data_vars.items():
+        if name not in SCHEMA or SCHEMA[str(name)].dims not in _PLACES:
+            continue
+        (place,) = SCHEMA[str(name)].dims
+        if place in values.dims and place in run.coords:
+            for k, label in enumerate(run[place].to_numpy()):
+                alone[f"{name} {label}"] = values.isel({place: k}, drop=True)
+    return run.assign(alone)
 
 
 def _each(runs: object) -> Iterable[Any]:

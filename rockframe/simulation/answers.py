@@ -1,11 +1,12 @@
 """Histories, forces and points of a run, as far as they are asked for."""
 
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 import numpy as np
 
 from rockframe.compiled import Integers
-from rockframe.dynamics.events import IMPACT, SILENT
+from rockframe.dynamics.events import IMPACT, REVERSAL, SILENT, SLIP, STICK
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
@@ -22,6 +23,7 @@ from rockframe.results.forces import (
     residuals,
 )
 from rockframe.results.outcome import (
+    LEAST_SLIP,
     Generic,
     body_histories,
     cap_histories,
@@ -45,6 +47,9 @@ from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
 from rockframe.system.setting import Setting
+
+OF_SLIPS: Final = (SLIP, REVERSAL, STICK)
+"""Events by which a base that could not be held any longer slips, and holds again."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +77,7 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
     """Give what the samples of a run tell: histories, if they are kept, peaks and points."""
     setting, load, count = system.setting, system.setting.load, len(run.time)
-    along, shown_at, ground, moved = _everything_of(system, plan, run)
+    columns, shown_at, ground, moved = _everything_of(system, plan, run)
     values = {name: each[:count] for name, each in shown_at.items()}
     # energies are worked out apart; what else is no column may follow from columns
     if _everything(plan) or set(plan.requested).difference(values, ENERGIES):
@@ -85,7 +90,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     values |= ground_histories(ground[:count], has_vertical_motion=vertical)
     values["time"] = run.time
     events = _events_in(shown_at, run, setting)
-    upright = events
+    along, upright = _along(system, plan, run, columns, events), events
     if not along.steps.complete:
         missing.append(
             f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
@@ -175,7 +180,7 @@ def _energies(
 
 def _everything_of(
     system: Assembly, plan: Plan, run: Trajectory
-) -> tuple[AlongSteps, dict[str, Generic], Array, Array]:
+) -> tuple[dict[str, Generic], dict[str, Generic], Array, Array]:
     """Give what the model shows along the steps, and at samples, then before and after all events.
 
     With the latter, the ground's acceleration there as it was given, and along and normal to the
@@ -186,8 +191,7 @@ def _everything_of(
     moved, resolved = ground_on_slope(ground, slope)
     names = None if _everything(plan) else _peaked(system)
     along, shown = observe_run(system.model, run, names, resolved)
-    shown = without_gravity(shown, slope)
-    return _along(system, plan, run, along), shown, ground, moved
+    return along, without_gravity(shown, slope), ground, moved
 
 
 def _peaked(system: Assembly) -> tuple[str, ...]:
@@ -214,13 +218,25 @@ def _shown(
 
 
 def _along(
-    system: Assembly, plan: Plan, run: Trajectory, columns: dict[str, Generic]
+    system: Assembly,
+    plan: Plan,
+    run: Trajectory,
+    columns: dict[str, Generic],
+    events: EventStates,
 ) -> AlongSteps:
-    """Give what is shown along the steps, up to overturning, by what is shown along all."""
+    """Give what is shown along the steps, up to overturning, by what is shown along all.
+
+    Without those in which friction stops what an impact or a new held point has left: bases that
+    hold need an impulse there, which is no force either.
+    """
     slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
     until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
     steps = run.kept_steps.until(until)
     shown = {name: each[: len(steps.time)] for name, each in columns.items()}
+    kept = ~np.isin(steps.memory_row, _stops(run, events))
+    if not kept.all():
+        steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
+        shown = {name: each[kept] for name, each in shown.items()}
     if _everything(plan):
         shown = without_gravity(shown, slope)
         moved = steps.ground - np.array([slope.along_gravity, 0.0])
@@ -267,6 +283,15 @@ def _of_links(system: Assembly, along: AlongSteps) -> dict[str, Generic | float]
     names = forces_of_links(system.model.links)
     peaks = along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
     return {"peak_restrainer_force": peaks}
+
+
+def _stops(run: Trajectory, events: EventStates) -> Integers:
+    """Give the numbers, from one, of events whose small velocity friction stops at once."""
+    kind = run.events.kind
+    changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
+    for name in (one for one in events.after if one == "slip" or one.startswith("slip_of_")):
+        changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < LEAST_SLIP
+    return 1 + np.flatnonzero(changes)
 
 
 def _peak_rotations(system: Assembly, along: AlongSteps) -> Array:

@@ -5,8 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
 from rockframe.results.along_steps import AlongSteps, Values
-from rockframe.results.outcome import Generic
+from rockframe.results.outcome import LEAST_SLIP, Generic
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 
@@ -128,6 +130,13 @@ def share_words(would_slide: Generic, *, runs: str = "runs") -> str:
     slide, hold = counts_of_slides(would_slide)
     some = f"in {slide or 'none'} of {slide + hold} {runs}"
     return f"{some} the block would slide first" if slide + hold else ""
+
+
+def slip_words(slips: Generic, *, runs: str = "runs") -> str:
+    """Say in how many of the runs that an analysis made a body slid, and how far at most."""
+    slid = slips[slips > LEAST_SLIP]
+    some = f"in {slid.size} of {np.isfinite(slips).sum()} {runs}"
+    return f"{some} the block slid, by {slid.max():.3g} m at most" if slid.size else ""
 
 
 def counts_of_slides(would_slide: Generic) -> tuple[int, int]:

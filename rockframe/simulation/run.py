@@ -18,7 +18,7 @@ from rockframe.results.outcome import (
     broken_links,
     event_columns,
     ground_on_slope,
-    peak_of,
+    peak_share,
     scalars,
     slope_attributes,
     verdict,
@@ -112,13 +112,15 @@ class Response:
 
     def summary(self) -> RunSummary:
         """Tell what a certificate asks of the run."""
-        share = peak_of(self.trajectory, self.system.setting.overturning_angles).share
+        share = peak_share(self.trajectory, self.system.setting.overturning_angles)
         shown = run_summary(
             self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
         )
         slidings = self.answers.slidings
         slides = float(any(each.slides for each in slidings)) if slidings else math.nan
-        return replace(shown, slides=slides)
+        slips = self.system.setting.slips_of(self.trajectory.ending)
+        slip = max((one.peak for one in slips), default=math.nan)
+        return replace(shown, slides=slides, slip=slip)
 
     def cautions(self) -> list[Caution]:
         """Give what is to be warned of."""
@@ -171,7 +173,7 @@ def scalars_of(
     uplift = or_missing(lambda: setting.uplift_angle, math.nan, "the uplift angle", missing)
     found = scalars(summary, setting, uplift_angle=uplift)
     if system.model.links:
-        found["broken_restrainer_count"] = broken_links(system.model, summary.ending)
+        found["broken_restrainer_count"] = len(broken_links(system.model, summary.ending))
     return found
 
 
@@ -315,8 +317,14 @@ def has_no_cautions(system: Assembly, summary: Summary) -> bool:
 
 
 def _verdict(system: Assembly, summary: Summary) -> str:
-    end = system.model.rotation_in(summary.ending.state)
-    return verdict(summary, system.setting, end=end)
+    setting, ending = system.setting, summary.ending
+    return verdict(
+        summary,
+        setting,
+        end=system.model.rotation_in(ending.state),
+        of=" of body 1" if system.model.shows_bodies else "",
+        broken=[setting.link_names[i] for i in broken_links(system.model, ending)],
+    )
 
 
 def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:

@@ -18,7 +18,7 @@ from rockframe.dynamics.protocol import (
 from rockframe.solve import layout as at
 from rockframe.solve.crossings import extremum, interpolate
 from rockframe.solve.equations import BoundEquations, KnownMode, energies_at, slope_at
-from rockframe.solve.march import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, RotationInStep
+from rockframe.solve.march import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, rotation_in_row
 from rockframe.solve.workspace import (
     EventTable,
     Output,
@@ -151,29 +151,42 @@ def store_outputs(
 def follow_peak(
     equations: BoundEquations, count: int, h: float, clock: Vector, w: Workspace
 ) -> None:
-    """Raise the peaks of the rotation to both sides by what the step holds, to its inside."""
+    """Raise the peaks of the rotation to both sides by what the step holds, to its inside.
+
+    Of other rotations the largest share in a limit.
+    """
     size = equations.coordinate_count
-    r0 = v0 = r1 = v1 = 0.0
-    for i in range(size):
-        r0 += w.limits[WEIGHTS + i] * w.state[i]
-        v0 += w.limits[WEIGHTS + i] * w.state[size + i]
-        r1 += w.limits[WEIGHTS + i] * w.new[i]
-        v1 += w.limits[WEIGHTS + i] * w.new[size + i]
-    rotation = RotationInStep(r0, v0, r1, v1)
-    peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
-    clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
-    clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
+    clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = peaks_in_step(
+        0, size, count, h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT], w
+    )
+    row = WEIGHTS + size
+    while row < len(w.limits):
+        left, right = w.limits[row + LEFT_LIMIT], w.limits[row + RIGHT_LIMIT]
+        share = clock[at.OTHER_SHARE]
+        peaks = peaks_in_step(row, size, count, h, share * left, share * right, w)
+        clock[at.OTHER_SHARE] = max(share, peaks[0] / left, peaks[1] / right)
+        row += WEIGHTS + size
+
+
+@inlined
+def peaks_in_step(
+    row: int, size: int, count: int, h: float, left: float, right: float, w: Workspace
+) -> tuple[float, float]:
+    """Raise the peaks of a rotation to both sides, by the place of its limits."""
+    rotation = rotation_in_row(row, size, w.limits, w.state, w.new)
+    peaks = rotation.may_peak(h, left, right)
+    left, right = max(left, rotation.largest_left()), max(right, rotation.largest_right())
     if peaks:
         a0 = a1 = 0.0
         for i in range(count):
-            a0 += w.limits[WEIGHTS + i] * w.first[i]
-            a1 += w.limits[WEIGHTS + i] * w.last[i]
+            a0 += w.limits[row + WEIGHTS + i] * w.first[i]
+            a1 += w.limits[row + WEIGHTS + i] * w.last[i]
         top = extremum(
             rotation.start, h * rotation.start_rate, h * h * a0,
             rotation.end, h * rotation.end_rate, h * h * a1,
         )  # fmt: skip
-        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], -top)
-        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], top)
+        left, right = max(left, -top), max(right, top)
+    return left, right
 
 
 @kernel

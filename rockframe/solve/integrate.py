@@ -139,6 +139,7 @@ def begun(
         at.NEXT_STEP: controls[at.MAX_STEP] if substeps else FIRST_STEP * shortest_period,
         at.PEAK_LEFT: max(-rotation, 0.0),
         at.PEAK_RIGHT: max(rotation, 0.0),
+        at.OTHER_SHARE: model.other_share_in(state),
         at.FIRST_UPLIFT: -1.0 if contact == FULL else 0.0,
         at.OVERTURNING_TIME: -1.0,
         at.EVENT_TIME: -1.0,

@@ -78,7 +78,8 @@ STEP: Final = 18
 ASKED: Final = 19
 EXCESS: Final = 20
 NEXT_OUTPUT: Final = 21
-CLOCK: Final = 22
+OTHER_SHARE: Final = 22  # largest of another rotation in its limit
+CLOCK: Final = 23
 
 # counters: integer progress and switches
 MODE: Final = 0

@@ -125,14 +125,50 @@ def rotation_in_step(
     system: Equations, limits: Vector, state: Vector, new: Vector
 ) -> RotationInStep:
     """Give the rotation at both ends of a step, the weighted sum of the coordinates."""
-    size = system.coordinates()
+    return rotation_in_row(0, system.coordinates(), limits, state, new)
+
+
+@inlined
+def rotation_in_row(
+    row: int, size: int, limits: Vector, state: Vector, new: Vector
+) -> RotationInStep:
+    """Give a rotation at both ends of a step, by the place of its limits."""
     r0 = v0 = r1 = v1 = 0.0
     for i in range(size):
-        r0 += limits[WEIGHTS + i] * state[i]
-        v0 += limits[WEIGHTS + i] * state[size + i]
-        r1 += limits[WEIGHTS + i] * new[i]
-        v1 += limits[WEIGHTS + i] * new[size + i]
+        r0 += limits[row + WEIGHTS + i] * state[i]
+        v0 += limits[row + WEIGHTS + i] * state[size + i]
+        r1 += limits[row + WEIGHTS + i] * new[i]
+        v1 += limits[row + WEIGHTS + i] * new[size + i]
     return RotationInStep(r0, v0, r1, v1)
+
+
+@inlined
+def other_may_peak(
+    size: int, limits: Vector, h: float, state: Vector, new: Vector, share: float
+) -> bool:
+    """Whether another rotation may come nearer to its limit inside a step than it has come."""
+    found, row = False, WEIGHTS + size
+    while row < len(limits):
+        rotation = rotation_in_row(row, size, limits, state, new)
+        found |= rotation.may_peak(
+            h, share * limits[row + LEFT_LIMIT], share * limits[row + RIGHT_LIMIT]
+        )
+        row += WEIGHTS + size
+    return found
+
+
+@inlined
+def other_share(size: int, limits: Vector, state: Vector) -> float:
+    """Give the largest share of another rotation in its limit; zero where there is none."""
+    share, row = 0.0, WEIGHTS + size
+    while row < len(limits):
+        rotation = 0.0
+        for i in range(size):
+            rotation += limits[row + WEIGHTS + i] * state[i]
+        share = max(share, -rotation / limits[row + LEFT_LIMIT])
+        share = max(share, rotation / limits[row + RIGHT_LIMIT])
+        row += WEIGHTS + size
+    return share
 
 
 Scheme: TypeAlias = FixedSteps | StepsByTolerance
@@ -274,6 +310,7 @@ def march(
             continue
         rotation = rotation_in_step(system, limits, state, new)
         peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
+        peaks |= other_may_peak(system.coordinates(), limits, h, state, new, clock[at.OTHER_SHARE])
         found = may_fall(system, h, before, after)
         seen = begin + tau + h >= clock[at.NEXT_OUTPUT] or has_no_room(codes, counters)
         if found or peaks or seen:
@@ -289,6 +326,8 @@ def march(
             )  # fmt: skip
         clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
         clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
+        nearest = other_share(system.coordinates(), limits, new)
+        clock[at.OTHER_SHARE] = max(clock[at.OTHER_SHARE], nearest)
         if flies == 1:
             clock[at.FLIGHT_TIME] += h
         scheme.keep_sizes(system, new, reference)

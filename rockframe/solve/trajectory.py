@@ -145,6 +145,8 @@ class Summary:
     substeps: int  # fixed steps in each interval of the motion, 0 for steps by tolerance
     energy_residual: float  # largest imbalance of the energies over their largest term
     ending: Ending  # where the run ended
+    # largest share of the rotation of another body in the angle at which that overturns
+    other_share: float = 0.0
 
     @property
     def peak_rotation(self) -> float:
@@ -219,6 +221,7 @@ def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
         "end_time": reals[at.TIME],
         "peak_left": reals[at.PEAK_LEFT],
         "peak_right": reals[at.PEAK_RIGHT],
+        "other_share": reals[at.OTHER_SHARE],
         "overturning_time": _time_or_nan(reals[at.OVERTURNING_TIME]),
         "overturning_direction": int(reals[at.OVERTURNING_SIDE]),
         "first_uplift_time": _time_or_nan(reals[at.FIRST_UPLIFT]),

@@ -305,10 +305,10 @@ def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> floa
 
 
 def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
-    """Read levels of the response; overturning is the last, at infinity."""
+    """Read levels of the response, as they are given; overturning is the last, at infinity."""
     levels = listed_limits(limits, owner=_OWNER)
-    found = {_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING}
-    return [*sorted(found), math.inf]
+    found = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
+    return [*dict.fromkeys(found), math.inf]
 
 
 def _names(

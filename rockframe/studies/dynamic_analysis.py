@@ -13,7 +13,7 @@ from rockframe.results.outcome import overturns
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
-from rockframe.simulation.friction import share_words
+from rockframe.simulation.friction import share_words, slip_words
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import (
@@ -40,7 +40,7 @@ from rockframe.studies.lines import (
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.motions import MotionsLike, named_motions
 from rockframe.studies.sweeps.scenes import own_motion, scene_of
-from rockframe.studies.sweeps.words import cases_verdict
+from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.system.options import PointsLike
 from rockframe.units import QuantityLike, RatioLike
 
@@ -82,7 +82,7 @@ def incremental_dynamic_analysis(
         Factors of the motions at which all of them are run first, above zero; 0.1 to 4 in steps
         of 0.1 unless given [1].
     limits : iterable, optional
-        Limit states beside overturning: ``"uplift"``, and peak rotations over the
+        Limit states before overturning, in their order: ``"uplift"``, and peak rotations over the
         overturning angle, such as 0.5; or variables of runs, as for
         :func:`rockframe.fragility` [1].
     intensity : str, optional
@@ -272,5 +272,7 @@ def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
         text += f"; {lacking} of {found['status'].size} runs of the scan have no verdict"
     slides = found["would_slide"].to_numpy() if "would_slide" in found else np.empty(0)
     if words := share_words(slides, runs="runs of the scan"):
+        text += f"; {words}"
+    if words := slip_words(slips_of_cases(found), runs="runs of the scan"):
         text += f"; {words}"
     return f"{text}{INTERRUPTED if cut else '.'}"

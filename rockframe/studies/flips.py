@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.certify.scan import Side, may_change_between
-from rockframe.simulation.friction import share_words
+from rockframe.simulation.friction import share_words, slip_words
 
 FINEST: Final = 0.002
 """Length of an interval of scales that is not looked into for hidden flips, over its far end."""
@@ -223,6 +223,8 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
         text += f", at most {_at_most(found.largest_gap)} apart"
     slides = share_words(np.array([run.slides for run in found.shown.values()]))
     text += f"; {slides}" if slides else ""
+    slid = slip_words(np.array([run.slip for run in found.shown.values()]))
+    text += f"; {slid}" if slid else ""
     text += "." if found.whole else ", then interrupted."
     if found.up_to < next((one.below for one in flips if one.overturns_above), largest):
         text += (

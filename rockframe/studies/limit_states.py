@@ -62,16 +62,18 @@ class LimitState:
 def limit_states(
     given: Iterable[object], *, owner: str, name: str = "limits"
 ) -> tuple[LimitState, ...]:
-    """Read limit states: rotations by size, other limit states, overturning."""
-    rotations, others = set[float](), dict[LimitState, None]()
+    """Read limit states, each once, in the order in which they are given; overturning is last."""
+    found: dict[str, LimitState] = {}
     for one in listed_limits(given, owner=owner, name=name):
         if isinstance(one, tuple):
-            others[_of_variable(cast("tuple[Any, ...]", one), owner)] = None
+            state = _of_variable(cast("tuple[Any, ...]", one), owner)
         elif isinstance(one, str) and one in (UPLIFT, OVERTURNING):
-            rotations |= {0.0} if one == UPLIFT else set()
+            state = LimitState(0.0 if one == UPLIFT else 1.0)
         else:
-            rotations.add(_share(one, owner, name))
-    return (*map(LimitState, sorted(rotations)), *others, LimitState(1.0))
+            state = LimitState(_share(one, owner, name))
+        found.setdefault(state.name, state)
+    found.pop(OVERTURNING, None)
+    return (*found.values(), LimitState(1.0))
 
 
 def listed_limits(given: object, *, owner: str, name: str = "limits") -> list[Any]:

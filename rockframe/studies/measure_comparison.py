@@ -123,8 +123,10 @@ def compare_intensities(
         told = told_period(runs, [one], period, owner=_OWNER)
         cloud, those, _ = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
         if cloud.line is None:
+            some = int(((cloud.responses > 0.0) & np.isfinite(cloud.responses)).sum())
             msg = (
-                f"{_OWNER}: too few runs moved and did not overturn for a line over {measure.name}"
+                f"{_OWNER}: {some} of {len(cloud.responses)} runs moved and did not overturn, too "
+                f"few for a line over {measure.name}; give more motions, or others"
             )
             raise StudyError(msg)
         named.append(measure_words(str(measure.name), told.get(PERIOD_OF)))

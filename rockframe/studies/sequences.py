@@ -118,7 +118,8 @@ def earthquake_sequences(
     )
     found = arranged.assign(labels.data_vars).assign_coords(labels.coords)
     falls = int((labels["overturning_earthquake"] > 0).sum())
-    verdict = f"Of all {len(joined)} sequences {falls} overturned."
+    count = len(joined)
+    verdict = f"Of {'1 sequence' if count == 1 else f'all {count} sequences'} {falls} overturned."
     return found.assign_attrs(title="Earthquakes in sequence", pause=rest, verdict=verdict)
 
 

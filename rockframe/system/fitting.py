@@ -71,12 +71,19 @@ def _misfits_of_stiff_wall(wall: RearWall, parts: Parts) -> list[str]:
         f"a RearWall and {' and '.join(others)} are both given; a wall stands behind a Block on "
         "rigid ground"
     )
-    if parts.block is None or base is None or parts.cap is not None:
+    if parts.frame is not None or parts.cap is not None:
         return [fault]
+    yields = "give the wall a stiffness and a damping in place of its law"
+    if parts.block is None:
+        return [f"{fault}, unless it yields: {yields}"]
     found = yielding_wall(wall, parts.block.si)
+    why = (
+        "its impacts are those of a block that nothing else holds"
+        if base is None
+        else f"{type(base).__name__} takes no impulse, and a body leans on a wall for a while"
+    )
     return [
-        f"{fault}, where base and wall are struck at once. {type(base).__name__} takes no impulse, "
-        "and a body leans on a wall for a while: give the wall a stiffness in place of its law. "
+        f"{fault}, where base and wall are struck at once; {why}: {yields}. "
         f"stiffness='{found.stiffness:.4g} N/m', damping='{found.damping:.4g} N*s/m' throws it "
         f"back with {found.share:.3g} of its speed, within {1e3 * IMPACT_TIME:g} ms"
     ]

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockframe.components import FrameEquivalent, RearWall, RockingFrame, Stack
+from rockframe.components import FrameEquivalent, RearWall, RockingFrame, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
 from rockframe.signals.arrays import Array
@@ -153,8 +153,15 @@ def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
         top = setting.frame.column.height + setting.frame.beam_height
         axes = column_places(setting.frame)
         return tuple(LinkedPoints(np.array([(x, top), (x, 0.0)]), (0, -1)) for x in axes)
-    ties = setting.ties[: len(setting.link_names)] if isinstance(setting, StackSetting) else ()
-    return tuple(LinkedPoints(np.array(one.ends), (one.on, one.to)) for one in ties)
+    if not isinstance(setting, StackSetting):
+        return ()
+    found: list[LinkedPoints] = []
+    for one in setting.ties[: len(setting.link_names)]:
+        points = np.array(one.ends)
+        if isinstance(one.part, Tendon):  # through its body, from the top of that
+            points[0, 1] += setting.bodies[one.on].centre_height + setting.tops[one.on]
+        found.append(LinkedPoints(points, (one.on, one.to)))
+    return tuple(found)
 
 
 def _of_stack(stack: Stack, scene: Assembly) -> Geometry:

@@ -88,3 +88,17 @@ def test_the_table_of_steps_grows(monkeypatch):
     monkeypatch.setattr("rockframe.solve.integrate.STEPS_PER_INTERVAL", 0.0)
     grown = SCENES["pads"].simulate(PULSE, duration="1.5 s", points=TOP)
     assert grown.drop_attrs().identical(whole.drop_attrs())
+
+
+@pytest.mark.parametrize("base", [PADS, SOIL], ids=["pads", "bed"])
+def test_peaks_are_not_those_of_friction_that_stops_a_new_held_point(base):
+    """A base that never slips has the forces of one that is held, whatever its friction."""
+
+    def peaks(friction):
+        system = rf.System(BLOCK, base.replace(friction=friction))
+        run = system.simulate(PULSE, duration="1.5 s", points=TOP, outputs=None)
+        return [float(np.max(run[name])) for name in PEAKS]
+
+    held = peaks(None)
+    for friction in (0.5, 4.0):
+        assert peaks(friction) == pytest.approx(held, rel=2e-4)

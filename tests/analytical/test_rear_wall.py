@@ -94,6 +94,10 @@ def test_what_a_wall_does_not_go_with():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     with pytest.raises(AssemblyError, match="a wall stands behind a Block on rigid ground"):
         rf.System(FACADE, rf.RearWall(), pads)
+    floor = rf.Load(at=("0 m", "3 m"), moving_mass="1 t")
+    with pytest.raises(AssemblyError, match="nothing else holds: give the wall a stiffness and a"):
+        rf.System(FACADE, rf.RearWall(), floor)
+    rf.System(FACADE, rf.RearWall(stiffness="2 MN/m", damping="3 kN*s/m"), floor)
     with pytest.raises(AssemblyError, match="level ground"):
         rf.System(FACADE, rf.RearWall(), inclination="1 deg")
     system = rf.System(FACADE, rf.RearWall(side="right"))

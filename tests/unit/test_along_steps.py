@@ -79,3 +79,14 @@ def test_of_many_that_are_as_large_the_first_is_told():
     (peak,), (time,) = found.largest(demand)
     assert peak == math.inf
     assert 0.5 < time <= 1.5
+
+
+@pytest.mark.parametrize("jump", [1, 4])
+def test_no_parabola_goes_through_a_kink(jump):
+    """A base that presses again and slips needs its friction at once, and no more than that."""
+
+    def inside(which):
+        return {"demand": np.tile(np.where(np.arange(1, 8) < jump, 0.0, 0.4), len(which))}
+
+    (peak,), _ = along([0.4, 0.4], {0: 0.0}, inside).largest(demand)
+    assert peak == 0.4

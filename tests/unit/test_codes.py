@@ -113,7 +113,7 @@ def test_the_motion_beside_the_kinematics():
         ((rf.System(WALL), "record.AT2"), "expected a GroundMotion"),
         (
             (rf.System(WALL, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)), PULSES),
-            "a block on level rigid ground",
+            r"got Block, TwoSpringSupport, two-spring; check the block alone, rf.System\(block\)",
         ),
     ],
 )

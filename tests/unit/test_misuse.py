@@ -87,7 +87,7 @@ MISUSES = {
     "magnitude": (lambda v: rf.GroundMotion.stochastic(v, "5 km", seed=1), NUMBERS),
     "factor": (lambda v: PULSE.scaled(v), NUMBERS),
     "window": (lambda v: PULSE.window(v, "1 s"), (3, *NUMBERS)),
-    "vertical": (lambda v: RECORD.with_vertical(v), (None, 3, "x", *NOTHING)),
+    "vertical": (lambda v: RECORD.with_vertical(v), (3, "x", *NOTHING)),
     "file": (lambda v: rf.GroundMotion.read(v), (None, 3, "none", "", "a\0b", *NOTHING)),
     "a motion described": (
         rf.GroundMotion.from_dict,

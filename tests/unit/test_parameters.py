@@ -310,3 +310,43 @@ def test_numbers_are_the_same_through_all_ways():
     assert state.si.rotation == angle
     assert state.rotation.magnitude == angle
     assert math.isclose(state.replace(rotation=state.rotation).si.rotation, angle, rel_tol=0.0)
+
+
+MEASURES = {
+    "width": "4 m", "column_width": "0.25 m", "beam_height": "0.30 m", "beam_width": "0.25 m",
+    "density": "2500 kg/m^3",
+}  # fmt: skip
+TIE = {"on": ("-0.4 m", "3 m"), "to": ("-1 m", "3 m"), "stiffness": "1 MN/m"}
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        BLOCK,
+        rf.Block.from_outline([(0, 0), (1, 0), (0.6, 3)], unit="m", mass="1 t"),
+        rf.Block.cylinder(diameter="1 m", height="4 m", density="2 t/m^3"),
+        rf.FrameEquivalent(width="4 m", height="12 m", mass="90 t", shape_factor=2.5),
+        rf.FrameEquivalent.from_members(storeys=3, height="9 m", **MEASURES),
+        rf.FrameEquivalent.from_members(storey_heights=["4 m", "3 m"], **MEASURES),
+        rf.FrameEquivalent.from_members([MEMBER], width="4 m", height="9 m"),
+        rf.Stack(
+            rf.FrameEquivalent.from_members(storeys=3, height="9 m", **MEASURES),
+            rf.Block(width="5 m", height="1 m", mass="50 t"),
+            interfaces=[SOIL],
+        ),
+        rf.RockingFrame(BLOCK, columns=3, beam_mass="40 t"),
+        rf.RearWall(restitution="newton", wall_restitution=0.3),
+        rf.RearWall(stiffness="1 MN/m", damping="3 kN*s/m", gap="1 cm", height="3 m"),
+        rf.Restrainer(**TIE, slack="3 mm", strength="3 kN", damping="1 kN*s/m"),
+        rf.Tendon(stiffness="1 MN/m", preload="3 kN", depth="1 m"),
+        rf.Load(at=("0.1 m", "3 m"), vertical="1 kN", horizontal="1 kN"),
+        rf.RigidGround(friction=0.4, kinetic_friction=0.3),
+        PADS,
+        CAST,
+    ],
+    ids=lambda part: type(part).__name__,
+)
+def test_every_parameter_that_is_named_can_be_scaled(part):
+    """As certificates do; of a frame from its members it is that of the equivalent block."""
+    for name in part.parameters():
+        assert part.with_scaled(name, 0.999) != part

@@ -288,6 +288,19 @@ def test_what_was_asked_for_is_shown_in_the_units_of_the_reader(tmp_path):
     assert f"largest absolute rotation {np.degrees(float(run.peak_rotation)):.4g} °" in words
 
 
+def test_the_parts_of_a_part_have_tables_of_their_own():
+    block = rf.Block(width="0.6 m", height="2 m", mass="500 kg")
+    plinth = rf.Block(width="1 m", height="1 m", mass="900 kg")
+    stack = rf.Stack(block, plinth, interfaces=[rf.RigidGround()], offsets=["1 cm"])
+    for part, words in (
+        (stack, ("Body 1: Block", "Body 2: Block", "Interface 1: RigidGround", "0.01 m")),
+        (rf.RockingFrame(block, columns=3, beam_mass="2 t"), ("Column: Block", "500 kg")),
+    ):
+        shown = Page("".join(sections._part("part", part, ReaderUnits()))).text
+        assert all(each in shown for each in words)
+        assert "{" not in shown
+
+
 def test_a_report_says_whose_it_is_and_concludes(response, tmp_path):
     path = rf.report(response, tmp_path / "r.html", certify=False, project=PROJECT)
     words = words_of(path)

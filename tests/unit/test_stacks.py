@@ -145,6 +145,13 @@ def test_a_stack_overturns_where_a_lower_body_does():
     at_end = np.abs(run.body_rotation[:, -1].to_numpy())
     assert at_end[0] < 0.5 * float(run.overturning_angle)
     assert run.event_body[-1] == 1
+    stands = system.simulate(PULSE, free_vibration="1 s", second_look=False)
+    angle = np.arctan2(0.5, (2.0 * 6.4 + 9.0 * 3.0) / 11.0)  # of both as one
+    share = float(stands.peak_body_rotation[1]) / angle
+    assert float(stands.peak_relative_rotation) == pytest.approx(share, rel=1e-6)
+    assert f" of body 1, a lower body {100.0 * share:.3g} % of its own;" in stands.attrs["verdict"]
+    onwards = system.simulate(duration="0.5 s", initial=stands, second_look=False)
+    assert float(onwards.peak_relative_rotation) >= abs(float(stands.body_rotation[1, -1])) / angle
 
 
 def test_offsets_lean_a_stack_at_rest():

@@ -54,6 +54,28 @@ def check_row(row, response):
             np.testing.assert_array_equal(found, values.item(), err_msg=name)
 
 
+def test_of_points_and_restrainers_each_has_a_column():
+    tie = rf.Restrainer(
+        on=("-0.4 m", "4 m"), to=("-2 m", "4 m"), stiffness="1 MN/m", name="strap"
+    )  # fmt: skip
+    tied = rf.System(*SYSTEM.parts.structural()[:1], tie)
+    found = rf.sweep(
+        tied, PULSE, scale=SCALES[:2], points={"top": ("0 m", "4 m")}, free_vibration="1 s"
+    )
+    table = rf.table(found, units={"force": "kN"})
+    assert len(table) == 2
+    for head, name, label in (
+        ("peak_restrainer_force strap [kN]", "peak_restrainer_force", {"restrainer": "strap"}),
+        ("peak_point_horizontal_acceleration top [m s^-2]",
+         "peak_point_horizontal_acceleration", {"point": "top"}),
+    ):  # fmt: skip
+        size = 1e3 if "kN" in head else 1.0
+        expected = found[name].sel(label).to_numpy().ravel() / size
+        assert table[head].to_numpy() == pytest.approx(expected)
+    alone = rf.table(found[["peak_restrainer_force"]])
+    assert alone.index.names == ["scale", "motion", "restrainer"]
+
+
 def test_a_run_is_a_row_of_its_scalars(runs):
     for response in runs:
         table = rf.table(response)

@@ -28,15 +28,15 @@ _ROUNDING: Final = 1e-15
 
 
 @hinted()
-def with_vertical(motion: Made, other: MotionValue) -> Made:
+def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     """Add a vertical motion: the horizontal component of another one, upwards.
 
     Parameters
     ----------
-    other : GroundMotion
+    other : GroundMotion or None
         Of the same time step; the shorter of the two is padded with zeros. One that its
         file calls positive downwards (``metadata["positive"]``, as of a component ``DWN``)
-        is turned over.
+        is turned over. None leaves the vertical component out.
 
     Returns
     -------
@@ -59,8 +59,18 @@ def with_vertical(motion: Made, other: MotionValue) -> Made:
     >>> across, up = (rf.GroundMotion.sine_pulse(f"{a} m/s^2", "2 Hz") for a in (3, 1))
     >>> across.with_vertical(up).vertical_acceleration.max().round(3)
     <Quantity(1.0, 'meter / second ** 2')>
+    >>> across.with_vertical(up).with_vertical(None).sha256 == across.sha256
+    True
     """
     owner, si = f"{type(motion).__name__}.with_vertical", motion.si
+    if other is None:
+        if si.vertical is None:
+            return motion
+        of_it = {key: None for key in motion.metadata if key.startswith("vertical_")}
+        return following(
+            motion, Motion(si.horizontal, None), "vertical component left out",
+            operation={"with_vertical": {"other": None}}, metadata=of_it,
+        )  # fmt: skip
     theirs = other_motion(other, si, owner).si
     count = max(len(motion), len(other))
     upwards = replace(padded(theirs.horizontal, count), time_step=si.time_step, name=VERTICAL)

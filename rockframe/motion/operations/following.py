@@ -29,15 +29,16 @@ def following(
     operation: Mapping[str, Any] | None = None,
     metadata: Mapping[str, Any] | None = None,
 ) -> Made:
-    """Give the motion that an operation leads to."""
+    """Give the motion that an operation leads to; metadata that are None are left out."""
     recipe = None
     if motion.recipe is not None and operation is not None:
         done = [*motion.recipe.get("operations", ()), dict(operation)]
         recipe = {**motion.recipe, "operations": done}
+    told = {**motion.metadata, **(metadata or {})}
     return type(motion)(
         si,
         name=motion.name,
-        metadata={**motion.metadata, **(metadata or {})},
+        metadata={key: value for key, value in told.items() if value is not None},
         history=(*motion.history, *steps),
         recipe=recipe,
     )

@@ -185,7 +185,7 @@ EVENTS_AND_SCALARS: Final = (
         "peak_relative_rotation",
         (),
         Unit.ONE,
-        "largest rotation over the overturning angle of its side",
+        "largest rotation over the overturning angle of its side, of the body that came closest",
     ),
     Variable("first_uplift_time", (), Unit.SECOND, "time contact is first lost, NaN if never"),
     count("impact_count", "number of impacts, those that end in rest among them"),

@@ -56,6 +56,7 @@ class RunSummary:
     # was made without samples
     slides: float = math.nan
     lifted: bool = True  # whether the base left the ground; True also where nobody looked
+    slip: float = math.nan  # largest slip of a body; NaN where none slides [m]
 
     @property
     def within_the_angle(self) -> bool:

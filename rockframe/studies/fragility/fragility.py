@@ -87,7 +87,7 @@ def fragility(
         numbers of one's own along dimensions of the runs, with a name and ``units``. Two
         give a fragility over both.
     limits : iterable, optional
-        Limit states beside overturning: ``"uplift"``, and peak rotations over the
+        Limit states before overturning, in their order: ``"uplift"``, and peak rotations over the
         overturning angle; uplift unless given, and of a dynamic analysis those that it has [1].
         Or on any scalar of the runs whose size tells: its name and a value with a unit, such
         as ``("peak_slip", "5 cm")`` or ``("broken_restrainer_count", 1)``; and third, of points,
@@ -98,8 +98,8 @@ def fragility(
     motions : GroundMotion, or sequence or mapping of them, optional
         The records of the sweep, where neither the dataset nor this process has them.
     pooled : iterable of str, optional
-        Axes of the sweep, or columns of its table, of which all values are taken for one
-        structure, whose dispersion then holds their differences too.
+        Axes of the sweep, or columns of its table (all of them by ``"case"``), of which all
+        values are taken for one structure, whose dispersion then holds their differences too.
     trials : {"runs", "capacities"}, optional
         What is fitted: all runs, each as it went; or, of a dynamic analysis, the least scale
         that was found to exceed under each motion, above which a block may stand again. The

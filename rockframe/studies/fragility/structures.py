@@ -65,6 +65,9 @@ def structures_of(
     foreign = [dim for dim in dims if dim not in {*explained, *axes, *own, MOTION, CASE}]
     _check_motions(runs, foreign, owner, named=len(own) < len(given))
     known = [*(name for name in differing if runs[name].dims), *foreign]
+    if CASE in asked and CASE in dims:  # stands for all columns of its table
+        columns = [name for name in known if CASE in runs[name].dims]
+        asked = [*(one for one in asked if one != CASE), *columns]
     wrong = [one for one in asked if one not in (*changed, *foreign)]
     if wrong:
         msg = (

@@ -233,9 +233,10 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
             return nearest
         near = f"; the nearest is {values[nearest]}"
     else:
-        places = np.flatnonzero(values == wanted)
-        if len(places):
-            return int(places[0])
+        typed = str(wanted).strip().casefold()  # as whole numbers and truth values are typed
+        for place, one in enumerate(values.tolist()):
+            if one == wanted or (isinstance(wanted, str) and str(one).casefold() == typed):
+                return place
     few = ", ".join(str(one) for one in values[:_SHOWN].tolist())
     more = f", ...{near}" if len(values) > _SHOWN else ""
     msg = f"{_OWNER}: {name} has no {shown(wanted)}; it has {few}{more}"

@@ -21,6 +21,7 @@ from rockframe.studies.sweeps.axes import OWNER
 
 SCREENED: Final = (REPEATED, VERDICT_CHANGED)
 """What every case of a screened sweep has beside."""
+_BROKEN: Final = "broken_restrainer_count"
 MOST_ALIKE: Final = 16
 """Texts that differ in their numbers alone and are still told one by one."""
 _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
@@ -42,7 +43,9 @@ def cases_verdict(dataset: xr.Dataset) -> str:
 
 def whole_verdict(dataset: xr.Dataset) -> str:
     """Say what became of all cases of a sweep, in words that stay true of a part of it."""
-    return cases_sentence(dataset, f"Of all {dataset['status'].size} cases of the sweep")
+    count = dataset["status"].size
+    these = "Of 1 case" if count == 1 else f"Of all {count} cases"
+    return cases_sentence(dataset, f"{these} of the sweep")
 
 
 def cases_sentence(runs: xr.Dataset, these: str) -> str:
@@ -53,6 +56,8 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
         text += f"; {found.would_slide} would slide and {found.would_hold} would not"
     if found.slid:
         text += f"; {found.slid} slid, by {found.farthest:.3g} m at most"
+    if found.broke:
+        text += f"; in {found.broke} a restrainer broke"
     lacking = found.cases - found.not_run - found.overturned - found.stood
     if lacking:
         text += f"; {lacking} have no result"
@@ -75,6 +80,7 @@ class _Counts:
     would_slide: int = 0
     would_hold: int = 0
     slid: int = 0
+    broke: int = 0
     screened: int = 0
     repeated: int = 0
     changed: int = 0
@@ -88,14 +94,15 @@ class _Counts:
         slide, hold = (0, 0)
         if "would_slide" in runs:
             slide, hold = counts_of_slides(runs["would_slide"].to_numpy())
+        broke = int((runs[_BROKEN] > 0).sum()) if _BROKEN in runs else 0
         screened, repeated, changed = 0, 0, 0
         if REPEATED in runs:
             screened = int(runs[REPEATED].notnull().sum())
             repeated, changed = (int((runs[name] == 1.0).sum()) for name in SCREENED)
         return cls(
             status.size, int((overturned == 1.0).sum()), int((overturned == 0.0).sum()),
-            int((status == RunStatus.NOT_RUN).sum()), slide, hold, int(slid.sum()), screened,
-            repeated, changed, float(slips[slid].max(initial=0.0)),
+            int((status == RunStatus.NOT_RUN).sum()), slide, hold, int(slid.sum()), broke,
+            screened, repeated, changed, float(slips[slid].max(initial=0.0)),
         )  # fmt: skip
 
     def __add__(self, other: Self) -> Self:

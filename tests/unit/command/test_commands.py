@@ -202,6 +202,7 @@ def test_an_interrupted_study_tells_the_command_that_goes_on(typed, folder, monk
     assert "rockframe study study.toml --csv runs.csv --store " in problem
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_table_of_cases_is_read(typed, folder):
     (folder / "cases.csv").write_text("width [m],scale\n0.7,1\n0.8,2\n")
     (folder / "study.toml").write_text('scene = "scene.toml"\ncases = "cases.csv"\n')
@@ -209,6 +210,9 @@ def test_a_table_of_cases_is_read(typed, folder):
     with xr.open_dataset("runs.nc") as runs:
         assert runs.sizes["case"] == 2
         assert np.isfinite(runs.peak_rotation).all()
+    words = ["report", "runs.nc", "--case", "case=1", "--no-certificate", "-o", "one.html"]
+    assert typed(*words)[0] == 0
+    assert "0.8 m" in (folder / "one.html").read_text()
 
 
 @pytest.mark.usefixtures("no_pictures")

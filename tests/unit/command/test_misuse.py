@@ -46,6 +46,7 @@ VALUES = {
     "fragility scene.toml record.AT2 --scales '1,2 m'": "without a unit",
     "fragility scene.toml record.AT2 --limits peak_slop=1": "was 'peak_slip'",
     "ida scene.toml --limits uplift,0.x": "got '0.x'",
+    "ida scene.toml --limits peak_slip": "'peak_slip=5 cm'",
     "map scene.toml --amplitude 1,2 --frequency '1 Hz'": "with their unit behind them",
     "map scene.toml --amplitude '1,2 m' --frequency '1 Hz'": "--amplitude '9.81 m/s^2'",
     "map scene.toml --amplitude '1 g' --frequency '1 Hz' --pulse sine_puls": "was 'sine_pulse'",

@@ -190,6 +190,15 @@ def test_other_netcdf_files_are_refused(tmp_path):
         GroundMotion.read(path)
 
 
+def test_of_a_suite_it_is_told_what_reads_it(tmp_path):
+    path = tmp_path / "suite.nc"
+    suite = rf.MotionSuite({name: arrays(tmp_path) for name in ("one", "two")})
+    suite.to_dataset().to_netcdf(path)
+    with pytest.raises(RecordError, match=r"a suite of motions.*read_suite"):
+        GroundMotion.read(path)
+    assert list(rf.read_suite(path)) == ["one", "two"]
+
+
 def test_text_is_no_netcdf(write):
     with pytest.raises(RecordError, match=r"begins with b'time,a'"):
         GroundMotion.read(write("time,a", "r.nc"), format="netcdf")

@@ -475,6 +475,7 @@ def test_description_of_a_pulse_builds_it_again(made):
         lambda m: m.baseline_corrected(0),
         lambda m: m.baseline_corrected(2, fit="velocity"),
         lambda m: m.scaled(0.1).with_vertical(m.scaled(0.3).window("0 s", "0.5 s")).scaled(2),
+        lambda m: m.with_vertical(m.scaled(0.3)).with_vertical(None).scaled(2),
     ],
 )
 def test_a_changed_pulse_is_described_with_what_was_done_to_it(changed):

@@ -83,3 +83,12 @@ def test_an_analytic_motion_has_no_sense_and_keeps_its_sign():
     both = pulse.with_vertical(pulse.scaled(-0.5))
     assert both.si.vertical.samples.min() == pytest.approx(-0.5 * pulse.si.horizontal.samples.max())
     assert "vertical_positive" not in both.metadata
+
+
+def test_the_vertical_component_can_be_left_out():
+    both = GroundMotion.example("waipukurau", component=("S74E", "Up"))
+    alone = both.with_vertical(None)
+    assert alone.si.vertical is None
+    assert alone.sha256 == GroundMotion.example("waipukurau", component="S74E").sha256
+    assert not [key for key in alone.metadata if key.startswith("vertical")]
+    assert alone.with_vertical(None) is alone

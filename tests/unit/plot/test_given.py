@@ -93,6 +93,10 @@ def test_two_axes_are_drawn_beside_the_one_motion():
     assert runs.peak_rotation.ndim == 3
     axes = rf.plot.sweep(runs, "peak_rotation")
     assert len(axes.get_lines()) >= 2
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
+        "height 3 m",
+        "height 4 m",
+    ]
     several = xr.concat([runs, runs.assign_coords(motion=["other"])], "motion", data_vars="all")
     with pytest.raises(SchemaError, match=r"has 3 .*isel"):
         rf.plot.sweep(several, "peak_rotation")

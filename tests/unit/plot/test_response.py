@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgb
 from records import record_path
 
 import rockframe as rf
-from rockframe.errors import SolverWarning
+from rockframe.errors import ComponentError, SolverWarning
 from rockframe.plot._response import CONTACT_COLOURS, mixed_colours
 from rockframe.solve.layout import Status
 
@@ -118,3 +118,14 @@ def test_of_two_settlements_the_label_names_the_one(coupling):
     assert r"$\delta$ of the pads" in label
     alone = rf.System(block, pads).simulate(PULSE)
     assert "of the pads" not in rf.plot.response(alone).figure.axes[2].get_ylabel()
+
+
+def test_a_history_is_drawn_of_those_runs_that_hold_it():
+    slides = rf.System(BLOCK, rf.RigidGround(friction=0.15)).simulate(PULSE)
+    runs = {"held": rf.System(BLOCK).simulate(PULSE), "slides": slides}
+    assert "slip" not in runs["held"]
+    *_, slip, _, _ = rf.plot.response(runs)  # beneath it a strip of contact for each run
+    assert slip.get_ylabel() == "slip\n[m]"
+    assert [line.get_label() for line in slip.get_lines()][:1] == ["slides"]
+    with pytest.raises(ComponentError, match=r"They hold .*'slip'"):
+        rf.plot.response(runs, panels=["slipp"])

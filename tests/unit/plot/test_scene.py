@@ -206,3 +206,12 @@ def test_a_film_needs_ffmpeg_and_is_known_again(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(FileError, match=r"needs the program ffmpeg, which was not found"):
         moving.save(film)
+
+
+def test_a_tendon_goes_through_its_body():
+    tendon = rf.Tendon(stiffness="2 MN/m", preload="10 kN", at="0.3 m", depth="2 m")
+    alone = rf.System(EVEN, PADS, tendon)
+    upper = rf.Block(width="1 m", height="3 m", mass="5 t")
+    stack = rf.System(rf.Stack(upper, EVEN, interfaces=[rf.RigidGround()]), PADS, tendon)
+    for system, ends in ((alone, [(0.3, 8.0), (0.3, -2.0)]), (stack, [(0.3, 11.0), (0.3, 6.0)])):
+        assert geometry_of(system.assembly).ties[0].points == pytest.approx(np.array(ends))

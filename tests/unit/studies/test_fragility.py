@@ -355,6 +355,8 @@ def test_a_row_for_pelicun(runs):
         rf.export.to_pelicun(spectral, "x")["Demand-Type"].item()
         == "Peak Spectral Acceleration|0.5"
     )
+    with pytest.raises(ComponentError, match="'Peak Spectral Acceleration' is, got 'Peak Floor"):
+        rf.export.to_pelicun(spectral, "x", demand="Peak Floor Acceleration")
     with pytest.raises(ComponentError, match="'uplift' has no lognormal fit"):
         rf.export.to_pelicun(rf.fragility(runs), "x")
     with pytest.raises(SchemaError, match="found no fragility over one of"):

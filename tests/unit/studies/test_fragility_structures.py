@@ -87,6 +87,7 @@ def test_rows_of_a_table_are_of_one_structure_where_they_are_alike(runs):
     assert_same_fit(rf.fragility(apart, "PGV", limits=()), found)
     both = rf.fragility(apart, "PGV", limits=(), pooled="width")
     assert both.trial_count.item() == apart.status.size
+    assert_same_fit(rf.fragility(apart, "PGV", limits=(), pooled="case"), both)
     with pytest.raises(SchemaError, match="without its coordinate 'width'"):
         rf.fragility(table.drop_vars("width"))
 
@@ -211,7 +212,7 @@ def test_figures_tell_structures_apart(runs):
     panels = rf.plot.fragility(found)
     assert [axes.get_title() for axes in panels] == ["rotation 0.3", "overturning"]
     names = [text.get_text() for text in panels.figure.legends[0].get_texts()]
-    assert names == ["width 0.4", "width 0.5", "width 0.8"]
+    assert names == ["width 0.4 m", "width 0.5 m", "width 0.8 m"]
     axes = rf.plot.fragility(found.isel(width=1))
     told = axes.figure.get_suptitle().replace("\n", " ")
     assert f"{found.median_intensity[1, 1].item():.4g}" in told

@@ -139,3 +139,18 @@ def test_analyses_tell_of_friction():
     assert SLIDES in found.attrs["cautions"]
     found = rf.critical_scale(rf.System(BLOCK), PULSE, largest=0.9, scales=20, runs=40)
     assert "cautions" not in found.attrs
+
+
+def test_what_slides_is_told_of_scales_that_are_tried():
+    """A block that slides instead of rocking stands at any scale; how far it goes is said."""
+    low = rf.Block(width="1 m", height="2 m", mass="1 t")
+    slides = rf.System(low, rf.RigidGround(friction=0.2))
+    pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz")
+    how = {"accuracy": "fast", "progress": False}
+    scales = [0.5, 1.0, 1.5, 2.0]
+    farthest = float(rf.sweep(slides, pulse, scale=scales, **how).peak_slip.max())
+    told = f"the block slid, by {farthest:.3g} m at most."
+    analysis = rf.incremental_dynamic_analysis(slides, [pulse], scale=scales, resolution=1, **how)
+    assert f"; in 3 of 4 runs of the scan {told}" in analysis.verdict
+    found = rf.critical_scale(slides, pulse, largest=2, scales=5, runs=5, **how)  # from uplift on
+    assert f"; in 5 of 5 runs {told}" in found.verdict

@@ -36,6 +36,13 @@ def test_runs_exceed_where_the_variable_does(runs):
     assert rotation.median_intensity == found.median_intensity[0]
 
 
+def test_they_stand_in_the_order_in_which_they_are_given(runs):
+    found = rf.fragility(runs, limits=[ROOF, 0.5, "uplift", 0.2, 0.5])
+    name = "peak point horizontal acceleration top 6 m s^-2"
+    order = [name, "rotation 0.5", "uplift", "rotation 0.2", "overturning"]
+    assert found.limit_state.values.tolist() == order
+
+
 @pytest.mark.long
 def test_a_dynamic_analysis_narrows_them_too():
     """A slip of so many metres is exceeded between two runs that tell it."""

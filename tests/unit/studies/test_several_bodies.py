@@ -47,6 +47,11 @@ def test_broken_ties_are_counted_in_all_runs(broken, scale):
         breaks = int((alone.event_kind == LINK_BREAKS).sum())
         found = broken.broken_restrainer_count.sel(place).item()
         assert found == breaks == alone.broken_restrainer_count.item()
+        verdict = alone.attrs["verdict"]
+        assert verdict.count("broke") == (breaks > 0)
+        assert ("west and east broke" in verdict) == (breaks == 2)
+    some = int((broken.broken_restrainer_count > 0).sum())
+    assert f"; in {some} a restrainer broke." in broken.attrs["verdict"]
 
 
 def frame() -> rf.System:
