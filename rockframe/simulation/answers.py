@@ -233,8 +233,9 @@ def _along(
     until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
     steps = run.kept_steps.until(until)
     shown = {name: each[: len(steps.time)] for name, each in columns.items()}
-    kept = ~np.isin(steps.memory_row, _stops(run, events))
-    if not kept.all():
+    stops = _stops(run, events)
+    if len(stops):
+        kept = ~np.isin(steps.memory_row, stops)
         steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
         shown = {name: each[kept] for name, each in shown.items()}
     if _everything(plan):
