@@ -45,11 +45,15 @@ class Attempt(NamedTuple):
 
 
 class Found(NamedTuple):
-    """The set that bears, how many others would do, and the next best of them, or -1."""
+    """The set that bears, how many others would do, and the next best of them, or -1.
+
+    Where none would do, the corner that is held though it does not press, or 0.
+    """
 
     taken: int
     admissible: int
     other: int
+    held: int
 
 
 @kernel
@@ -187,36 +191,82 @@ def bearing_corners(
 
     After an impact the admissible set that loses the least energy. Where one of those that bore
     before is `leaving`, since its force has come to zero, the admissible one nearest to those.
-    Where no set is admissible, that of the problem with sticking assumed, which has one solution.
-    Where friction alone has changed, `leaving` is negative.
+    Where friction alone has changed, `leaving` is negative. Where no set is admissible, after an
+    impact that of the problem with sticking assumed, which has one solution; under new forces first
+    all ways to slip are tried, then sets of which one corner is held though it does not press.
     """
     impulsive = leaving == 0
     reference, noise = closed, noise_of(system, closed, impulsive, state)
     many = size_of(closed) > ALL_TRIED
     if many:
         reference = with_sticking(system, mode, closed, impulsive, noise, state)
-    taken, other, admissible = -1, -1, 0
+    taken, other, admissible, held = -1, -1, 0, 0
     least = second = math.inf
-    some = closed
-    while some >= 0:
-        near, bears = not many or size_of(some ^ reference) <= NEIGHBOURS, some | pulled
-        if near and (leaving <= 0 or bears != before):
-            found = system.try_corners(mode, bears, closed, impulsive, noise, state)
-            if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
-                loss = found.loss if impulsive else float(size_of(bears ^ before))
-                admissible += 1
-                if loss < least:
-                    other, second, taken, least = taken, least, bears, loss
-                elif loss < second:
-                    other, second = bears, loss
-        some = (some - 1) & closed if some > 0 else -1
-    if admissible > 0:
-        system.try_corners(mode, taken, closed, impulsive, noise, state)
-    elif impulsive:
+    for ways in range(1 if impulsive else 2):
+        thorough, some = ways == 1, closed
+        while some >= 0:
+            near, bears = not many or size_of(some ^ reference) <= NEIGHBOURS, some | pulled
+            if near and (leaving <= 0 or bears != before):
+                found = try_set(system, thorough, mode, bears, closed, impulsive, noise, state)
+                if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
+                    loss = found.loss if impulsive else float(size_of(bears ^ before))
+                    admissible += 1
+                    if loss < least:
+                        other, second, taken, least = taken, least, bears, loss
+                    elif loss < second:
+                        other, second = bears, loss
+            some = (some - 1) & closed if some > 0 else -1
+        if admissible > 0:  # what it does stays in the rooms
+            try_set(system, thorough, mode, taken, closed, impulsive, noise, state)
+            return Found(taken, admissible, other, 0)
+    if impulsive:
         taken = with_sticking(system, mode, closed, impulsive, noise, state)
     else:
-        taken = before if leaving < 0 else before & ~leaving
-    return Found(taken, admissible, other)
+        taken, held = with_one_held(system, mode, closed, pulled, before, leaving, noise, state)
+        if held == 0:
+            taken = before if leaving < 0 else before & ~leaving
+    return Found(taken, admissible, other, held)
+
+
+@kernel
+def try_set(
+    system: Any, thorough: bool, mode: int, some: int, closed: int, impulsive: bool, noise: float,
+    state: Vector,
+) -> Attempt:  # fmt: skip
+    """Let a set of the closed corners bear, by slips found base by base or by trying all."""
+    if thorough:
+        return system.try_all_slips(mode, some, closed, noise, state)
+    return system.try_corners(mode, some, closed, impulsive, noise, state)
+
+
+@kernel
+def with_one_held(
+    system: Any, mode: int, closed: int, pulled: int, before: int, leaving: int, noise: float,
+    state: Vector,
+) -> tuple[int, int]:  # fmt: skip
+    """Find a set of which one corner, alone on its body, is held though it does not press.
+
+    Let go, it would come back at once, or another one would have to pull. Of several sets the
+    nearest to that before, by the corner that is leaving; gives the set and the corner, or 0.
+    """
+    taken, held, least = before, 0, math.inf
+    some = closed
+    while some > 0:
+        for corner in range(2 * system.body_count):
+            one, bears = 1 << corner, some | pulled
+            distance = 2 * size_of(bears ^ before) + (0 if one == leaving else 1)
+            if some & one == 0 or not system.bears_alone(some, one) or distance >= least:
+                continue
+            found = system.try_corners(mode, bears, closed & ~one, False, noise, state)
+            pulls = system.corner_force(corner // 2, corner % 2 == 0) < 0.0
+            if found.fault < 0 and pulls and all_press(system, bears & ~before & ~one):
+                free = system.try_corners(mode, bears & ~one, some, False, noise, state)
+                if free.fault >= 0:
+                    taken, held, least = bears, one, distance
+        some = (some - 1) & closed
+    if held != 0:
+        system.try_corners(mode, taken, closed & ~held, False, noise, state)
+    return taken, held
 
 
 @kernel
