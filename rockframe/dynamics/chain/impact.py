@@ -66,6 +66,36 @@ def size_of(corners: int) -> int:
     return count
 
 
+class Near(NamedTuple):
+    """Sets of closed corners that differ from one of them in at most so many."""
+
+    closed: int
+    reference: int
+    most: int
+
+
+@kernel
+def next_set(start: int, near: Near) -> int:
+    """Give the highest of the sets up to a number, all closed corners or one less than a set; -1.
+
+    Those between, that differ in too many corners, are passed by at once.
+    """
+    some = start & near.closed if start >= 0 else -1
+    while some >= 0:
+        rest = some ^ near.reference
+        for _ in range(size_of(rest) - near.most - 1):
+            rest &= rest - 1
+        corner = rest & -rest  # the highest one in which a set differs that may not
+        if size_of(rest) <= near.most:
+            break
+        above = some & ~(2 * corner - 1)
+        if some & corner != 0:
+            some = above | near.reference & (corner - 1)
+            break
+        some = (above - 1) & near.closed if above > 0 else -1
+    return some
+
+
 @kernel
 def attempt(
     system: Any, mode: int, some: int, closed: int, sticks: bool, impulsive: bool, noise: float,
@@ -196,17 +226,17 @@ def bearing_corners(
     all ways to slip are tried, then sets of which one corner is held though it does not press.
     """
     impulsive = leaving == 0
-    reference, noise = closed, noise_of(system, closed, impulsive, state)
-    many = size_of(closed) > ALL_TRIED
-    if many:
+    noise, near = noise_of(system, closed, impulsive, state), Near(closed, closed, ALL_TRIED)
+    if size_of(closed) > ALL_TRIED:
         reference = with_sticking(system, mode, closed, impulsive, noise, state)
+        near = Near(closed, reference, NEIGHBOURS)
     taken, other, admissible, held = -1, -1, 0, 0
     least = second = math.inf
     for ways in range(1 if impulsive else 2):
-        thorough, some = ways == 1, closed
+        thorough, some = ways == 1, next_set(closed, near)
         while some >= 0:
-            near, bears = not many or size_of(some ^ reference) <= NEIGHBOURS, some | pulled
-            if near and (leaving <= 0 or bears != before):
+            bears = some | pulled
+            if leaving <= 0 or bears != before:
                 found = try_set(system, thorough, mode, bears, closed, impulsive, noise, state)
                 if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
                     loss = found.loss if impulsive else float(size_of(bears ^ before))
@@ -215,14 +245,14 @@ def bearing_corners(
                         other, second, taken, least = taken, least, bears, loss
                     elif loss < second:
                         other, second = bears, loss
-            some = (some - 1) & closed if some > 0 else -1
+            some = next_set(some - 1, near)
         if admissible > 0:  # what it does stays in the rooms
             try_set(system, thorough, mode, taken, closed, impulsive, noise, state)
             return Found(taken, admissible, other, 0)
     if impulsive:
         taken = with_sticking(system, mode, closed, impulsive, noise, state)
     else:
-        taken, held = with_one_held(system, mode, closed, pulled, before, leaving, noise, state)
+        taken, held = with_one_held(system, mode, near, pulled, before, leaving, noise, state)
         if held == 0:
             taken = before if leaving < 0 else before & ~leaving
     return Found(taken, admissible, other, held)
@@ -241,7 +271,7 @@ def try_set(
 
 @kernel
 def with_one_held(
-    system: Any, mode: int, closed: int, pulled: int, before: int, leaving: int, noise: float,
+    system: Any, mode: int, near: Near, pulled: int, before: int, leaving: int, noise: float,
     state: Vector,
 ) -> tuple[int, int]:  # fmt: skip
     """Find a set of which one corner, alone on its body, is held though it does not press.
@@ -249,9 +279,9 @@ def with_one_held(
     Let go, it would come back at once, or another one would have to pull. Of several sets the
     nearest to that before, by the corner that is leaving; gives the set and the corner, or 0.
     """
-    taken, held, least = before, 0, math.inf
-    some = closed
-    while some > 0:
+    taken, held, least, closed = before, 0, math.inf, near.closed
+    some, follower = before & closed, closed  # that before comes first, and rules most others out
+    while some >= 0:
         for corner in range(2 * system.body_count):
             one, bears = 1 << corner, some | pulled
             distance = 2 * size_of(bears ^ before) + (0 if one == leaving else 1)
@@ -263,7 +293,8 @@ def with_one_held(
                 free = system.try_corners(mode, bears & ~one, some, False, noise, state)
                 if free.fault >= 0:
                     taken, held, least = bears, one, distance
-        some = (some - 1) & closed
+        some = next_set(follower, near)
+        follower = some - 1
     if held != 0:
         system.try_corners(mode, taken, closed & ~held, False, noise, state)
     return taken, held
