@@ -123,25 +123,20 @@ def attempt(
         holds = touches | bears if sticks else bears
         if holds == 0:
             continue
-        body, part = system.state_of(k, state), system.on_base(k)
         # where both corners are closed all points of the base move alike
-        pivot = PIVOT_LEFT if holds == LEFT_ONLY else PIVOT_RIGHT
-        reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
+        pivot = 0 if holds == LEFT_ONLY else 1
+        reach, stays = room[i + at.REACHES + pivot], room[i + at.STAYS + pivot]
         sense = 0.0 if sticks else system.slip_sense(k)
         for side in range(2):
             if bears >> side & 1 != 0:
-                lever, wanted = corner_row(system, k, side == 0, impulsive, state, room)
-                add_constraint(system, count, k, 0.0, 1.0, lever, wanted, room, rows)
+                lever, rests = room[i + at.LEVERS + side], room[i + at.RESTS + side]
+                add_constraint(system, count, k, 0.0, 1.0, lever, rests, room, rows)
                 room[i + at.LEFT_CORNER + side] = count
-                system.rub(k, count, sense, reach.rate, impulsive, room, rows)
+                system.rub(k, count, sense, reach, impulsive, room, rows)
                 count += 1
         if sense == 0.0:
-            rate = body.angular_velocity
-            wanted = coriolis_along(i, room) + reach.bend * rate * rate
-            if impulsive:
-                wanted = reach.rate * rate - body.horizontal_velocity
             room[i + at.HOLDS_ALONG] = count
-            add_constraint(system, count, k, 1.0, 0.0, -reach.rate, wanted, room, rows)
+            add_constraint(system, count, k, 1.0, 0.0, -reach, stays, room, rows)
             count += 1
     solve_motion(system, count, system.band(), room, rows, system.matrix())
     loss = pressing = 0.0
@@ -152,28 +147,36 @@ def attempt(
         if system.is_rigid(k):
             loss += system.lost_by_friction(k, which, state, room, rows)
         pressing += abs(force)
-    fault = first_fault(system, some, closed, impulsive, NOISE * pressing, noise, state)
+    fault = first_fault(system, some, closed, impulsive, NOISE * pressing, noise)
     return Attempt(fault, loss)
 
 
 @kernel
-def corner_row(
-    system: Any, k: int, left: bool, impulsive: bool, state: Vector, room: Vector
-) -> tuple[float, float]:
-    """Give the lever of a corner, and the change of its speed that makes it rest on its base."""
-    i, part, body = k * PLACES, system.on_base(k), system.state_of(k, state)
-    attitude = part.body.attitude(body.rotation)
-    line = part.body.base_line(body, attitude)
-    lever = line.left_lever if left else line.right_lever
-    if impulsive:
-        return lever, -(line.left_speed if left else line.right_speed)
-    bends = part.body.end_accelerations(attitude, body.angular_velocity, 0.0, 0.0)
-    return lever, -coriolis_normal(i, room) - (bends[0] if left else bends[1])
+def write_corners(system: Any, impulsive: bool, state: Vector) -> None:
+    """Write what all trials of corners have in common: their levers, and what makes them rest."""
+    room = system.places()
+    for k in range(system.body_count):
+        if system.is_rigid(k):
+            i, part, body = k * PLACES, system.on_base(k), system.state_of(k, state)
+            attitude, rate = part.body.attitude(body.rotation), body.angular_velocity
+            line = part.body.base_line(body, attitude)
+            bends = part.body.end_accelerations(attitude, rate, 0.0, 0.0)
+            room[i + at.LEVERS], room[i + at.LEVERS + 1] = line.left_lever, line.right_lever
+            room[i + at.RESTS], room[i + at.RESTS + 1] = -line.left_speed, -line.right_speed
+            for side in range(2):
+                pin = part.body.pin(PIVOT_LEFT if side == 0 else PIVOT_RIGHT)
+                reach = part.body.reach(pin, attitude)
+                room[i + at.REACHES + side] = reach.rate
+                room[i + at.STAYS + side] = reach.rate * rate - body.horizontal_velocity
+                if not impulsive:
+                    along = coriolis_along(i, room) + reach.bend * rate * rate
+                    room[i + at.STAYS + side] = along
+                    room[i + at.RESTS + side] = -coriolis_normal(i, room) - bends[side]
 
 
 @kernel
 def first_fault(
-    system: Any, some: int, closed: int, impulsive: bool, least: float, noise: float, state: Vector
+    system: Any, some: int, closed: int, impulsive: bool, least: float, noise: float
 ) -> int:
     """Give the first corner that is at fault by :eq:`eq-admissible`; -1 if none is."""
     room, rows = system.places(), system.constraints()
@@ -187,12 +190,13 @@ def first_fault(
             if rows[which * CONSTRAINT + at.FORCE] < -least:
                 return corner
             continue
-        lever, wanted = corner_row(system, k, side == 0, impulsive, state, room)
+        i = k * PLACES + side
+        lever, rests = room[i + at.LEVERS], room[i + at.RESTS]
         keeps = spare * CONSTRAINT + at.KEEPS
         write_direction(system, k, 0.0, 1.0, lever, keeps, room, rows)
         # under new forces a corner parts as its force is zero, and so is its acceleration
         least_rise = noise if impulsive else -noise
-        if of_both(system, k, keeps, room, rows) - wanted <= least_rise:
+        if of_both(system, k, keeps, room, rows) - rests <= least_rise:
             return corner
     return -1
 
@@ -206,9 +210,8 @@ def noise_of(system: Any, closed: int, impulsive: bool, state: Vector) -> float:
     for corner in range(2 * system.body_count):
         if closed >> corner & 1 != 0:
             k = corner // 2
-            body = system.state_of(k, state)
-            lever, wanted = corner_row(system, k, corner % 2 == 0, True, state, room)
-            scale += abs(wanted) + abs(lever * body.angular_velocity)
+            i, body = k * PLACES + corner % 2, system.state_of(k, state)
+            scale += abs(room[i + at.RESTS]) + abs(room[i + at.LEVERS] * body.angular_velocity)
             scale += abs(body.horizontal_velocity)
     return NOISE * scale
 
@@ -226,6 +229,7 @@ def bearing_corners(
     all ways to slip are tried, then sets of which one corner is held though it does not press.
     """
     impulsive = leaving == 0
+    write_corners(system, impulsive, state)
     noise, near = noise_of(system, closed, impulsive, state), Near(closed, closed, ALL_TRIED)
     if size_of(closed) > ALL_TRIED:
         reference = with_sticking(system, mode, closed, impulsive, noise, state)

@@ -18,6 +18,7 @@ from rockframe.dynamics.chain.impact import (
     RIGHT_ONLY,
     attempt,
     bearing_corners,
+    write_corners,
 )
 from rockframe.dynamics.chain.motion import (
     load_bodies,
@@ -294,6 +295,7 @@ class RigidChain(RigidCorners):
         flying = self.with_bearing(mode, 0, 0)
         had = self.energies(flying, state).kinetic  # places the bodies, too
         load_bodies(self, 0.0, 0.0, self.places())
+        write_corners(self, True, state)
         attempt(self, flying, corners, corners, False, True, 0.0, state)
         self.change_velocities(state)
         self.hold_contacts(new, state, memory)
