@@ -1,9 +1,9 @@
 """What one run with its histories costs beside the compiled loop alone.
 
-Run from the root, with ``PYTHONPATH=.``: ``python tests/benchmarks/one_run.py``. Writes
-docs/data/one_run.json. Loop, runs without and runs with histories take turns, so that other work
-on the machine meets all; each number is the least processor time of all rounds, a ratio that over
-the loop's.
+Run from the root, with ``PYTHONPATH=.`` and ``ROCKFRAME_COMPILE=wait``: ``python
+tests/benchmarks/one_run.py``. Writes docs/data/one_run.json. Loop, runs without and runs with
+histories take turns, so that other work on the machine meets all; each number is the least
+processor time of all rounds, a ratio that over the loop's.
 """
 
 import json
@@ -29,12 +29,11 @@ ROUNDS = 40
 SHOWN = ("fast", "standard")
 STEP, SAMPLES, FADE = 0.005, 12_000, 1000
 PARTS = {
-    "samples": (answers, "_everything_of"),
-    "steps": (answers, "_along"),
+    "columns": (answers, "_everything_of"),
     "peaks": (answers, "peaks_along"),
     "dataset": (run, "build_dataset"),
 }
-"""What is timed by itself: what the model shows at samples and along steps, the peaks found along
+"""What is timed by itself: what the model shows along steps and at samples, the peaks found along
 these, and the labelled dataset."""
 
 

@@ -31,7 +31,7 @@ def test_a_slack_restrainer_adds_no_steps():
 
 
 def test_what_histories_cost_is_what_was_measured():
-    columns = ("the loop [ms]", "samples [ms]", "steps [ms]", "peaks [ms]", "dataset [ms]")
+    columns = ("the loop [ms]", "columns [ms]", "peaks [ms]", "dataset [ms]")
     head = "| | the loop [ms] | without histories | with histories | " + " | ".join(columns[1:])
     keys = (
         "loop [ms]", "without histories, ratio", "with histories, ratio", *columns[1:],
