@@ -134,8 +134,9 @@ def tradeoff(
 
     Notes
     -----
-    Every rung is run before it is timed, until its machine code is compiled. Times are wall times of this machine, now:
-    compare them with one another only. Histories are compared at the output times.
+    Every rung is run before it is timed, until its machine code is compiled. Times are wall
+    times of this machine, now: compare them with one another only. Histories are compared at
+    the output times.
 
     Examples
     --------
