@@ -24,6 +24,7 @@ from rockframe.simulation.run import outcome, run
 from rockframe.simulation.run_arguments import ComparedArguments
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
+from rockframe.solve.equations import equations_of, runs_as_python, steps_as_machine_code
 from rockframe.system.options import AccuracyLike
 
 
@@ -84,6 +85,8 @@ Outcome: TypeAlias = dict[str, float | int | bool]
 _KEPT: Final = ("peak_rotation", "overturned", "energy_residual", "status")
 _OWNER: Final = "tradeoff"
 _MOST_REPEATS: Final = 1000
+_PATIENCE: Final = 60.0
+"""How long machine code is waited for, so that a rung is timed by it [s]."""
 
 
 @takes(ComparedArguments)
@@ -131,8 +134,9 @@ def tradeoff(
 
     Notes
     -----
-    Every rung is run once before it is timed. Times are wall times of this machine, now:
-    compare them with one another only. Histories are compared at the output times.
+    Every rung is run before it is timed, until its machine code is compiled. Times are wall
+    times of this machine, now: compare them with one another only. Histories are compared at
+    the output times.
 
     Examples
     --------
@@ -210,6 +214,7 @@ def measure(
     """Run a rung, time it and compare it."""
     found = run(scene.assembly, plan)
     bare = replace(plan, output_step=None)
+    _run_until_compiled(scene, bare)
     times = [_timed(scene, bare) for _ in range(repeats)]
     return {
         "run_time": float(np.median(times)),
@@ -223,6 +228,17 @@ def measure(
         "verdict_agrees": verdicts_agree(found, truth),
         **{name: found[name].item() for name in _KEPT},
     }
+
+
+def _run_until_compiled(scene: System, plan: Plan) -> None:
+    """Run a rung in plain Python as long as its machine code is made: it is not to be timed so."""
+    system = scene.assembly.model.system
+    equations = equations_of(system, fixed_steps=plan.accuracy.rtol is None)
+    deadline = time.perf_counter() + _PATIENCE
+    while not (steps_as_machine_code(equations) or runs_as_python(equations)):
+        if time.perf_counter() > deadline:
+            return
+        outcome(scene.assembly, plan)
 
 
 def _timed(scene: System, plan: Plan) -> float:

@@ -66,8 +66,10 @@ class _Impact(Declared[Any, Any]):
             example=f'"{WallImpact.SORRENTINO}", "{WallImpact.NEWTON}" or -0.4',
         )  # fmt: skip
 
-    def write(self, value: WallImpact | float) -> float | str:
-        """Write the word, or the number."""
+    def write(self, value: WallImpact | float) -> float | str | None:
+        """Write the word, or the number; nothing for the usual law, which elastic walls lack."""
+        if value is self.default:
+            return None
         return str(value) if isinstance(value, WallImpact) else value
 
 

@@ -299,7 +299,7 @@ def verdict(
     else:
         text = f"Did not overturn: {peak}; {impacts}"
     if not run.passed and math.isnan(run.first_uplift_time):
-        text += ", no uplift from the pads" if setting.stacked else ", no uplift"
+        text += ", no uplift from the pads" if setting.stacked else f", no uplift{of}"
     if run.flight_time > 0.0:
         text += f", {run.flight_time:.3g} s in flight"
     if broken:

@@ -66,10 +66,17 @@ def outputs_of(
         else:
             known = (*GROUPS, *ON_REQUEST, *DIAGNOSTICS)
             words = ", ".join(map(repr, known))
-            faults.append(
-                f"outputs has no {shown(name)}; every run has its response, and on request "
-                f"{words}{nearest(name, known)}"
-            )
+            if isinstance(name, str) and name in SCHEMA and "time" in SCHEMA[name].dims:
+                found = (
+                    f"outputs need not name {name!r}: a single run has it anyway, if its scene "
+                    f"has; on request there are {words}"
+                )
+            else:
+                found = (
+                    f"outputs has no {shown(name)}; every run has its response, and on request "
+                    f"{words}{nearest(name, known)}"
+                )
+            faults.append(found)
     requested = tuple(name for name in ON_REQUEST if name in wanted)
     return requested, tuple(one for name, one in DIAGNOSTICS.items() if name in diagnostics)
 

@@ -262,7 +262,8 @@ def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
         text += f", at or below {capacity[some].min():.4g} times the motion"
     elif some.any():
         least = f"{'at or below ' if below.any() else ''}{capacity[some].min():.4g}"
-        text += f", from {least} to {capacity[some].max():.4g} times the motion on"
+        most = f"{capacity[some].max():.4g}"
+        text += f", from {least}{'' if most == least else f' to {most}'} times the motion on"
     again = int((of_overturning["flip_count"].to_numpy() > 1).sum())
     if again:
         text += f"; under {again} the verdict changed more than once"

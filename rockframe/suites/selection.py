@@ -116,10 +116,12 @@ def selection_for(
     allowed = np.flatnonzero(candidates.within)
     if allowed.size < wanted:
         low, high = candidates.bounds
-        msg = (
-            f"{owner}: {allowed.size} of {len(candidates.labels)} motions have factors from "
-            f"{low:g} to {high:g}, too few for a set of {wanted}; widen bounds, or lower count"
-        )
+        total = len(candidates.labels)
+        found = f"{allowed.size} of {total} motions have factors from {low:g} to {high:g}"
+        mended = "widen bounds, or lower count"
+        if allowed.size == total:
+            found, mended = f"found {total} motion{'' if total == 1 else 's'}", "lower count"
+        msg = f"{owner}: {found}, too few for a set of {wanted}; {mended}"
         raise ComponentError(msg)
     search = _Search(
         candidates.residuals(candidates.factors)[allowed],

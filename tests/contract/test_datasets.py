@@ -589,6 +589,8 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
         overturning_angles=angles, leans=False, stacked=pads_on_cap, slips_of=lambda _: []
     )
     assert verdict(replace(summary, **found), setting, end=0.1) == words
+    upper = verdict(replace(summary, first_uplift_time=math.nan), setting, end=0.1, of=" of body 1")
+    assert pads_on_cap or "1 impact, no uplift of body 1." in upper
     if not summary.overturned and summary.status.finished and not found:
         setting.overturning_angles, setting.leans = OverturningAngles(0.2, 0.025), True
         told = verdict(summary, setting, end=0.1)

@@ -286,6 +286,20 @@ def test_a_course_that_cannot_be_followed_ends_the_margin():
     assert more.margin >= found.margin
 
 
+def test_a_course_that_is_lost_beside_the_run_says_how_many_runs_lost_it():
+    rng = np.random.default_rng(0)
+
+    def run(_, plan):
+        off = abs(plan.motion.si.peak / PULSE.si.peak - 1.0)
+        course = (1.0, rng.uniform(0.0, 1.0) if off > 0.004 else 0.5)
+        return RunSummary(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
+
+    plan = planned()
+    found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
+    assert found.margin < 0.01
+    assert "Near the boundary: the body stands, but 200 runs did not do to follow" in found.sentence
+
+
 def test_the_peak_of_a_standing_body_must_be_sure_to_stay_below():
     def run(_, plan):
         left = 0.01 if plan.accuracy.rtol > 1e-5 else 0.004
@@ -388,7 +402,7 @@ def test_the_sentence_says_what_the_numbers_say():
             assert f"tried from {1.0 - margin:.6g} to {1.0 + margin:.6g}" in text
             assert found.along.followed != ("did not do to follow it" in text)
         if found.along.tried and margin <= max(NEAR, found.wanted.nudge):
-            assert found.along.followed or "intricate" in text or scaled in text
+            assert found.along.followed or "to follow how it" in text or scaled in text
         stops = found.plan.stop_at_overturning
         words = ("overturns", "stands") if stops else ("falls flat", "does not fall flat")
         assert f"body {words[not found.base.overturned]}" in text

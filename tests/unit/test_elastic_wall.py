@@ -132,3 +132,11 @@ def test_an_elastic_wall_tells_itself_and_goes_to_plain_values_and_back():
     assert "presses only" in system.describe()
     assert rf.System.from_dict(system.to_dict()) == system
     rf.plot.scene(system)
+
+
+def test_an_elastic_wall_names_no_law_of_impact():
+    wall = rf.RearWall(stiffness="2 MN/m", gap="5 mm")
+    assert "restitution" not in repr(wall)
+    assert rf.RearWall.from_dict(wall.to_dict()) == wall
+    assert rf.RearWall.from_dict({**wall.to_dict(), "restitution": "sorrentino"}) == wall
+    assert "restitution='newton'" in repr(rf.RearWall(restitution="newton", wall_restitution=0.2))

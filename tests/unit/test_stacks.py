@@ -124,6 +124,12 @@ def test_a_run_shows_all_bodies(run, tmp_path):
     assert float(run.energy_residual) < 1e-6
 
 
+def test_what_is_said_of_each_body_need_not_be_requested(run):
+    assert "body_rotation" in run
+    with pytest.raises(AssemblyError, match="need not name 'body_rotation': a single run has it"):
+        rf.System(STACK, GROUND).simulate(PULSE, outputs=["body_rotation"], **PLAN)
+
+
 def test_the_body_of_an_event_is_that_whose_contact_changes(run):
     contacts = run.body_contact_state.to_numpy()
     for when in run.event_time.to_numpy():

@@ -298,8 +298,8 @@ def _near(found: "Certificate", values: Mapping[str, float | bool], ends: _Ends)
         way = "up" if change > 0.0 else "down"
         return [f"with {what} scaled {way} by {_share(abs(change))} {ends.of(along.ended)}"]
     return [
-        f"it depends on the scale of {what} in too intricate a way to be followed farther "
-        f"than {_share(margin)}"
+        f"{found.wanted.runs} runs did not do to follow how it depends on the scale of {what} "
+        f"farther than {_share(margin)}"
     ]
 
 

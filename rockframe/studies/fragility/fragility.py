@@ -305,7 +305,10 @@ def _states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitSta
     names = [state.name for state in known]
     lacking = [state.name for state in states if state.name not in names]
     if lacking:
-        msg = f"{_OWNER}: the dynamic analysis was not asked for {', '.join(lacking)}"
+        msg = (
+            f"{_OWNER}: the dynamic analysis was not asked for {', '.join(lacking)}, which its own "
+            f"limits must name; it has {', '.join(names)}"
+        )
         raise ComponentError(msg)
     return states
 

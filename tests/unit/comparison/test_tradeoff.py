@@ -433,3 +433,25 @@ def test_nothing_is_drawn_beyond_the_figure(measured, rungs):
         assert box.y0 >= 0.0
         assert box.x1 <= figure.bbox.width
         assert box.y1 <= figure.bbox.height
+
+
+def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
+    module = importlib.import_module("rockframe.comparison.tradeoff")
+    there = iter((False, False, True))
+    done = []
+
+    def counted(*given):
+        done.append("untimed")
+        return outcome(*given)
+
+    def timed(*_):
+        done.append("timed")
+        return 1.0
+
+    outcome = module.outcome
+    monkeypatch.setattr(module, "steps_as_machine_code", lambda _: next(there))
+    monkeypatch.setattr(module, "runs_as_python", lambda _: False)
+    monkeypatch.setattr(module, "outcome", counted)
+    monkeypatch.setattr(module, "_timed", timed)
+    rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies="standard", repeats=1, duration="1 s")
+    assert done == ["untimed", "untimed", "timed"]

@@ -225,6 +225,13 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
     assert "interrupted" not in whole.verdict
 
 
+def test_a_verdict_of_one_motion_tells_one_scale(analysis):
+    one = analysis.isel(motion=[0])
+    scale = one.capacity_scale.sel(limit_state="overturning").item()
+    start = f"Of 1 motion 1 overturned, from {scale:.4g} times the motion on"
+    assert one.rockframe.verdict.startswith(start)
+
+
 def test_a_fragility_of_capacities(analysis):
     found = rf.fragility(analysis, "PGA", trials="capacities")
     capacity = analysis.capacity_scale.sel(limit_state="overturning")
@@ -237,7 +244,7 @@ def test_a_fragility_of_capacities(analysis):
     assert found.sel(limit_state="uplift").median_intensity.item() == pytest.approx(
         9.80665 / 4.0, rel=1e-3
     )
-    with pytest.raises(ComponentError, match="was not asked for"):
+    with pytest.raises(ComponentError, match=r"was not .* limits must name; it has uplift, "):
         rf.fragility(analysis, limits=[0.7])
 
 

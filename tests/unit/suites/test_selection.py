@@ -80,6 +80,8 @@ def test_bounds():
         ComponentError, match=r"of 12 motions have factors from .*too few for a set of 12"
     ):
         FIRSTS.selection_for(TARGET, 12, periods=PERIODS, bounds=(low, high))
+    with pytest.raises(ComponentError, match=r"found 12 motions, too few .* of 13; lower count$"):
+        FIRSTS.selection_for(TARGET, 13, periods=PERIODS, bounds=None)
 
 
 @pytest.mark.long
