@@ -121,7 +121,7 @@ class Restrainer(PointLink):
     )
     preload = Parameter(
         FORCE,
-        POSITIVE,
+        NOT_NEGATIVE,
         doc="Force with which it pulls while the bodies stand upright under their weight alone; "
         "none unless given.",
         default=None,
@@ -210,7 +210,7 @@ class Tendon(Link):
     stiffness = Parameter(STIFFNESS, POSITIVE, doc="Force over elongation, E A over its length.")
     preload = Parameter(
         FORCE,
-        POSITIVE,
+        NOT_NEGATIVE,
         doc="Force while the bodies stand upright under their weight alone; none unless given.",
         default=None,
     )

@@ -12,7 +12,7 @@ from rockframe.motion.quantities import with_quantity
 from rockframe.proposals import Proposing, proposing
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.polynomials import knots_of
+from rockframe.signals.polynomials import greatest, knots_of
 from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
 
 UNNAMED: Final = "unnamed motion"
@@ -125,6 +125,11 @@ class MotionValue(metaclass=Proposing):
     def peak_acceleration(self) -> Quantity:
         """Greatest absolute horizontal acceleration, between samples too [m s^-2]."""
         return with_quantity(self.si.peak, ACCELERATION)
+
+    @property
+    def peak_velocity(self) -> Quantity:
+        """Greatest absolute horizontal velocity from rest, between samples too [m s^-1]."""
+        return with_quantity(greatest(ground_path(self.si.horizontal)[0]), VELOCITY)
 
     def __len__(self) -> int:
         return int(self.si.horizontal.samples.size)

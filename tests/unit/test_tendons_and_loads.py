@@ -30,6 +30,11 @@ def test_a_central_tendon_has_the_moments_of_its_closed_form():
     np.testing.assert_allclose(moments(BLOCK, TENDON) - moments(BLOCK), added, rtol=1e-12)
 
 
+def test_no_preload_is_one_of_zero():
+    slack, tie = rf.Tendon(stiffness="2.5 MN/m"), TENDON.replace(preload="0 N")
+    np.testing.assert_array_equal(moments(BLOCK, tie), moments(BLOCK, slack))
+
+
 def test_an_eccentric_tendon_has_its_lever():
     at, preload = 0.3, 0.2e6
     for side in (1.0, -1.0):

@@ -144,6 +144,8 @@ def test_public_properties_are_quantities_of_the_application_registry():
     assert made.time_step == UREG.Quantity(0.01, "s")
     assert made.duration == UREG.Quantity(0.04, "s")
     assert made.peak_acceleration == UREG.Quantity(2.25, "m/s^2")
+    scaled = made.scaled(peak_velocity="0.3 m/s")
+    assert scaled.peak_velocity.m_as("m/s") == pytest.approx(0.3, rel=1e-12)
     assert made.acceleration.m_as("cm/s^2") == pytest.approx(np.array(VALUES) * 100.0)
     assert made.vertical_acceleration.m_as("m/s^2").tolist() == VALUES[::-1]
     assert motion().vertical_acceleration is None
