@@ -151,17 +151,20 @@ def _tops(known: Array) -> tuple[Array, Array]:
     Where second differences beside a top are not about its own there is a kink, such as that of
     a base that begins to press: no parabola goes through it.
     """
-    largest = np.argmax(known, axis=-1)
-    middle = np.clip(largest, 1, known.shape[-1] - 2)
+    shape, known = known.shape[:-1], known.reshape(-1, known.shape[-1])
+    largest, row = np.argmax(known, axis=-1), np.arange(len(known))
+    middle = np.minimum(np.maximum(largest, 1), known.shape[-1] - 2)
     with np.errstate(invalid="ignore"):
-        bends = np.diff(known, 2, axis=-1)
+        bends = known[:, :-2] - 2.0 * known[:, 1:-1] + known[:, 2:]
     last = bends.shape[-1] - 1
 
     def at(values: Array, place: Integers) -> Array:
-        return np.take_along_axis(values, place[..., None], axis=-1)[..., 0]
+        return values[row, place]
 
     a, b, c, most = (at(known, place) for place in (middle - 1, middle, middle + 1, largest))
-    before, bend, after = (at(bends, np.clip(middle - k, 0, last)) for k in (2, 1, 0))
+    before, bend, after = (
+        at(bends, np.minimum(np.maximum(middle - k, 0), last)) for k in (2, 1, 0)
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = 0.5 * (c - a)
         beside = -slope / bend
@@ -169,4 +172,5 @@ def _tops(known: Array) -> tuple[Array, Array]:
         smooth = np.minimum(before, after) >= KINK * bend
         smooth &= np.maximum(before, after) <= bend / KINK
         better = (bend < 0.0) & smooth & (np.abs(beside) <= 1.0) & (top > most)
-    return np.where(better, top, most), np.where(better, middle + beside, largest)
+    tops, places = np.where(better, top, most), np.where(better, middle + beside, largest)
+    return tops.reshape(shape), places.reshape(shape)

@@ -289,6 +289,8 @@ def _of_links(system: Assembly, along: AlongSteps) -> dict[str, Generic | float]
 def _stops(run: Trajectory, events: EventStates) -> Integers:
     """Give the numbers, from one, of events whose small velocity friction stops at once."""
     kind = run.events.kind
+    if STICK not in kind:
+        return np.empty(0, dtype=np.int64)
     changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
     for name in (one for one in events.after if one == "slip" or one.startswith("slip_of_")):
         changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < LEAST_SLIP
