@@ -1,9 +1,10 @@
 """What one run with its histories costs beside the compiled loop alone.
 
-Run from the root, with ``PYTHONPATH=.`` and ``ROCKFRAME_COMPILE=wait``: ``python
-tests/benchmarks/one_run.py``. Writes docs/data/one_run.json. Loop, runs without and runs with
-histories take turns, so that other work on the machine meets all; each number is the least
-processor time of all rounds, a ratio that over the loop's.
+Run from the root, with ``PYTHONPATH=.``, ``ROCKFRAME_COMPILE=wait``, and glibc's
+``MALLOC_TRIM_THRESHOLD_`` and ``MALLOC_MMAP_THRESHOLD_`` of a gigabyte, so that memory stays from
+run to run: ``python tests/benchmarks/one_run.py``. Writes docs/data/one_run.json. Loop, runs
+without and runs with histories take turns, so that other work on the machine meets all; each number
+is the least processor time of all rounds, a ratio that over the loop's.
 """
 
 import json
