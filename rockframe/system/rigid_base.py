@@ -17,6 +17,7 @@ from rockframe.system.words import uplift_words
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
     from rockframe.dynamics.body import Body
+    from rockframe.dynamics.statics import Stand
     from rockframe.dynamics.tied import Tied
     from rockframe.signals.arrays import Array
     from rockframe.system.stack import StackSetting
@@ -203,10 +204,11 @@ def beyond_lift(
     found: list[Statics | None] = [None] * len(rotations)
     for side in (1, -1):
         before, lifted, path = 0.0, None, None
+        joints = [_Joint(setting, k, side) for k, rigid in enumerate(setting.rigid) if rigid]
         here = [i for i, each in enumerate(rotations) if math.copysign(1.0, each) == side]
         for i in sorted(here, key=lambda i: abs(rotations[i])):
             if lifted is None:
-                lifted = _first_lift(setting, before, rotations[i], side)
+                lifted = _first_lift(joints, before, rotations[i])
                 if lifted is None:
                     before, found[i] = rotations[i], closed[i]
                     continue
@@ -226,22 +228,20 @@ class _Lift(NamedTuple):
     lower: "Array"  # rotations of all but the highest of these, on what they stand on
 
 
-def _first_lift(setting: "StackSetting", before: float, rotation: float, side: int) -> _Lift | None:
+def _first_lift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _Lift | None:
     """Give the first lift between two rotations of the highest body, if there is one."""
     from scipy.optimize import brentq
 
     first: _Lift | None = None
-    for k, rigid in enumerate(setting.rigid):
-        if not rigid:
-            continue
-        joint = _Joint(setting, k, side)
+    for joint in joints:
         if joint.spare(rotation) >= 0.0:
             continue
         at = before
         if joint.spare(before) > 0.0:
             at = cast("float", brentq(joint.spare, before, rotation))
         if first is None or abs(at) < abs(first.rotation):
-            first = _Lift(joint.bodies, at, np.array(joint.rotations(at)[1:]))
+            (stands,) = joint.closed.curve([at])
+            first = _Lift(joint.bodies, at, np.array(joint.rotations(stands or [])[1:]))
     return first
 
 
@@ -260,10 +260,9 @@ class _Joint:
         self.bodies = setting.standing_in(whole, k, side)
         self.side = side
 
-    def rotations(self, rotation: float) -> list[float]:
+    def rotations(self, stands: "Sequence[Stand]") -> list[float]:
         """Give the rotations of all bodies on what they stand on; that on this base has none."""
-        (stands,) = self.closed.curve([rotation])
-        found = [] if stands is None else [one.state.rotation for one in stands]
+        found = [one.state.rotation for one in stands]
         return [*found[: self.place], 0.0, *found[self.place :]]
 
     def spare(self, rotation: float) -> float:
@@ -271,7 +270,7 @@ class _Joint:
         (stands,) = self.closed.curve([rotation])
         if stands is None:
             return math.inf  # something else has given way before
-        here = self.bodies.chain.settled(self.rotations(rotation))
+        here = self.bodies.chain.settled(self.rotations(stands))
         if here is None:
             return math.inf
         lifts = self.bodies.chain.moments(here)[self.place]
