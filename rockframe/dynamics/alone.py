@@ -359,7 +359,7 @@ def _starting(part: OnBase, rest_rotation: float) -> Callable[[Start], tuple[int
         own = np.zeros(part.base.variables())
         body, mode = starting_state(part, start, part.base.read(own, 0))
         # the held point starts where it is when the body rests, so that x = 0 there
-        pin = part.body.pin(mode.pivot)
+        pin = part.starting_pin(mode, body)
         x = 0.0
         if part.is_free(mode):
             x = pin + part.body.about_pin(pin, part.body.attitude(body.rotation))

@@ -142,6 +142,17 @@ class OnBase(NamedTuple):
         )
         return Mode(contact, pivot, False)
 
+    def starting_pin(self, mode: Mode, state: BodyState) -> float:
+        """Give the point of the base that starts where it is at rest, right of the middle.
+
+        That which is held; in flight the one that the rule would hold where both ends bear.
+        """
+        pivot = mode.pivot
+        if self.flies(mode.contact):
+            rule, rate = self.body.restraint, state.angular_velocity
+            pivot = pivot_of(rule, True, True, state.rotation, rate)
+        return self.body.pin(pivot)
+
     @inlined
     def contact_with_force(self, mode: Mode) -> int:
         """Give the contact as far as forces go: an end that slides has none."""

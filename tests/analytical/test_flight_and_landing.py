@@ -43,6 +43,12 @@ def heights(pads, alpha, y):
     return middle + pads.b * math.sin(alpha), middle - pads.b * math.sin(alpha)
 
 
+def place_at(alpha, rule):
+    """Where a body let go in flight is: about the point held where both ends bear."""
+    point = math.copysign(PADS.b, alpha) if rule == "leading-corner" else 0.0
+    return PADS.h * math.sin(alpha) + point * (1.0 - math.cos(alpha))
+
+
 def landing(pads, start):
     """Time and side of the first landing of a free parabola."""
     alpha, spin, y, speed = start
@@ -83,7 +89,7 @@ def test_flight_is_a_parabola(start, rule):
     np.testing.assert_allclose(flying.rotation.values, alpha + spin * t, atol=1e-14)
     np.testing.assert_allclose(flying.angular_velocity.values, spin, atol=1e-12)
     x = flying.horizontal_displacement.values
-    np.testing.assert_allclose(x, PADS.h * math.sin(alpha), atol=1e-14)
+    np.testing.assert_allclose(x, place_at(alpha, rule), atol=1e-14)
     assert (flying.left_reaction.values == 0.0).all()
     assert (flying.right_reaction.values == 0.0).all()
     assert response.event_time.values[0] == pytest.approx(time, abs=1e-12)
@@ -283,3 +289,20 @@ def test_a_pad_that_catches_up_takes_the_corner_back_without_impact():
     assert response.impact_count.item() == 0
     assert response.flight_time.item() == pytest.approx(time, abs=1e-12)
     assert response.energy_residual.item() < 1e-9
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_start_in_flight_is_beside_that_in_contact(rule, side):
+    """The place of a body let go does not jump as its speed makes it leave its pads."""
+    angle, places = side * 0.02, []
+    for above in (-1e-9, 1e-9):  # of the end that leads, over its pad
+        low = PADS.delta - heights(PADS, angle, 0.0)[0 if side < 0.0 else 1]
+        y = low + above
+        run = thrown(PADS, (angle, 0.0, y, 0.0), 0.01, restraint=rule)
+        places.append(float(run.horizontal_displacement[0]))
+        bears = LEFT if side < 0.0 else RIGHT
+        assert int(run.contact_state[0]) == (FLIGHT if above > 0.0 else bears)
+    assert places[1] == pytest.approx(place_at(angle, rule), abs=1e-14)
+    if rule != "contact-state":  # which holds the corner that bears
+        assert places[0] == pytest.approx(places[1], abs=1e-14)

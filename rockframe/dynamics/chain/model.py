@@ -311,7 +311,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
         if body.rotation == 0.0 and k > 0:
             leaning = body._replace(rotation=placed[k - 1].rotation)
         standing = part.standing(contact, leaning)
-        pin = part.body.pin(standing.pivot)
+        pin = part.starting_pin(standing, leaning)
         offset = system.number(k, at.BESIDE) if k + 1 < count else 0.0
         state[i + ROTATION], state[i + VERTICAL] = body.rotation, body.vertical
         state[n + i + ROTATION], state[n + i + VERTICAL] = (

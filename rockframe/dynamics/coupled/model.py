@@ -133,7 +133,7 @@ def state_at(
     # upright and at rest the cap leans nowhere yet; it follows the block
     leaning = cap if cap.rotation != 0.0 else block
     of_cap = lower.standing(under, leaning)
-    pin, beside = upper.body.pin(standing.pivot), system.beside
+    pin, beside = upper.starting_pin(standing, block), system.beside
     attitude = upper.body.attitude(block.rotation)
     state[ROTATION], state[VERTICAL] = block.rotation, block.vertical
     state[LOWER_ROTATION], state[LOWER_VERTICAL] = cap.rotation, cap.vertical
@@ -144,7 +144,7 @@ def state_at(
         reach = upper.body.reach(pin, attitude)
         state[COORDINATES + HORIZONTAL] = reach.rate * block.angular_velocity
     memory[HELD_PLACE + UPPER] = pin + beside
-    cap_pin = lower.body.pin(of_cap.pivot)
+    cap_pin = lower.starting_pin(of_cap, leaning)
     memory[HELD_PLACE + LOWER] = cap_pin
     if lower.is_free(of_cap):
         leant = lower.body.attitude(cap.rotation)
