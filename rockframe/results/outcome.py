@@ -24,9 +24,9 @@ from rockframe.results.variables.bodies import OF_EACH_BODY, OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
-from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
+from rockframe.solve.workspace import Status
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.setting import Setting, SlipRange
 from rockframe.system.words import angle_words

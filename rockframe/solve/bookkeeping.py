@@ -15,7 +15,7 @@ from rockframe.dynamics.protocol import (
     REPINNING_LOSS,
     Ground,
 )
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.crossings import extremum, interpolate
 from rockframe.solve.equations import BoundEquations, KnownMode, energies_at, slope_at
 from rockframe.solve.march import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, rotation_in_row

@@ -11,7 +11,7 @@ from typing import Final
 from rockframe.compiled import Integers, Vector, entry_at_once, inlined, kernel
 from rockframe.dynamics.events import FLIGHT
 from rockframe.dynamics.protocol import LAST_EVENT, POWERS, Ground
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.bookkeeping import (
     ON_SAMPLE,
     accept,

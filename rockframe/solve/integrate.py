@@ -21,7 +21,7 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.signals import Motion
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.accuracy import Accuracy, substeps_of
 from rockframe.solve.bookkeeping import ON_SAMPLE, ROUNDING
 from rockframe.solve.driver import FIXED_STEPS, advance
@@ -32,7 +32,6 @@ from rockframe.solve.equations import (
     runs_as_python,
     steps_as_machine_code,
 )
-from rockframe.solve.layout import Status
 from rockframe.solve.schemes import STAGES
 from rockframe.solve.trajectory import Events, Steps, Trajectory, run_counts, steps_of
 from rockframe.solve.workspace import (
@@ -44,6 +43,7 @@ from rockframe.solve.workspace import (
     Output,
     Pieces,
     Progress,
+    Status,
     StepTable,
     Workspace,
     has_no_room,
@@ -70,7 +70,7 @@ class Begun:
     state: Vector  # coordinates, their rates, and variables of first order
     memory: Vector  # the model's memory, twice
     start_memory: Vector
-    controls: Vector  # laid out in :mod:`rockframe.solve.layout`
+    controls: Vector  # laid out in :mod:`rockframe.solve.workspace`
     clock: Vector
     counters: Integers
     reference: Vector  # largest size so far of each variable

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of, put
 from rockframe.dynamics.protocol import POWERS, Equations, Ground, Guards
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.schemes import (
     FixedSteps,
     FixedStepsByRates,
@@ -243,7 +243,7 @@ def march(
     ground : ndarray
         Coefficients of the ground motion in the interval.
     controls, clock, counters : ndarray
-        Settings and progress, laid out in :mod:`rockframe.solve.layout`.
+        Settings and progress, laid out in :mod:`rockframe.solve.workspace`.
     kept, codes : ndarray
         Table of steps, see :class:`rockframe.solve.workspace.StepTable`.
 

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Vector, inlined, kernel, put, table
 from rockframe.dynamics.protocol import POWERS, Equations, Ground
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.workspace import ERRORS, Span, ground_in
 
 ORDER: Final = 5

@@ -14,10 +14,9 @@ import numpy as np
 from rockframe.compiled import Integers, Matrix, Vector
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import isnan, largest
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.crossings import cubic, quintic
-from rockframe.solve.layout import Status
-from rockframe.solve.workspace import BESIDE, CODES, StepTable
+from rockframe.solve.workspace import BESIDE, CODES, Status, StepTable
 
 _quintic: Final = cast("Callable[..., tuple[Matrix, ...]]", quintic)  # of arrays too
 _cubic: Final = cast("Callable[..., tuple[Matrix, ...]]", cubic)

@@ -29,8 +29,8 @@ from rockframe.errors import SolverWarning
 from rockframe.results.outcome import verdict
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.solve.accuracy import accuracy_of
-from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
+from rockframe.solve.workspace import Status
 from rockframe.system.bodies import OverturningAngles
 
 pytestmark = pytest.mark.contract

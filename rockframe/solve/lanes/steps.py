@@ -20,7 +20,7 @@ from rockframe.compiled import (
     widest_registers,
 )
 from rockframe.dynamics.protocol import POWERS, Equations, Ground
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.equations import gives_powers
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import Places, enter_intervals, evaluate_ground, places_of
