@@ -13,7 +13,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import GroundComponent, component_of, read_inputs
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.integrals import (
     HOUSNER_PERIODS,

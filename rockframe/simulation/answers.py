@@ -11,7 +11,6 @@ from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
-from rockframe.results.dataset import fitting
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.forces import (
     OF_SETTLEMENT,
@@ -36,7 +35,7 @@ from rockframe.results.outcome import (
     without_gravity,
 )
 from rockframe.results.points import point_histories, point_labels, point_peaks
-from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA
+from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, fitting
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope

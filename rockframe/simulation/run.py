@@ -12,7 +12,6 @@ import xarray as xr
 from rockframe.compiled import compiling_for
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, or_missing, warn
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import (
     Generic,
     broken_links,
@@ -23,7 +22,7 @@ from rockframe.results.outcome import (
     slope_attributes,
     verdict,
 )
-from rockframe.results.schema import schema_row
+from rockframe.results.schema import build_dataset, schema_row
 from rockframe.results.variables.runs import Direction
 from rockframe.signals import Motion
 from rockframe.simulation.answers import Answers, answers_of, ground_at

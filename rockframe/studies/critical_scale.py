@@ -14,7 +14,7 @@ from rockframe.comparison.models import check_system
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
 from rockframe.signals.polynomials import turning_points

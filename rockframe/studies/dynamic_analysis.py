@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, StudyError, warn
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
