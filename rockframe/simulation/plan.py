@@ -9,14 +9,14 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any, Final, TypeAlias, Unpack, cast
+from typing import Any, Final, Literal, TypeAlias, Unpack, cast
 
 import numpy as np
 import xarray as xr
 
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
-from rockframe.errors import AssemblyError, RockframeError, nearest, shown
+from rockframe.errors import AssemblyError, ComponentError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
 from rockframe.results.forces import OF_SOIL_FRICTION
@@ -26,7 +26,7 @@ from rockframe.results.schema import ENERGIES, GROUPS, ON_REQUEST, SCHEMA, SCHEM
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.variable import TIME as OVER_TIME
 from rockframe.simulation.friction import has_limit
-from rockframe.simulation.run_arguments import RunArguments
+from rockframe.simulation.run_arguments import PROVED, Certification, RunArguments
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
@@ -414,3 +414,18 @@ def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:
     if arguments.duration is not None:
         return arguments.duration
     return (0.0 if motion is None else motion.si.duration) + (arguments.free_vibration or 0.0)
+
+
+def certification_of(given: object) -> Certification | Literal["proved"] | None:
+    """Read the argument ``certify`` of a run."""
+    if given is False:
+        return None
+    if isinstance(given, str) and given == PROVED:
+        return PROVED
+    if given is True:
+        return Certification()
+    if isinstance(given, Certification):
+        return given
+    wanted = f"True, False, {PROVED!r} or a Certification(...)"
+    msg = f"simulate: certify must be {wanted}, got {shown(given)}"
+    raise ComponentError(msg)

@@ -16,8 +16,7 @@ class SystemValue(metaclass=Proposing):
 
     __slots__ = ("_assembly",)
 
-    def __init__(self, assembly: Assembly) -> None:
-        self._assembly = assembly
+    _assembly: Assembly
 
     @property
     def assembly(self) -> Assembly:
