@@ -18,7 +18,7 @@ from rockframe.signals.oscillator import (
     fill_step,
     turning_value,
 )
-from rockframe.signals.polynomials import divided, knots_of, slopes_of
+from rockframe.signals.signal import divided, knots_of, slopes_of
 
 Rows: TypeAlias = NDArray[np.intp]
 

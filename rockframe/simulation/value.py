@@ -2,10 +2,9 @@
 
 from rockframe.motion import GroundMotion
 from rockframe.proposals import Proposing, proposing
-from rockframe.system.assembly import Assembly
+from rockframe.system.assembly import Assembly, Scene
 from rockframe.system.options import Coupling, Options, Restraint, Rotation, Sliding
 from rockframe.system.parts import Parts
-from rockframe.system.scenes import Scene
 from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, ANGLE, Quantity, quantity
 

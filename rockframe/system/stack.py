@@ -25,8 +25,8 @@ from rockframe.system.rigid_base import (
 )
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import StandingBodies, Statics, least_overturning_energy
-from rockframe.system.support import Support
+from rockframe.system.statics import Statics, least_overturning_energy
+from rockframe.system.support import StandingBodies, Support
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:

@@ -1,20 +1,107 @@
-"""A base as it is under a body: what both scenes and stacks ask of it.
+"""A base as it is under a body, and bodies that stand on such bases.
 
 The numbers of a base follow from its component and from the body on it; its words tell them,
 and its law is what the equations take.
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from rockframe.dynamics.base_numbers import BaseNumbers
 from rockframe.dynamics.body import Body
+from rockframe.dynamics.statics import Stand, StandingChain, link_of, of_base, uplift_rotation
 from rockframe.many import sqrt
 from rockframe.system.bodies import BaseLoad
-from rockframe.system.statics import StandingBodies, Statics, required_states
+from rockframe.system.statics import Statics, required_states
 from rockframe.system.words import vibration_words
+
+if TYPE_CHECKING:
+    from rockframe.signals.arrays import Array
+
+LEAST: Final = 2.0**-20
+"""Rotation, over that which the settlement allows, below which moments are linear in it: of the
+difference of the ends' forces, rounding leaves too little."""
+SMALL: Final = 2.0**-6
+"""Rotation, likewise, at which their slope is found."""
+
+
+@dataclass(frozen=True)
+class StandingBodies:
+    """Bodies that stand on one another, in SI units."""
+
+    chain: StandingChain  # the bodies on their bases, as the equations take them
+    mass: float  # that the chain is measured by, that of its highest body [kg]
+    bases: tuple[BaseNumbers, ...]  # under each body, from the top down
+
+    @cached_property
+    def rest(self) -> list[Stand] | None:
+        """How the bodies rest under their weight; None if they fall by it."""
+        return self.chain.rest()
+
+    @cached_property
+    def upright(self) -> list[Stand]:
+        """How they stand while all are held upright."""
+        return self.chain.settled([0.0] * len(self.bases)) or []
+
+    def held(self, rotations: Sequence[float]) -> list[Statics | None]:
+        """Give the states with the highest body held at rotations; None where there is none."""
+        curve = self.chain.curve(rotations)
+        found = [None if stands is None else self.statics_of(stands) for stands in curve]
+        least = LEAST * self.chain.links[0].allowed_rotation if self.chain.upright else 0.0
+        for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
+            if state is not None and abs(rotation) < least:
+                found[i] = self._near_upright(rotation, state)
+        return found
+
+    def _near_upright(self, rotation: float, state: Statics) -> Statics:
+        """Give a state with moments to all digits, by their slope, exact to the fourth order."""
+        step = SMALL * self.chain.links[0].allowed_rotation
+        near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
+        share = rotation / (6.0 * step)
+        return replace(
+            state,
+            base_moment=share * (8.0 * near.base_moment - far.base_moment),
+            restoring_moment=share * (8.0 * near.restoring_moment - far.restoring_moment),
+        )
+
+    def statics_of(self, stands: list[Stand]) -> Statics:
+        """Give the moments by which bodies stand so, and what their bases show."""
+        (part, *_), lowest = self.chain.links[0], stands[-1]
+        body = self.chain.links[-1].part.body
+        attitude = body.attitude(lowest.state.rotation)
+        arm = body.height * attitude.sine + 0.5 * (body.left - body.right) * attitude.cosine
+        held = [part.base.is_held(stands[0].mode.contact, left) for left in (True, False)]
+        return Statics(
+            vertical_displacement=self.chain.rise(stands),
+            base_moment=self.mass * (lowest.press * arm - lowest.force.moment),
+            restoring_moment=-self.mass * self.chain.moments(stands)[0],
+            contact_state="full" if all(held) else "left" if held[0] else "right",
+            reactions=self.reactions(stands),
+        )
+
+    def reactions(self, stands: list[Stand]) -> dict[str, float]:
+        """Give what the bases show, by the names of the schema."""
+        found = dict[str, float]()
+        for link, stand, numbers in zip(self.chain.links, stands, self.bases, strict=True):
+            if link.corner:
+                continue
+            base = link.part.base
+            shown = base.observed(stand.mode.contact, stand.line, stand.own)
+            for column, value in zip(numbers.columns, shown, strict=True):
+                found[column.name] = (self.mass if column.per_mass else 1.0) * value
+        if len(stands) > 1:
+            found["cap_rotation"] = stands[-1].state.rotation
+        return found
+
+    def small_motion(self, stands: list[Stand]) -> "tuple[Array, Array, Array]":
+        """Give mass, damping and stiffness about rest, by rotation and height of each body."""
+        from rockframe.dynamics.linear import linear
+
+        mass, damping, stiffness = linear(self.chain, stands)
+        return self.mass * mass, self.mass * damping, self.mass * stiffness
 
 
 @dataclass(frozen=True)
@@ -73,8 +160,6 @@ class Support(ABC):
     @cached_property
     def uplift_angle(self) -> float:
         """Rotation at which contact is first lost; NaN if it never is [rad]."""
-        from rockframe.dynamics.statics import uplift_rotation
-
         return uplift_rotation(self.standing.chain.links[0], self.load.options.slope.normal_gravity)
 
     @abstractmethod
@@ -128,7 +213,6 @@ class Support(ABC):
         """Its body alone on it, by the law."""
         from rockframe.dynamics.alone import eccentricity_of
         from rockframe.dynamics.on_base import OnBase
-        from rockframe.dynamics.statics import StandingChain, link_of
 
         body, numbers = self.load.rigid_body, self.base_numbers
         link = link_of(OnBase(body, numbers.law), beside=eccentricity_of(body))
@@ -153,8 +237,6 @@ class Support(ABC):
 
     def _slopes(self, name: str) -> tuple[float, float]:
         """Give how moment and force on the upright body fall with a coordinate or a rate."""
-        from rockframe.dynamics.linear import of_base
-
         return of_base(self.standing.chain.links[0], self.standing.upright[0], name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
