@@ -11,8 +11,8 @@ from typing import Any
 
 from rockframe.results.diagnostics import DIAGNOSTICS
 from rockframe.results.schema import SCHEMA
-from rockframe.system import parts as parts_of
 from rockframe.system import assembly
+from rockframe.system import parts as parts_of
 
 FOLDER = Path(__file__).parents[1] / "examples"
 FILE = FOLDER / "own_base.py"
