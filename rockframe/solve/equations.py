@@ -18,7 +18,7 @@ from rockframe.compiled import (
     put,
     seldom_called,
 )
-from rockframe.dynamics.protocol import Energies, Equations, Ground
+from rockframe.dynamics.protocol import Equations, Ground
 from rockframe.solve.accuracy import STABLE
 from rockframe.solve.march import (
     guards_at,
@@ -26,7 +26,6 @@ from rockframe.solve.march import (
     march_fixed,
     march_fixed_by_rates,
 )
-from rockframe.solve.workspace import Span, Workspace, ground_in
 
 
 @kernel
@@ -154,30 +153,3 @@ def known_mode(equations: BoundEquations, mode: int, room: Vector) -> KnownMode:
     equations.meaning.call(mode, room, equations.numbers)
     longest = STABLE / room[2] if room[2] > 0.0 else math.inf
     return KnownMode(mode, int(room[0]), int(room[1]), longest)
-
-
-@inlined
-def slope_at(
-    equations: BoundEquations, mode: int, state: Vector, ground: Ground, out: Vector
-) -> None:
-    """Write the slope of a state."""
-    equations.slope.call(mode, state, ground.x, ground.y, out, equations.numbers)
-
-
-@inlined
-def energies_at(equations: BoundEquations, mode: int, state: Vector, room: Vector) -> Energies:
-    """Give the energies of a state; `room` is for four numbers."""
-    equations.stored.call(mode, state, room, equations.numbers)
-    return Energies(room[0], room[1], room[2], room[3])
-
-
-@inlined
-def write_guards(
-    equations: BoundEquations, mode: int, state: Vector, slope: Vector, fraction: float, span: Span,
-    out: Vector, w: Workspace,
-) -> None:  # fmt: skip
-    """Write the guards of a state at a fraction of a step, and their rates."""
-    ground = ground_in(fraction, span, w.ground)
-    equations.guarding.call(
-        mode, state, slope, ground.x, ground.y, w.limits, out, equations.numbers
-    )

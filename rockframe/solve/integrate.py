@@ -38,6 +38,7 @@ from rockframe.solve.workspace import (
     BESIDE,
     CODES,
     ERRORS,
+    NO_STEPS,
     TERMS,
     EventTable,
     Output,
@@ -47,7 +48,6 @@ from rockframe.solve.workspace import (
     StepTable,
     Workspace,
     has_no_room,
-    no_steps,
 )
 
 FIRST_SCALE: Final = 1e-6
@@ -268,14 +268,13 @@ def integrate(
 
     progress = Progress(run.controls, clock, counters)
     first_steps: Steps | None = None
-
-    def steps_in(table: StepTable) -> Steps:
-        kept = int(counters[at.STEPS_KEPT])
-        return steps_of(table, kept, width, exact=accuracy.rtol is not None)
+    exact = accuracy.rtol is not None
 
     def take_samples(steps: Steps) -> Integers:
         """Count the first outputs by the steps that end there, and take their modes."""
-        which = steps.first_at_multiples(output_step or 1.0, ON_SAMPLE)[:sampled]
+        # each first row at a multiple of the output step, or a share before it
+        passed = np.floor(steps.time / (output_step or 1.0) + ON_SAMPLE)
+        which = 1 + np.flatnonzero(passed[1:] > passed[:-1])[:sampled]
         count = 1 + len(which)
         out_mode[1:count] = steps.mode[which]
         if count <= sampled:  # there are no more
@@ -283,7 +282,7 @@ def integrate(
         return which
 
     taken = np.empty(0, dtype=np.int64)
-    steps = no_steps()
+    steps = NO_STEPS
     if keep_steps:
         intervals = duration / run.controls[at.TIME_STEP]
         room = STEP_ROOM + math.ceil(STEPS_PER_INTERVAL * intervals * max(run.substeps, 1))
@@ -318,13 +317,16 @@ def integrate(
             if counters[at.STEPS_KEPT] < MOST_STEPS_KEPT:
                 steps = StepTable(*_longer(*steps))
             else:
-                first_steps, steps = replace(steps_in(steps), complete=False), no_steps()
+                first_steps, steps = steps_of(steps, counters, width, exact=exact), NO_STEPS
+                first_steps = replace(first_steps, complete=False)
                 taken, sampled = take_samples(first_steps), 0
 
     if not COMPILED or not runs_as_python(equations):  # of which more has been said
         say_slow(as_python)
 
-    kept = (first_steps or steps_in(steps)) if keep_steps else None
+    kept = first_steps
+    if keep_steps and kept is None:
+        kept = steps_of(steps, counters, width, exact=exact)
     if sampled and kept is not None:
         taken = take_samples(kept)
     stored = int(counters[at.OUTPUTS])

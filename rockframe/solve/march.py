@@ -93,53 +93,35 @@ def may_fall(system: Equations, h: float, before: Vector, after: Vector) -> bool
 
 
 class RotationInStep(NamedTuple):
-    """The rotation and its rate at the start and at the end of a step."""
+    """A rotation and its rate at the start and at the end of a step."""
 
     start: float
     start_rate: float
     end: float
     end_rate: float
-
-    @inlined
-    def largest_left(self) -> float:
-        """Give the largest rotation to the left at the ends."""
-        return max(-self.start, -self.end)
-
-    @inlined
-    def largest_right(self) -> float:
-        """Give the largest rotation to the right at the ends."""
-        return max(self.start, self.end)
+    left: float  # largest to either side at the ends
+    right: float
 
     @inlined
     def may_peak(self, h: float, left: float, right: float) -> bool:
         """Whether it reverses within a step of length h, and may do so beyond its peaks so far."""
         ahead = 0.5 * h * max(abs(self.start_rate), abs(self.end_rate))
-        rises_left = self.largest_left() + ahead > left
-        rises_right = self.largest_right() + ahead > right
-        rises = rises_right if self.start_rate > 0.0 else rises_left
+        rises = self.right + ahead > right if self.start_rate > 0.0 else self.left + ahead > left
         return (self.start_rate * self.end_rate < 0.0) & rises
 
 
 @inlined
 def rotation_in_step(
-    system: Equations, limits: Vector, state: Vector, new: Vector
-) -> RotationInStep:
-    """Give the rotation at both ends of a step, the weighted sum of the coordinates."""
-    return rotation_in_row(0, system.coordinates(), limits, state, new)
-
-
-@inlined
-def rotation_in_row(
     row: int, size: int, limits: Vector, state: Vector, new: Vector
 ) -> RotationInStep:
-    """Give a rotation at both ends of a step, by the place of its limits."""
+    """Give a rotation, a weighted sum of the coordinates, by the place of its limits."""
     r0 = v0 = r1 = v1 = 0.0
     for i in range(size):
         r0 += limits[row + WEIGHTS + i] * state[i]
         v0 += limits[row + WEIGHTS + i] * state[size + i]
         r1 += limits[row + WEIGHTS + i] * new[i]
         v1 += limits[row + WEIGHTS + i] * new[size + i]
-    return RotationInStep(r0, v0, r1, v1)
+    return RotationInStep(r0, v0, r1, v1, max(-r0, -r1), max(r0, r1))
 
 
 @inlined
@@ -149,7 +131,7 @@ def other_may_peak(
     """Whether another rotation may come nearer to its limit inside a step than it has come."""
     found, row = False, WEIGHTS + size
     while row < len(limits):
-        rotation = rotation_in_row(row, size, limits, state, new)
+        rotation = rotation_in_step(row, size, limits, state, new)
         found |= rotation.may_peak(
             h, share * limits[row + LEFT_LIMIT], share * limits[row + RIGHT_LIMIT]
         )
@@ -308,9 +290,9 @@ def march(
                 result = TOO_SMALL
                 break
             continue
-        rotation = rotation_in_step(system, limits, state, new)
+        rotation = rotation_in_step(0, size, limits, state, new)
         peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
-        peaks |= other_may_peak(system.coordinates(), limits, h, state, new, clock[at.OTHER_SHARE])
+        peaks |= other_may_peak(size, limits, h, state, new, clock[at.OTHER_SHARE])
         found = may_fall(system, h, before, after)
         seen = begin + tau + h >= clock[at.NEXT_OUTPUT] or has_no_room(codes, counters)
         if found or peaks or seen:
@@ -324,9 +306,9 @@ def march(
                 begin + tau, h, mode, now, width, slope_end - width - POWERS, new, last, counters,
                 kept, codes,
             )  # fmt: skip
-        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
-        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
-        nearest = other_share(system.coordinates(), limits, new)
+        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.left)
+        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.right)
+        nearest = other_share(size, limits, new)
         clock[at.OTHER_SHARE] = max(clock[at.OTHER_SHARE], nearest)
         if flies == 1:
             clock[at.FLIGHT_TIME] += h

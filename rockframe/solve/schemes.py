@@ -128,32 +128,6 @@ def errors_of_rates(system: Equations, h: float, stages: Vector, works: Vector) 
         works[ERRORS + size + i] = h * change
 
 
-@inlined
-def runge_kutta_step(
-    system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
-    first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
-) -> None:  # fmt: skip
-    """Step the first `count` coordinates and all variables of first order.
-
-    Arguments as in :func:`rockframe.solve.march.march`. Gives the energies
-    dissipated and put in by the ground, integrated with the weights of the fifth order, the
-    error of their difference, and the local errors of what moves.
-    """
-    size = system.coordinates()
-    slope = size + system.variables() + POWERS
-    begin_stages(system, state, first, stages)
-    for s in range(1, STAGES):
-        before = s * (s - 1) // 2
-        weights = STAGE_WEIGHTS[before : before + s]
-        stage_places(system, count, span.h, weights, state, stages, new)
-        stage_rates(system, count, span.h, weights, state, stages, new)
-        found = system.accelerate(mode, new, ground_in(NODES[s], span, ground))
-        put(found, STAGES * size + s * slope, stages)
-    end_works(system, span.h, stages, last, works)
-    errors_of_places(system, span.h, stages, works)
-    errors_of_rates(system, span.h, stages, works)
-
-
 # step-size control, after Hairer, Norsett, Wanner, "Solving Ordinary Differential
 # Equations I", 2nd ed., section II.4
 SAFETY: Final = 0.9
@@ -368,8 +342,26 @@ class StepsByTolerance(NamedTuple):
         self, system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
-        """Make a step; its errors tell whether it has ended in numbers."""
-        runge_kutta_step(system, mode, count, span, ground, state, first, new, last, stages, works)
+        """Step the first `count` coordinates and all variables of first order.
+
+        Arguments as in :func:`rockframe.solve.march.march`. Gives the energies
+        dissipated and put in by the ground, integrated with the weights of the fifth order, the
+        error of their difference, and the local errors of what moves, which tell whether the step
+        has ended in numbers.
+        """
+        size = system.coordinates()
+        slope = size + system.variables() + POWERS
+        begin_stages(system, state, first, stages)
+        for s in range(1, STAGES):
+            before = s * (s - 1) // 2
+            weights = STAGE_WEIGHTS[before : before + s]
+            stage_places(system, count, span.h, weights, state, stages, new)
+            stage_rates(system, count, span.h, weights, state, stages, new)
+            found = system.accelerate(mode, new, ground_in(NODES[s], span, ground))
+            put(found, STAGES * size + s * slope, stages)
+        end_works(system, span.h, stages, last, works)
+        errors_of_places(system, span.h, stages, works)
+        errors_of_rates(system, span.h, stages, works)
         return True
 
     @inlined

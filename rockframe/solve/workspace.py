@@ -200,9 +200,8 @@ class Workspace(NamedTuple):
     answers: Vector  # room for a few numbers that the system gives
 
 
-def no_steps() -> StepTable:
-    """Give the table of a run whose steps are not kept."""
-    return StepTable(np.empty(0), np.empty(0, dtype=np.int64))
+NO_STEPS: Final = StepTable(np.empty(0), np.empty(0, dtype=np.int64))
+"""The table of a run whose steps are not kept."""
 
 
 @inlined

@@ -21,12 +21,12 @@ from rockframe.solve.lanes.fields import Places, places_of
 from rockframe.solve.lanes.steps import steps_in_lanes
 from rockframe.solve.trajectory import Summary, run_counts
 from rockframe.solve.workspace import (
+    NO_STEPS,
     EventTable,
     Output,
     Pieces,
     Status,
     Workspace,
-    no_steps,
 )
 
 ROOM: Final = 4_000_000
@@ -231,7 +231,7 @@ def _scratch(
 ) -> tuple[Output, EventTable, Workspace]:
     """Give room for a single run: no outputs, events that are not kept, a step."""
     width = there.first - there.state
-    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int64), np.empty((0, 2)), no_steps())
+    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int64), np.empty((0, 2)), NO_STEPS)
     events = EventTable(
         np.empty((EVENT_ROOM, 1 + 2 * width + memory)), np.empty((EVENT_ROOM, 3), dtype=np.int64)
     )
