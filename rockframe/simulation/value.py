@@ -86,7 +86,7 @@ class SystemValue(metaclass=Proposing):
         return hash(self._assembly)
 
     def __repr__(self) -> str:
-        parts = ", ".join(repr(part) for part in self.parts.present())
+        parts = ", ".join(repr(part) for part in self.parts)
         coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
         given = self.options.to_dict()
         others = "".join(

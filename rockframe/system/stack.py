@@ -52,6 +52,13 @@ class StackSetting(Setting):
     ties: tuple[PlacedLink, ...] = ()  # what links their points
     frictions: tuple[BaseFriction, ...] = ()  # of each base; none where all bases hold
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        # one side is not as the other, by bodies, offsets or ties
+        eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
+        leans = bool(self.ties) or eccentric or any(self.offsets) or not self.slope.level
+        vars(self).update(leans=leans)
+
     @property
     def model(self) -> str:
         """Name of the model."""
@@ -102,14 +109,6 @@ class StackSetting(Setting):
     def link_names(self) -> tuple[str, ...]:
         """What results call the ties."""
         return tuple(one.name for one in self.ties if not isinstance(one.part, Load))
-
-    @property
-    def leans(self) -> bool:
-        """Whether one side is not as the other, by bodies, offsets or ties."""
-        if self.ties:
-            return True
-        eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
-        return eccentric or any(self.offsets) or not self.slope.level
 
     def cautions(self) -> list[str]:
         """Give the warnings of all bases, each with the body that it is under."""
