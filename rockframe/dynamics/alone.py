@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -292,7 +293,7 @@ def alone(
         fastest_frequency=fastest,
         damping_rate=base.damping_time * fastest**2,
         energy_scale=body.gravity * size * body.angle,
-        initial=_starting(part, rest_rotation),
+        initial=partial(_initial, part, rest_rotation),
         rounding=rounding_at(size, base.settlement, answers, fastest, len(base.variable_scales)),
     )  # fmt: skip
 
@@ -348,24 +349,17 @@ def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[
     return state, part.standing(base.starting(body.base_line_at(state), own), state)
 
 
-def at_rotation(start: Start, rest_rotation: float) -> Start:
-    """Give a start whose rotation is known: that at rest, unless it says otherwise."""
-    return start if start.rotation is not None else replace(start, rotation=rest_rotation)
-
-
-def _starting(part: OnBase, rest_rotation: float) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    def initial(given: Start) -> tuple[int, Vector, Vector]:
-        start = at_rotation(given, rest_rotation)
-        own = np.zeros(part.base.variables())
-        body, mode = starting_state(part, start, part.base.read(own, 0))
-        # the held point starts where it is when the body rests, so that x = 0 there
-        pin = part.body.pin(mode.pivot)
-        x = 0.0
-        if part.is_free(mode):
-            x = pin + part.body.about_pin(pin, part.body.attitude(body.rotation))
-        places = (body.rotation, body.vertical, x)
-        rates = (body.angular_velocity, body.vertical_velocity, 0.0)
-        memory = np.array([pin if k == HELD_PLACE else 0.0 for k in range(len(MEMORY))])
-        return part.number_of(mode), np.array([*places, *rates, *own]), memory
-
-    return initial
+def _initial(part: OnBase, rest_rotation: float, given: Start) -> tuple[int, Vector, Vector]:
+    """Give mode, state and memory at the start of a run; at rest unless it says otherwise."""
+    start = given if given.rotation is not None else replace(given, rotation=rest_rotation)
+    own = np.zeros(part.base.variables())
+    body, mode = starting_state(part, start, part.base.read(own, 0))
+    # the held point starts where it is when the body rests, so that x = 0 there
+    pin = part.body.pin(mode.pivot)
+    x = 0.0
+    if part.is_free(mode):
+        x = pin + part.body.about_pin(pin, part.body.attitude(body.rotation))
+    places = (body.rotation, body.vertical, x)
+    rates = (body.angular_velocity, body.vertical_velocity, 0.0)
+    memory = np.array([pin if k == HELD_PLACE else 0.0 for k in range(len(MEMORY))])
+    return part.number_of(mode), np.array([*places, *rates, *own]), memory

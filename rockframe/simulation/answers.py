@@ -96,7 +96,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
             "made more steps than are kept"
         )
     if run.overturning_time <= run.end_time:  # how a block falls is another matter
-        upright = events.until(run.overturning_time)
+        upright = events.those(events.time <= run.overturning_time)
     found = slidings(system, along)
     of_forces, of_settlement = peaks_along(along, upright, load)
     scalars: dict[str, Generic | float] = {
@@ -188,32 +188,14 @@ def _everything_of(
     events, slope = run.events, system.options.slope
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
     moved, resolved = ground_on_slope(ground, slope)
-    names = None if _everything(plan) else _peaked(system)
+    names: tuple[str, ...] | None = None
+    if not _everything(plan):  # those whose peaks are told
+        names = BODY_FORCES + OF_SETTLEMENT + forces_of_links(system.model.links)
+        names += OF_SOIL_FRICTION if system.setting.stacked else ()
+        if system.model.shows_bodies:
+            names += rotations_of(system.model.system.bodies())
     along, shown = observe_run(system.model, run, names, resolved)
     return along, without_gravity(shown, slope), ground, moved
-
-
-def _peaked(system: Assembly) -> tuple[str, ...]:
-    """Name the columns whose peaks are told."""
-    names = BODY_FORCES + OF_SETTLEMENT
-    if system.setting.stacked:
-        names += OF_SOIL_FRICTION
-    if system.model.shows_bodies:
-        names += rotations_of(system.model.system.bodies())
-    return names + forces_of_links(system.model.links)
-
-
-def _shown(
-    system: Assembly,
-    mode: Integers,
-    state: Array,
-    memory: Array,
-    memory_row: Integers,
-    ground: Array,
-) -> dict[str, Generic]:
-    """Give what the model shows in some states, on ground as the equations take it."""
-    shown = observe_states(system.model, mode, state, memory, memory_row, ground)
-    return without_gravity(shown, system.options.slope)
 
 
 def _along(
@@ -252,14 +234,10 @@ def _along(
         time = time.ravel()
         ground = ground_at(plan.motion, time)
         moved, resolved = ground_on_slope(ground, slope)
-        found = _shown(
-            system,
-            np.repeat(steps.mode[which], places),
-            states.reshape(-1, states.shape[-1]),
-            memory,
-            np.repeat(steps.memory_row[which], places),
-            resolved,
-        )
+        modes, rows = (np.repeat(of[which], places) for of in (steps.mode, steps.memory_row))
+        states = states.reshape(-1, states.shape[-1])
+        found = observe_states(system.model, modes, states, memory, rows, resolved)
+        found = without_gravity(found, slope)
         if not _everything(plan):
             return found | friction_demands(found, load)
         found |= force_histories(found, moved, load)

@@ -151,13 +151,6 @@ def start_of(beginning: Beginning) -> Start | Ending:
     return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
 
 
-def beginning_to_dict(beginning: Beginning) -> dict[str, Any]:
-    """Give a beginning as plain values, fit for JSON."""
-    if isinstance(beginning, Ending):
-        return {"type": "Continuation", "ending": _as_json(beginning)}
-    return beginning.to_dict()
-
-
 def end_attributes(ending: Ending) -> dict[str, str]:
     """Give the end of a run as an attribute that a later run can begin with."""
     return {_ATTRIBUTE: json.dumps(_as_json(ending))}
@@ -282,7 +275,12 @@ class Plan(_Requested):
 
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""
-        own = {"duration": _time(self.duration), "initial": beginning_to_dict(self.initial)}
+        initial = (
+            {"type": "Continuation", "ending": _as_json(self.initial)}
+            if isinstance(self.initial, Ending)
+            else self.initial.to_dict()
+        )
+        own = {"duration": _time(self.duration), "initial": initial}
         return json.dumps({**own, **self._described()})
 
 
@@ -294,7 +292,9 @@ def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunA
     """Check the arguments of a run against the system and one another."""
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
-    _check_motion(motion)
+    if motion is not None and not isinstance(motion, GroundMotion):
+        fault = f"motion must be a GroundMotion, got {shown(motion)}{_motion_hint(motion)}"
+        raise AssemblyError([fault])
     arguments = read_arguments(faults, **asked)
     plan = fit_plan(arguments, system, motion, faults)
     if faults:
@@ -371,12 +371,6 @@ def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
         f"initial must be an InitialState or the result of a run, got {shown(given)}{hint}"
     )
     return _REST
-
-
-def _check_motion(given: object) -> None:
-    if given is not None and not isinstance(given, GroundMotion):
-        fault = f"motion must be a GroundMotion, got {shown(given)}{_motion_hint(given)}"
-        raise AssemblyError([fault])
 
 
 def _motion_hint(given: object) -> str:

@@ -24,7 +24,6 @@ from rockframe.results.outcome import (
 )
 from rockframe.results.schema import build_dataset, schema_row
 from rockframe.results.variables.runs import Direction
-from rockframe.signals import Motion
 from rockframe.simulation.answers import Answers, answers_of, ground_at
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
@@ -65,14 +64,6 @@ TENSION: Final = 1e-9
 
 Caution: TypeAlias = tuple[type[RockframeWarning], str]
 """A warning's kind and text."""
-
-
-def base_motion(system: Assembly, plan: Plan) -> Motion | None:
-    """Give the motion as the integrator takes it: on a slope along and normal to the base."""
-    motion, slope = None if plan.motion is None else plan.motion.si, system.options.slope
-    if slope.level:
-        return motion
-    return slope.resolved(motion, duration=plan.duration, interval=STILL_INTERVAL)
 
 
 @dataclass(frozen=True)
@@ -135,10 +126,11 @@ class Response:
         )  # fmt: skip
         others = [
             or_missing(
-                lambda: [
-                    *_lost_weight(self.system, plan.motion),
-                    *_pulling(self.system, self.answers.values, summary.overturning_time),
-                ],
+                lambda: list(
+                    _leaving(
+                        self.system, plan.motion, self.answers.values, summary.overturning_time
+                    )
+                ),
                 [], _LEAVING, missing,
             ),
             or_missing(
@@ -267,9 +259,12 @@ def respond(system: Assembly, plan: Plan) -> Response:
     output_step = plan.duration if sampled and not plan.histories else plan.output_step
     missing: list[str] = []
     answers = Answers()
+    motion, slope = None if plan.motion is None else plan.motion.si, system.options.slope
+    if not slope.level:  # along and normal to the base
+        motion = slope.resolved(motion, duration=plan.duration, interval=STILL_INTERVAL)
     with compiling_for(f"a run ({system.setting.model})"):
         trajectory = integrate(
-            system.model, start_of(plan.initial), base_motion(system, plan), plan.accuracy,
+            system.model, start_of(plan.initial), motion, plan.accuracy,
             duration=plan.duration, output_step=output_step,
             stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
             keep_steps=sampled,
@@ -326,24 +321,24 @@ def _verdict(system: Assembly, summary: Summary) -> str:
     )
 
 
-def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:
-    slope = system.options.slope
-    if system.setting.flies or motion is None:
-        return
-    if slope.level and motion.si.vertical is None:
-        return
-    moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
-    lowest = float(np.min(moved[:, 1]))
-    if lowest < -slope.normal_gravity:
-        which = "vertical" if slope.level else "normal"
-        found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
-        yield ModelWarning, f"{found}: {_LEAVES}"
-
-
-def _pulling(
-    system: Assembly, values: Mapping[str, Generic], overturning_time: float
+def _leaving(
+    system: Assembly,
+    motion: GroundMotion | None,
+    values: Mapping[str, Generic],
+    overturning_time: float,
 ) -> Iterator[Caution]:
-    if system.setting.flies or "left_reaction" not in values:
+    """Warn of a block that would leave ground which the equations do not let it leave."""
+    slope = system.options.slope
+    if system.setting.flies:
+        return
+    if motion is not None and not (slope.level and motion.si.vertical is None):
+        moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
+        lowest = float(np.min(moved[:, 1]))
+        if lowest < -slope.normal_gravity:
+            which = "vertical" if slope.level else "normal"
+            found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
+            yield ModelWarning, f"{found}: {_LEAVES}"
+    if "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # how a block falls is another matter
     reaction = (values["left_reaction"] + values["right_reaction"])[stands]

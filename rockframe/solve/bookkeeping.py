@@ -198,7 +198,7 @@ def peaks_in_step(
 def reach_limit(time: float, size: int, progress: Progress, w: Workspace) -> tuple[int, int]:
     """Mark overturning, or the fall that ends a run; give the event's kind and a status."""
     clock = progress.clock
-    if clock[at.OVERTURNING_TIME] >= 0.0:
+    if not math.isnan(clock[at.OVERTURNING_TIME]):
         return TOPPLED, at.FELL
     rotation = 0.0
     for i in range(size):
@@ -240,7 +240,7 @@ def record_event(
         counters[at.IMPACTS] += 1
     if after.contact == FLIGHT and before.contact != FLIGHT:
         counters[at.FLIGHTS] += 1
-    if after.contact != FULL and clock[at.FIRST_UPLIFT] < 0.0:
+    if after.contact != FULL and math.isnan(clock[at.FIRST_UPLIFT]):
         clock[at.FIRST_UPLIFT] = time
     close = time - clock[at.EVENT_TIME] <= progress.controls[at.CHATTER_TIME]
     counters[at.CLOSE_EVENTS] = counters[at.CLOSE_EVENTS] + 1 if close else 0

@@ -117,7 +117,12 @@ def begun(
     SolverError
         Steps of the length asked for would not be stable.
     """
-    mode, state, memory = _state_of(model, start)
+    if isinstance(start, Start):
+        mode, state, memory = model.initial(start)
+    else:
+        mode, state, memory = start.mode, start.state.copy(), start.memory.copy()
+        # losses are counted anew in each run
+        memory[[IMPACT_LOSS, REPINNING_LOSS, IMPULSIVE_INPUT, LINK_LOSS]] = 0.0
     contact = model.system.contact_state_of(mode, 0)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     substeps = substeps_of(accuracy, model, interval)
@@ -140,8 +145,8 @@ def begun(
         at.PEAK_LEFT: max(-rotation, 0.0),
         at.PEAK_RIGHT: max(rotation, 0.0),
         at.OTHER_SHARE: model.other_share_in(state),
-        at.FIRST_UPLIFT: -1.0 if contact == FULL else 0.0,
-        at.OVERTURNING_TIME: -1.0,
+        at.FIRST_UPLIFT: math.nan if contact == FULL else 0.0,
+        at.OVERTURNING_TIME: math.nan,
         at.EVENT_TIME: -1.0,
         at.START_ENERGY: math.nan,
         at.GROUND_X: math.nan,
@@ -170,15 +175,6 @@ def begun(
 def _filled(size: int, numbers: Mapping[int, float]) -> Vector:
     """Give a row of numbers by their places, of zeros elsewhere."""
     return np.array([numbers.get(place, 0.0) for place in range(size)])
-
-
-def _state_of(model: ContactModel, start: Start | Ending) -> tuple[int, Vector, Vector]:
-    if isinstance(start, Start):
-        return model.initial(start)
-    memory = start.memory.copy()
-    # losses are counted anew in each run
-    memory[[IMPACT_LOSS, REPINNING_LOSS, IMPULSIVE_INPUT, LINK_LOSS]] = 0.0
-    return start.mode, start.state.copy(), memory
 
 
 def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: float) -> Vector:
@@ -420,14 +416,8 @@ def pieces_of(motion: Motion | None) -> Pieces:
     """Give the polynomials of both directions."""
     if motion is None:
         return Pieces(_STILL, _STILL)
-    vertical = _STILL if motion.vertical is None else _read_only(motion.vertical.pieces)
-    return Pieces(_read_only(motion.horizontal.pieces), vertical)
-
-
-def _read_only(array: Matrix) -> Matrix:
-    view = array.view()
-    view.flags.writeable = False
-    return view
+    vertical = _STILL if motion.vertical is None else motion.vertical.pieces
+    return Pieces(motion.horizontal.pieces, vertical)
 
 
 def _events(table: EventTable, count: int, width: int) -> Events:
@@ -443,4 +433,5 @@ def _events(table: EventTable, count: int, width: int) -> Events:
     )
 
 
-_STILL: Matrix = _read_only(np.zeros((0, 2)))
+_STILL: Matrix = np.zeros((0, 2))
+_STILL.setflags(write=False)

@@ -201,9 +201,9 @@ def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
         "peak_left": reals[at.PEAK_LEFT],
         "peak_right": reals[at.PEAK_RIGHT],
         "other_share": reals[at.OTHER_SHARE],
-        "overturning_time": _time_or_nan(reals[at.OVERTURNING_TIME]),
+        "overturning_time": reals[at.OVERTURNING_TIME],
         "overturning_direction": int(reals[at.OVERTURNING_SIDE]),
-        "first_uplift_time": _time_or_nan(reals[at.FIRST_UPLIFT]),
+        "first_uplift_time": reals[at.FIRST_UPLIFT],
         "flight_time": reals[at.FLIGHT_TIME],
         "impact_count": wholes[at.IMPACTS],
         "flight_count": wholes[at.FLIGHTS],
@@ -211,7 +211,3 @@ def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
         "rejected_count": wholes[at.REJECTED],
         "energy_residual": residual / moved if moved > 0.0 else 0.0,
     }
-
-
-def _time_or_nan(value: float) -> float:
-    return value if value >= 0.0 else math.nan
