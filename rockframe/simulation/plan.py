@@ -292,7 +292,7 @@ def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunA
     """Check the arguments of a run against the system and one another."""
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
-    if motion is not None and not isinstance(motion, GroundMotion):
+    if not isinstance(motion, GroundMotion | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         fault = f"motion must be a GroundMotion, got {shown(motion)}{_motion_hint(motion)}"
         raise AssemblyError([fault])
     arguments = read_arguments(faults, **asked)
