@@ -39,8 +39,8 @@ from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, fitting
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
-from rockframe.simulation.friction import SlidingCheck, sliding_scalars, slidings
 from rockframe.simulation.plan import Plan
+from rockframe.simulation.soundness import SlidingCheck, sliding_scalars, slidings
 from rockframe.solve.observe import memory_at_outputs, observe_run, observe_states
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly

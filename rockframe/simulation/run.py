@@ -28,7 +28,6 @@ from rockframe.simulation.answers import Answers, answers_of, ground_at
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
-from rockframe.simulation.friction import friction_words, slips
 from rockframe.simulation.plan import Plan, end_attributes, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.proving import proof_of
@@ -38,7 +37,9 @@ from rockframe.simulation.soundness import (
     STILL_MOVING,
     Uniqueness,
     doubtful_residual,
+    friction_words,
     may_overturn_later,
+    slips,
     unbalanced,
     uniqueness_of,
 )

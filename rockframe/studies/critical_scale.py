@@ -19,12 +19,11 @@ from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
 from rockframe.signals.signal import turning_points
 from rockframe.simulation.certify.run_summary import RunSummary
-from rockframe.simulation.friction import has_limit
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import run, summary_of
 from rockframe.simulation.run_arguments import ScaleArguments
-from rockframe.simulation.soundness import STILL_MOVING
+from rockframe.simulation.soundness import STILL_MOVING, has_limit
 from rockframe.simulation.system import System
 from rockframe.studies.flips import (
     Followed,

@@ -27,10 +27,8 @@ from rockframe.errors import LabelError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import BaseLoad, Cap, cap_under
 from rockframe.system.own_base import OwnBase
-from rockframe.system.pads import pads_under
 from rockframe.system.rigid_base import rigid_under
-from rockframe.system.soil import bed_under
-from rockframe.system.support import Support
+from rockframe.system.support import Support, bed_under, pads_under
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ from rockframe.results.outcome import LEAST_SLIP, Generic, overturned_by
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
-from rockframe.simulation.friction import counts_of_slides
 from rockframe.simulation.run import NONE
+from rockframe.simulation.soundness import counts_of_slides
 from rockframe.studies.sweeps.axes import OWNER
 
 SCREENED: Final = (REPEATED, VERDICT_CHANGED)
