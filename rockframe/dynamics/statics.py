@@ -375,11 +375,6 @@ def uplift_rotation(link: StandingBody, press: float) -> float:
         contact = settled(link, rotation, press).mode.contact
         return base.is_held(contact, True) and base.is_held(contact, False)
 
-    def spare(rotation: float) -> float:
-        """Give how much lower the higher end is than where it parts, over the settlement."""
-        stand = settled(link, rotation, press)
-        return base.level(True, stand.line, stand.own) / link.settlement
-
     most = math.inf if body.small else 0.5 * math.pi
     if not body.small and is_full(most):
         return math.nan
@@ -388,7 +383,9 @@ def uplift_rotation(link: StandingBody, press: float) -> float:
     guess = guess if body.small else asin(min(guess, 1.0))
     last, left, slope = math.nan, math.nan, 1.0 / guess
     for _ in range(HALVINGS):
-        now = spare(guess)
+        stand = settled(link, guess, press)
+        # how much lower the higher end is than where it parts, over the settlement
+        now = base.level(True, stand.line, stand.own) / link.settlement
         if not abs(now) > ROUNDING or guess == last:
             break
         slope = (left - now) / (guess - last) if left > now or left < now else slope

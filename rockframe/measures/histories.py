@@ -16,7 +16,7 @@ from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.signals.integrals import ground_path, transform_of
-from rockframe.signals.signal import knots_of
+from rockframe.signals.motion import knots_of
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 _PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}

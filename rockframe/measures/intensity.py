@@ -28,7 +28,7 @@ from rockframe.signals.integrals import (
     standardized_absolute_velocity,
     time_between_shares,
 )
-from rockframe.signals.signal import greatest
+from rockframe.signals.motion import greatest
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost
 from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, RatioLike, to_ratio, to_si
 

@@ -15,7 +15,7 @@ from rockframe.motion.constructors.analytic import PULSES
 from rockframe.motion.value import Made, MotionValue
 from rockframe.notebook import card, curve
 from rockframe.signals import Motion, Signal
-from rockframe.signals.signal import VERTICAL
+from rockframe.signals.motion import VERTICAL
 
 _SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
 

@@ -12,7 +12,7 @@ from rockframe.motion.quantities import with_quantity
 from rockframe.proposals import Proposing, proposing
 from rockframe.signals import Motion, Signal
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.signal import greatest, knots_of
+from rockframe.signals.motion import greatest, knots_of
 from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
 
 UNNAMED: Final = "unnamed motion"

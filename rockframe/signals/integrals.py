@@ -11,7 +11,7 @@ import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
-from rockframe.signals.signal import (
+from rockframe.signals.motion import (
     MAXIMUM_SAMPLES,
     Signal,
     integral_of,

@@ -17,7 +17,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
-from rockframe.signals.signal import turning_points
+from rockframe.signals.motion import turning_points
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes

@@ -20,7 +20,7 @@ from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
-from rockframe.signals.signal import COEFFICIENTS
+from rockframe.signals.motion import COEFFICIENTS
 from rockframe.simulation.certify.perturbations import cut
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System

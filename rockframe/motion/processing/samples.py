@@ -13,13 +13,13 @@ import numpy as np
 
 from rockframe.errors import RecordWarning, warn
 from rockframe.signals.arrays import Array
-from rockframe.signals.signal import Signal
+from rockframe.signals.motion import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rockframe.signals import Signal
-from rockframe.signals.signal import divided
+from rockframe.signals.motion import divided
 
 _INTEGER_RATIO: Final = 1e-9
 _ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slowest motion
