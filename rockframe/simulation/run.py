@@ -141,7 +141,11 @@ class Response:
         ]  # fmt: skip
         _ = self.scalars  # what is missing of them is said, too
         return [
-            *([] if summary.status.finished else [(SolverWarning, _verdict(self.system, summary))]),
+            *(
+                []
+                if summary.status.finished
+                else [(SolverWarning, verdict(summary, setting, self.system.model))]
+            ),
             *((SolverWarning, text) for text in moving),
             *([] if audit is None else [(SolverWarning, audit)]),
             *((ModelWarning, text) for text in (self.uniqueness or NOT_LOOKED_AT).cautions),
@@ -283,7 +287,7 @@ def _attributes(
     description = or_missing(lambda: system.description, "", "the words of the model", missing)
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
-        "verdict": _verdict(system, summary),
+        "verdict": verdict(summary, system.setting, system.model),
         "overturned": int(summary.passed),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
@@ -309,17 +313,6 @@ def _attributes(
 def has_no_cautions(system: Assembly, summary: Summary) -> bool:
     """Whether a run with fixed steps has come to an end, with its energies in balance."""
     return summary.status.finished and summary.energy_residual <= doubtful_residual(system)
-
-
-def _verdict(system: Assembly, summary: Summary) -> str:
-    setting, ending = system.setting, summary.ending
-    return verdict(
-        summary,
-        setting,
-        end=system.model.rotation_in(ending.state),
-        of=" of body 1" if system.model.shows_bodies else "",
-        broken=[setting.link_names[i] for i in broken_links(system.model, ending)],
-    )
 
 
 def _leaving(

@@ -349,16 +349,5 @@ def run_on(
     return status
 
 
-@entry_at_once
-def advance(
-    equations: BoundEquations,
-    tolerance: Vector,
-    memory: Vector,
-    pieces: Pieces,
-    progress: Progress,
-    output: Output,
-    events: EventTable,
-    w: Workspace,
-) -> int:
-    """Integrate one run, see :func:`run_on`."""
-    return run_on(equations, tolerance, memory, pieces, progress, output, events, w)
+advance = entry_at_once(run_on)
+"""Integrates one run, as machine code where there is some."""

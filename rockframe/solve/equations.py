@@ -36,15 +36,6 @@ def slope(
     put(system.accelerate(mode, state, Ground(ground_x, ground_y)), 0, out)
 
 
-@kernel
-def guards_of_state(
-    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
-    limits: Vector, out: Vector,
-) -> None:  # fmt: skip
-    """Write the guards of a state and their rates."""
-    guards_at(system, mode, state, slope, Ground(ground_x, ground_y), limits, out)
-
-
 @seldom_called
 @kernel
 def switched(
@@ -108,9 +99,7 @@ def equations_of(system: Equations, *, fixed_steps: bool) -> BoundEquations:
     march = march_by_tolerance
     if fixed_steps:
         march = march_fixed_by_rates if gives_powers(system) else march_fixed
-    functions = bound(
-        (march, switched, slope, guards_of_state, observed, energies, meaning), system
-    )
+    functions = bound((march, switched, slope, guards_at, observed, energies, meaning), system)
     return BoundEquations(
         *functions,  # type: ignore[call-arg]
         numbers=numbers_in(system),

@@ -33,11 +33,12 @@ THIRD: Final = 1.0 / 3.0
 
 @inlined
 def guards_at(
-    system: Equations, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector,
-    out: Vector,
+    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
+    limits: Vector, out: Vector,
 ) -> None:  # fmt: skip
     """Write the guards of a state, see :func:`put_guards`; of several limits the nearest."""
-    put_guards(system, system.guards_in(mode, state, slope, ground), state, limits, out)
+    found = system.guards_in(mode, state, slope, Ground(ground_x, ground_y))
+    put_guards(system, found, state, limits, out)
     size, last = system.coordinates(), system.guards()
     row = WEIGHTS + size
     while row < len(limits):
@@ -278,7 +279,7 @@ def march(
             system, mode, count, span, ground, state, first, new, last, stages, works
         )
         now = ground_in(1.0, span, ground)
-        guards_at(system, mode, new, last, now, limits, after)
+        guards_at(system, mode, new, last, now.x, now.y, limits, after)
         if trial > 0.0:
             return TRIED
         scale = max(clock[at.LARGEST_TERM], clock[at.DISSIPATED], abs(clock[at.SUPPLIED]))
