@@ -296,20 +296,16 @@ class Slope:
     inclination: float  # i [rad]
     gravity: float  # g [m s^-2]
 
-    @property
-    def level(self) -> bool:
-        """Whether the base does not rise."""
-        return self.inclination == 0.0
+    level: bool = field(init=False, repr=False, compare=False)  # whether the base does not rise
+    # accelerations that stand for gravity: along the base, g sin i, and normal to it, g cos i
+    along_gravity: float = field(init=False, repr=False, compare=False)  # [m s^-2]
+    normal_gravity: float = field(init=False, repr=False, compare=False)
 
-    @property
-    def along_gravity(self) -> float:
-        """Acceleration that stands for gravity along the base, g sin i [m s^-2]."""
-        return self.gravity * math.sin(self.inclination)
-
-    @property
-    def normal_gravity(self) -> float:
-        """Gravity normal to the base, g cos i [m s^-2]."""
-        return self.gravity * math.cos(self.inclination)
+    def __post_init__(self) -> None:
+        i, g = self.inclination, self.gravity
+        vars(self).update(
+            level=i == 0.0, along_gravity=g * math.sin(i), normal_gravity=g * math.cos(i)
+        )
 
     def turned(self, across: Array, up: Array) -> tuple[Array, Array]:
         """Give along and normal components of horizontal and vertical ones."""
