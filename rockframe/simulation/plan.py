@@ -136,7 +136,8 @@ def points_of(
     return tuple(points)
 
 
-_ATTRIBUTE = "end_state"
+END_STATE: Final = "end_state"
+"""The attribute that holds the end of a run, so that a later run can begin with it."""
 
 
 Beginning: TypeAlias = InitialState | Ending
@@ -151,15 +152,10 @@ def start_of(beginning: Beginning) -> Start | Ending:
     return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
 
 
-def end_attributes(ending: Ending) -> dict[str, str]:
-    """Give the end of a run as an attribute that a later run can begin with."""
-    return {_ATTRIBUTE: json.dumps(_as_json(ending))}
-
-
 def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
     """Read where a run ended, or note why none can go on from there."""
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
-    if _ATTRIBUTE not in attributes or "system_json" not in attributes:
+    if END_STATE not in attributes or "system_json" not in attributes:
         faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")
         return InitialState()
     if attributes.get("schema_version") != SCHEMA_VERSION:
@@ -167,7 +163,7 @@ def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) ->
             f"initial is the end of a run of rockframe {attributes.get('rockframe_version')}, "
             "which kept states in another way; run it again"
         )
-    stored: dict[str, Any] = json.loads(attributes[_ATTRIBUTE])
+    stored: dict[str, Any] = json.loads(attributes[END_STATE])
     ending = Ending(
         stored["mode"],
         np.array(stored["state"], dtype=np.float64),
@@ -188,7 +184,8 @@ def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
     return within and "status" in dataset and verdict_of(dataset) is False
 
 
-def _as_json(ending: Ending) -> dict[str, Any]:
+def ending_as_json(ending: Ending) -> dict[str, Any]:
+    """Give the end of a run as plain values."""
     return {
         "mode": ending.mode,
         "state": ending.state.tolist(),
@@ -276,7 +273,7 @@ class Plan(_Requested):
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""
         initial = (
-            {"type": "Continuation", "ending": _as_json(self.initial)}
+            {"type": "Continuation", "ending": ending_as_json(self.initial)}
             if isinstance(self.initial, Ending)
             else self.initial.to_dict()
         )

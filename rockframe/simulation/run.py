@@ -1,5 +1,6 @@
 """One run: the integration and the dataset."""
 
+import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -28,7 +29,7 @@ from rockframe.simulation.answers import Answers, answers_of, ground_at
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
-from rockframe.simulation.plan import Plan, end_attributes, start_of
+from rockframe.simulation.plan import END_STATE, Plan, ending_as_json, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.proving import proof_of
 from rockframe.simulation.run_arguments import PROVED, Certification
@@ -187,7 +188,7 @@ def run(
     response = respond(system, plan)
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)
-    attributes |= end_attributes(summary.ending)
+    attributes[END_STATE] = json.dumps(ending_as_json(summary.ending))
     if response.uniqueness is not None:
         attributes |= response.uniqueness.attributes()
     if summary.status.finished and not system.setting.slides:

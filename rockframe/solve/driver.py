@@ -65,8 +65,6 @@ ROUNDING: Final = 1e-15
 """Share of the time so far below which such a correction is rounding."""
 TIME_NOISE: Final = 8.0 * ROUNDING
 """Share of the time so far by which an event may be misplaced."""
-FIXED_STEPS: Final = 0.0
-"""Stands for the tolerance of a run with fixed sub-steps."""
 
 
 @inlined
@@ -257,7 +255,7 @@ def run_on(
     index = counters[at.INTERVAL]
     counters[at.DEGREE_X] = load_interval(index, pieces.x, 0, w.ground)
     counters[at.DEGREE_Y] = load_interval(index, pieces.y, TERMS, w.ground)
-    fixed, shortest = controls[at.RTOL] == FIXED_STEPS, SHORTEST * controls[at.DURATION]
+    fixed, shortest = controls[at.RTOL] == at.FIXED_STEPS, SHORTEST * controls[at.DURATION]
     crossed = counters[at.PENDING]
     stale = counters[at.STALE] == 1  # slope and guards at the state, after a switch or a jump
     steps, anew = output.steps, False

@@ -24,7 +24,7 @@ from rockframe.signals import Motion
 from rockframe.solve import workspace as at
 from rockframe.solve.accuracy import Accuracy, substeps_of
 from rockframe.solve.bookkeeping import ON_SAMPLE, ROUNDING
-from rockframe.solve.driver import FIXED_STEPS, advance
+from rockframe.solve.driver import advance
 from rockframe.solve.equations import (
     BoundEquations,
     equations_of,
@@ -128,7 +128,7 @@ def begun(
     substeps = substeps_of(accuracy, model, interval)
     # numbers may be those of many cases: put together first, then made a row
     controls = {
-        at.RTOL: accuracy.rtol or FIXED_STEPS,
+        at.RTOL: accuracy.rtol or at.FIXED_STEPS,
         at.FLOOR: accuracy.floor,
         at.MAX_STEP: (
             interval / substeps if substeps else shortest_period / accuracy.steps_per_period

@@ -4,6 +4,7 @@ Written for any system and compiled for each, so that the equations are compiled
 the driver calls it by its address, and sees to all that is not a quiet step.
 """
 
+import math
 from typing import Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of, put
@@ -13,7 +14,9 @@ from rockframe.solve.schemes import (
     FixedSteps,
     FixedStepsByRates,
     StepsByTolerance,
+    adapted,
     next_step,
+    rest_of,
 )
 from rockframe.solve.workspace import TERMS, Span, ground_in, has_no_room, keep_row, load_interval
 
@@ -243,7 +246,7 @@ def march(
     index, tau, h_next = counters[at.INTERVAL], clock[at.INTO_INTERVAL], clock[at.NEXT_STEP]
     time_step = controls[at.TIME_STEP]
     intervals = max(len(pieces_x), len(pieces_y))
-    shortest = SHORTEST * controls[at.DURATION]
+    fixed, shortest = controls[at.RTOL] == at.FIXED_STEPS, SHORTEST * controls[at.DURATION]
     degree_x, degree_y = counters[at.DEGREE_X], counters[at.DEGREE_Y]
     begin, length = index * time_step, interval_length(index, intervals, controls)
     result = AT_END
@@ -269,7 +272,7 @@ def march(
             result = EXHAUSTED
             break
         asked = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
-        h = trial if trial > 0.0 else scheme.step_length(asked)
+        h = trial if trial > 0.0 else min(asked, scheme.longest)
         span = Span(h, tau / time_step, h / time_step, degree_x, degree_y)
         here, there = half * stride, stride - half * stride
         state, new = part_of(ends, here), part_of(ends, there)
@@ -300,7 +303,12 @@ def march(
             clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, asked, excess
             result = GUARDED if found else TO_BE_SEEN
             break
-        h_next = scheme.step_after(h, asked, h_next, excess, shortest, controls)
+        if fixed:
+            h_next = rest_of(asked, h, shortest, controls)
+        else:
+            h_next = adapted(h, h_next, excess, controls)
+            for i in range(width):
+                reference[i] = max(reference[i], abs(new[i]))
         tau += h
         if len(codes) > 0:
             keep_row(
@@ -313,7 +321,6 @@ def march(
         clock[at.OTHER_SHARE] = max(clock[at.OTHER_SHARE], nearest)
         if flies == 1:
             clock[at.FLIGHT_TIME] += h
-        scheme.keep_sizes(system, new, reference)
         clock[at.DISSIPATED] += works[0]
         clock[at.SUPPLIED] += works[1]
         clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(clock[at.SUPPLIED]))
@@ -364,6 +371,6 @@ def march_by_tolerance(
 ) -> int:  # fmt: skip
     """Make steps of the Dormand-Prince pair, see :func:`march`."""
     return march(
-        StepsByTolerance(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
+        StepsByTolerance(math.inf), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
         stages, works, reference, limits, ground, controls, clock, counters, kept, codes,
     )  # fmt: skip

@@ -261,11 +261,6 @@ class FixedSteps(NamedTuple):
         return slope[powers], slope[powers + 1]
 
     @inlined
-    def step_length(self, asked: float) -> float:
-        """Give the length of the next step."""
-        return min(asked, self.longest)
-
-    @inlined
     def make_step(
         self, system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
@@ -284,18 +279,6 @@ class FixedSteps(NamedTuple):
     ) -> float:  # fmt: skip
         """Give 0, or infinity where the step has not ended in numbers."""
         return 0.0 if done else math.inf
-
-    @inlined
-    def step_after(
-        self, h: float, asked: float, h_next: float, excess: float, shortest: float,
-        controls: Vector,
-    ) -> float:  # fmt: skip
-        """Give the next step."""
-        return rest_of(asked, h, shortest, controls)
-
-    @inlined
-    def keep_sizes(self, system: Equations, new: Vector, reference: Vector) -> None:
-        """Do nothing: no error is measured."""
 
 
 class FixedStepsByRates(FixedSteps):
@@ -328,14 +311,9 @@ class FixedStepsByRates(FixedSteps):
 
 
 class StepsByTolerance(NamedTuple):
-    """Steps of the Dormand-Prince pair."""
+    """Steps of the Dormand-Prince pair, which may be as long as its errors let them."""
 
-    longest: float
-
-    @inlined
-    def step_length(self, asked: float) -> float:
-        """Give the length of the next step."""
-        return asked
+    longest: float = math.inf
 
     @inlined
     def make_step(
@@ -371,17 +349,3 @@ class StepsByTolerance(NamedTuple):
     ) -> float:  # fmt: skip
         """Give the largest error over the error allowed."""
         return excess_error(system, count, works[2] / scale, new, works, reference, controls)
-
-    @inlined
-    def step_after(
-        self, h: float, asked: float, h_next: float, excess: float, shortest: float,
-        controls: Vector,
-    ) -> float:  # fmt: skip
-        """Give the next step."""
-        return adapted(h, h_next, excess, controls)
-
-    @inlined
-    def keep_sizes(self, system: Equations, new: Vector, reference: Vector) -> None:
-        """Raise the largest size so far of each variable."""
-        for i in range(2 * system.coordinates() + system.variables()):
-            reference[i] = max(reference[i], abs(new[i]))

@@ -67,6 +67,9 @@ OUTPUT_STEP: Final = 5
 CHATTER_TIME: Final = 6
 CONTROLS: Final = 7
 
+FIXED_STEPS: Final = 0.0
+"""Stands for the tolerance of a run with fixed sub-steps."""
+
 # clock: real progress; what a step changes stands first
 INTO_INTERVAL: Final = 0
 NEXT_STEP: Final = 1
