@@ -45,7 +45,6 @@ from rockframe.solve.observe import memory_at_outputs, observe_run, observe_stat
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
-from rockframe.system.setting import Setting
 
 OF_SLIPS: Final = (SLIP, REVERSAL, STICK)
 """Events by which a base that could not be held any longer slips, and holds again."""
@@ -75,20 +74,18 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 
 def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
     """Give what the samples of a run tell: histories, if they are kept, peaks and points."""
-    setting, load, count = system.setting, system.setting.load, len(run.time)
-    columns, shown_at, ground, moved = _everything_of(system, plan, run)
-    values = {name: each[:count] for name, each in shown_at.items()}
+    setting, load = system.setting, system.setting.load
+    columns, values, events, ground, moved = _everything_of(system, plan, run)
     # energies are worked out apart; what else is no column may follow from columns
     if _everything(plan) or set(plan.requested).difference(values, ENERGIES):
-        values |= force_histories(values, moved[:count], load)
+        values |= force_histories(values, moved, load)
     values |= contact_histories(system.model, run)
     values |= cap_histories(values, setting)
     values = body_histories(system.model, run, values)
     values |= relative_histories(values, setting)
     vertical = plan.motion is not None and plan.motion.si.vertical is not None
-    values |= ground_histories(ground[:count], has_vertical_motion=vertical)
+    values |= ground_histories(ground, has_vertical_motion=vertical)
     values["time"] = run.time
-    events = _events_in(shown_at, run, setting)
     along, upright = _along(system, plan, run, columns, events), events
     if not along.steps.complete:
         missing.append(
@@ -124,7 +121,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         scalars |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
         everything |= {name: each for name, each in own.items() if SCHEMA[name].dims}
     for one in plan.diagnostics:
-        state = _state_of(values, run.time, ground[:count])
+        state = _state_of(values, run.time, ground)
         history_and_peak = or_missing(
             lambda one=one, state=state: (one.of(state), _peak_of(one, along)),
             None, f"the diagnostic {one.name!r}", missing,
@@ -179,13 +176,13 @@ def _energies(
 
 def _everything_of(
     system: Assembly, plan: Plan, run: Trajectory
-) -> tuple[dict[str, Generic], dict[str, Generic], Array, Array]:
-    """Give what the model shows along the steps, and at samples, then before and after all events.
+) -> tuple[dict[str, Generic], dict[str, Generic], EventStates, Array, Array]:
+    """Give what the model shows along the steps, at samples, and on both sides of events.
 
-    With the latter, the ground's acceleration there as it was given, and along and normal to the
+    With it, the ground's acceleration at the samples as it was given, and along and normal to the
     base.
     """
-    events, slope = run.events, system.options.slope
+    events, slope, count = run.events, system.options.slope, len(run.time)
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
     moved, resolved = ground_on_slope(ground, slope)
     names: tuple[str, ...] | None = None
@@ -195,7 +192,14 @@ def _everything_of(
         if system.model.shows_bodies:
             names += rotations_of(system.model.system.bodies())
     along, shown = observe_run(system.model, run, names, resolved)
-    return along, without_gravity(shown, slope), ground, moved
+    shown, last = without_gravity(shown, slope), count + len(events.time)
+    values, before, after = (
+        {name: each[part] for name, each in shown.items()}
+        for part in (slice(count), slice(count, last), slice(last, None))
+    )
+    is_impact = (events.kind == IMPACT) & system.setting.struck_by_base
+    states = EventStates(events.time, is_impact, before, after)
+    return along, values, states, ground[:count], moved[:count]
 
 
 def _along(
@@ -294,12 +298,3 @@ def _level(moved: Array, slope: Slope) -> Array:
     """Give horizontal and vertical components of those along and normal to the base."""
     back = replace(slope, inclination=-slope.inclination)
     return np.column_stack(back.turned(moved[:, 0], moved[:, 1]))
-
-
-def _events_in(shown_at: dict[str, Generic], run: Trajectory, setting: Setting) -> EventStates:
-    """Take what the model shows on both sides of events."""
-    first, count = len(run.time), len(run.events.time)
-    before = {name: each[first : first + count] for name, each in shown_at.items()}
-    after = {name: each[first + count :] for name, each in shown_at.items()}
-    is_impact = (run.events.kind == IMPACT) & setting.struck_by_base
-    return EventStates(run.events.time, is_impact, before, after)
