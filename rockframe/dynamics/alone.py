@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -29,7 +29,8 @@ from rockframe.dynamics.switching import lift_by_slip, switch_part
 from rockframe.many import atan2, hypot, sqrt
 
 HORIZONTAL: Final = 2
-"""Place in the state, see :mod:`rockframe.dynamics.bodies`."""
+OWN: Final = 2 * DEGREES
+"""Places in the state, see :mod:`rockframe.dynamics.bodies`; the base's own variables are last."""
 
 
 class OnePart(NamedTuple):
@@ -81,18 +82,13 @@ class Alone(InState, OnePart):
     @inlined
     def own_place(self, k: int) -> int:
         """Give the place of the variables of the base's own in the state."""
-        return 2 * DEGREES
-
-    @inlined
-    def own_in(self, state: Vector) -> Any:
-        """Read the variables of the base's own."""
-        return self.part.base.read(state, 2 * DEGREES)
+        return OWN
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
         """Give accelerations, rates of the base's own variables, and powers."""
         standing = self.part.mode_of(mode)
-        body, own = self.state_of(0, state), self.own_in(state)
+        body, own = self.state_of(0, state), self.part.base.read(state, OWN)
         rates = self.part.rates_in(standing, body, own, ground)
         accelerations = (rates.rotation, rates.vertical, rates.horizontal)
         return accelerations + rates.own_rates + (rates.dissipated, rates.supplied)
@@ -118,7 +114,7 @@ class Alone(InState, OnePart):
                 standing, body, slope[ROTATION], slope[HORIZONTAL], push,
                 lift_by_slip(self, self.part, 0, mode, state),
             )  # fmt: skip
-        own = self.own_in(state)
+        own = self.part.base.read(state, OWN)
         return self.part.guards_with(standing, body, own, slope[VERTICAL], slope[ROTATION], sliding)
 
     @kernel
@@ -130,7 +126,7 @@ class Alone(InState, OnePart):
     def energies(self, mode: int, state: Vector) -> Energies:
         """Give kinetic, gravity and elastic energy, and elastic less that at rest."""
         body = self.state_of(0, state)
-        elastic, change = self.part.elastic_energy(body, self.own_in(state))
+        elastic, change = self.part.elastic_energy(body, self.part.base.read(state, OWN))
         kinetic = self.part.kinetic_energy(self.part.mode_of(mode), body)
         return Energies(kinetic, self.part.body.gravity * body.vertical, elastic, change)
 
@@ -155,7 +151,7 @@ class Alone(InState, OnePart):
             slope[VERTICAL],
             shear,
             slope[VERTICAL] + self.part.body.gravity + ground.y,
-        ) + self.part.observed_base(standing, body, attitude, self.own_in(state))
+        ) + self.part.observed_base(standing, body, attitude, self.part.base.read(state, OWN))
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
@@ -192,7 +188,7 @@ class Alone(InState, OnePart):
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
         """Give the accelerations of the ends of the base in a mode, upwards."""
-        body, own = self.state_of(0, state), self.own_in(state)
+        body, own = self.state_of(0, state), self.part.base.read(state, OWN)
         rates = self.part.rates_in(self.part.mode_of(mode), body, own, ground)
         return self.part.end_rises(body, rates.vertical, rates.rotation)
 

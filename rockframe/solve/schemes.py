@@ -137,26 +137,6 @@ EASY: Final = 0.5
 """Error below which a step that spans its whole interval needs no new step size."""
 
 
-@inlined
-def excess_error(
-    system: Equations, count: int, imbalance: float, new: Vector, works: Vector, reference: Vector,
-    controls: Vector,
-) -> float:  # fmt: skip
-    """Give the largest error of a step, of the state or of its works, over the error allowed.
-
-    `imbalance` is the error of the works over the largest energy.
-    """
-    size, floor = system.coordinates(), controls[at.FLOOR]
-    largest, total = abs(imbalance), imbalance
-    for i in range(2 * size + system.variables()):
-        # what does not move has no error
-        moves = (i < count) | ((size <= i) & (i < size + count)) | (i >= 2 * size)
-        error = abs(works[ERRORS + i]) if moves else 0.0
-        largest = max(largest, error / max(abs(new[i]), floor * reference[i]))
-        total += error
-    return largest / controls[at.RTOL] if math.isfinite(total) else math.inf
-
-
 @kernel
 def next_step(h: float, h_next: float, excess: float) -> float:
     """Give the step size that a step's error suggests."""
@@ -347,5 +327,17 @@ class StepsByTolerance(NamedTuple):
         self, system: Equations, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
-        """Give the largest error over the error allowed."""
-        return excess_error(system, count, works[2] / scale, new, works, reference, controls)
+        """Give the largest error of a step, of the state or of its works, over the error allowed.
+
+        `scale` is the largest energy, over which the error of the works is taken.
+        """
+        size, floor = system.coordinates(), controls[at.FLOOR]
+        imbalance = works[2] / scale
+        largest, total = abs(imbalance), imbalance
+        for i in range(2 * size + system.variables()):
+            # what does not move has no error
+            moves = (i < count) | ((size <= i) & (i < size + count)) | (i >= 2 * size)
+            error = abs(works[ERRORS + i]) if moves else 0.0
+            largest = max(largest, error / max(abs(new[i]), floor * reference[i]))
+            total += error
+        return largest / controls[at.RTOL] if math.isfinite(total) else math.inf

@@ -36,12 +36,12 @@ from rockframe.solve.schemes import (
     STAGES,
     FixedSteps,
     FixedStepsByRates,
+    StepsByTolerance,
     adapted,
     begin_stages,
     end_works,
     errors_of_places,
     errors_of_rates,
-    excess_error,
     fixed_step,
     next_step,
     rest_of,
@@ -336,10 +336,10 @@ def end_step(system: Equations, room: Vector, lane: int) -> None:
         lane_of(room, there.last, lane), works,
     )  # fmt: skip
     scale = max(clock[at.LARGEST_TERM], clock[at.DISSIPATED], abs(clock[at.SUPPLIED]))
-    clock[at.EXCESS] = excess_error(
-        system, lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ACTIVE],
-        works[2] / scale, lane_of(room, there.new, lane), works,
-        lane_of(room, there.reference, lane), lane_of(room, fields.CONTROLS, lane),
+    clock[at.EXCESS] = StepsByTolerance(math.inf).excess_of(
+        system, lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ACTIVE], True, scale,
+        lane_of(room, there.new, lane), works, lane_of(room, there.reference, lane),
+        lane_of(room, fields.CONTROLS, lane),
     )  # fmt: skip
 
 
