@@ -35,7 +35,7 @@ def rocking_block(
         ):
             return setting
     carried = ", which may carry loads that are masses," if carries else ","
-    found = ", ".join(type(part).__name__ for part in system.parts.structural)
+    found = ", ".join(type(part).__name__ for part in system.parts.structural())
     slope = "" if level else " on a slope"
     msg = (
         f"{owner}: the check is of a block on level rigid ground{carried} got {found}{slope}, "
@@ -72,4 +72,4 @@ def peaks_of(
 
 def scene_words(system: System) -> str:
     """Name what is checked, with its numbers, in a line."""
-    return ", ".join(map(repr, system.parts.structural))
+    return ", ".join(map(repr, system.parts.structural()))

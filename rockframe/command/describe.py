@@ -14,7 +14,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.text(
         f"{described}\nMotion:\n  {motion}",
         model=found.system.setting.model,
-        parts=[type(part).__name__ for part in found.system.parts.structural],
+        parts=[type(part).__name__ for part in found.system.parts.structural()],
         motion=motion,
         description=str(described),
     )

@@ -324,7 +324,7 @@ def printed(values: Any) -> str:
 
 def system_words(system: System) -> str:
     """Name the parts of a system in a line."""
-    return ", ".join(type(part).__name__ for part in system.parts.structural)
+    return ", ".join(type(part).__name__ for part in system.parts.structural())
 
 
 def _run_options(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -363,9 +363,13 @@ class ContactModel:
             )
             raise AssemblyError([msg])
 
+    def moving(self, modes: Integers) -> Integers:
+        """Give the numbers of leading coordinates that move in modes."""
+        return _of_each(self.system.moving_in, modes)
+
     def contact_states(self, modes: Integers, body: int = 0) -> Integers:
         """Give the contact states of a body in modes."""
-        return of_each(lambda mode: self.system.contact_state_of(mode, body), modes)
+        return _of_each(lambda mode: self.system.contact_state_of(mode, body), modes)
 
     def rotation_in(self, state: Vector) -> float:
         """Give the block's rotation in a state."""
@@ -381,7 +385,7 @@ class ContactModel:
         return share
 
 
-def of_each(function: Callable[[int], int], modes: Integers) -> Integers:
+def _of_each(function: Callable[[int], int], modes: Integers) -> Integers:
     """Ask what modes mean, each once; most last for many samples."""
     differs = np.ones(len(modes) + 1, dtype=np.bool_)  # at both ends, too
     np.not_equal(modes[1:], modes[:-1], out=differs[1:-1])

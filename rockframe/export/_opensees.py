@@ -167,7 +167,7 @@ def to_opensees(
 
 def _check(system: System) -> None:
     """Refuse what OpenSees' model has no counterpart of."""
-    others = [part for part in system.parts.structural if type(part) not in _KNOWN]
+    others = [part for part in system.parts.structural() if type(part) not in _KNOWN]
     faults = [f"a {type(part).__name__}" for part in others]
     if not faults:
         setting = system.setting

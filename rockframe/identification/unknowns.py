@@ -70,7 +70,7 @@ class TrialSystems:
 
     def __init__(self, system: System, names: Sequence[str], owner: str) -> None:
         alone = system.parts.signature == frozenset({"block"})
-        self._parts = (system.parts.standing() if alone else system.parts).structural
+        self._parts = (system.parts.standing() if alone else system.parts).structural()
         options = system.options
         self._options: dict[str, Any] = {
             "restraint": options.restraint,

@@ -109,7 +109,7 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits
     """Show the parts with their parameters, and the model."""
     if system is not None:
         yield from _drawing(system, units)
-        for part in system.parts.structural:
+        for part in system.parts.structural():
             yield from _part(type(part).__name__, part, units)
         yield page.subtitle("Options")
         yield page.rows(

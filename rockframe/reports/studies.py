@@ -73,7 +73,7 @@ def worst_case(
 def under(system: System, motion: GroundMotion) -> System:
     """Give a system with a motion of its own."""
     options: dict[str, Any] = dict(system.options.to_dict())
-    return System(*system.parts.structural, motion, **options)
+    return System(*system.parts.structural(), motion, **options)
 
 
 def is_study(dataset: xr.Dataset) -> bool:

@@ -148,7 +148,7 @@ def _own_answers(
     sides = [{**side, "time": events.time} for side in (events.before, events.after)]
     sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
     found: dict[str, Generic] = {}
-    for own in (system.setting, *system.parts.structural):
+    for own in (system.setting, *system.parts.structural()):
         if isinstance(own, OwnAnswers):
             what = f"what {type(own).__name__} tells of the run"
             found |= or_missing(

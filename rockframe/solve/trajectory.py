@@ -12,7 +12,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.compiled import Integers, Matrix, Vector
-from rockframe.dynamics.protocol import ContactModel, Ending, of_each
+from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import isnan, largest
 from rockframe.solve import workspace as at
 from rockframe.solve.crossings import cubic, quintic
@@ -79,7 +79,7 @@ class Steps:
         value, _ = _cubic(
             state[..., w], h * first[..., rates], new[..., w], h * last[..., rates], u
         )
-        moves = np.arange(size) < of_each(model.system.moving_in, self.mode[which])[:, None, None]
+        moves = np.arange(size) < model.moving(self.mode[which])[:, None, None]
         place = np.where(moves, place, state[..., x])
         return np.concatenate([place, np.where(moves, speed, state[..., v]), value], axis=-1)
 

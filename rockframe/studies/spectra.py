@@ -99,7 +99,7 @@ def _by_shape_factor(system: System, block: Block) -> System:
         return system
     with collected_warnings():  # block and system have warned when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
-        others = [part for part in system.parts.structural if part is not block]
+        others = [part for part in system.parts.structural() if part is not block]
         return System(
             scaling,
             *others,

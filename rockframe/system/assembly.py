@@ -247,7 +247,7 @@ class Assembly:
     @cached_property
     def cautions(self) -> list[str]:
         """What is unusual about the scene and its parts, each once."""
-        of_parts = [text for part in self.parts.structural for text in part.cautions()]
+        of_parts = [text for part in self.parts.structural() for text in part.cautions()]
         return list(dict.fromkeys([*of_parts, *self.doubts]))
 
     @cached_property
@@ -266,7 +266,7 @@ class Assembly:
 
     def to_dict(self) -> dict[str, object]:
         """Give parts and options as plain values, fit for JSON; without the motion."""
-        parts = [part.to_dict() for part in self.parts.structural]
+        parts = [part.to_dict() for part in self.parts.structural()]
         return {"parts": parts, **self.options.to_dict()}
 
 
@@ -301,7 +301,7 @@ def assembly_of(
     faults = [*faults, *misfits(given)]
     scene = next((scene for scene in scenes() if scene.fits(given, options.coupling)), None)
     if scene is None and not faults:
-        names = " and ".join(type(part).__name__ for part in given.structural)
+        names = " and ".join(type(part).__name__ for part in given.structural())
         faults.append(f"no scene is made of {names} together")
     # the scenes are of use to one whose parts make none, not to one with a wrong option
     supported = [scene.title for scene in scenes()] if faults else []
@@ -309,6 +309,6 @@ def assembly_of(
     if faults or scene is None:
         raise AssemblyError(faults, supported)
     made = Assembly(given, options, scene)
-    if given.own or any(isinstance(part, OwnBase) for part in given.structural):
+    if given.own or any(isinstance(part, OwnBase) for part in given.structural()):
         made.model  # noqa: B018 - refuses more contacts than can be numbered, and wrong sizes
     return made

@@ -196,6 +196,11 @@ class BaseLoad:
         return self.body.mass * self.options.slope.along_gravity
 
     @cached_property
+    def overturning_angles(self) -> OverturningAngles:
+        """Rotations at which the centre of mass stands above an end of the base."""
+        return self.body.overturning_angles.on_slope(self.options.slope, small=self.options.small)
+
+    @cached_property
     def rigid_body(self) -> Body:
         """The body as the equations take it, per unit of its own mass."""
         return self.law(self.body.mass)

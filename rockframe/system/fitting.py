@@ -182,7 +182,7 @@ def unused(parts: Parts, options: Options) -> list[str]:
     """Say which options were chosen that a scene of these parts has no use for."""
     told: list[str] = []
     between = () if parts.stack is None else parts.stack.interfaces
-    bases = (*parts.structural, *between)
+    bases = (*parts.structural(), *between)
     if options.coupling is not Coupling.COUPLED and not {"pads", "cap", "soil"} <= parts.signature:
         told.append(
             f"coupling={str(options.coupling)!r} changes nothing here: it is how pads, a "

@@ -19,7 +19,7 @@ def system_html(scene: "Assembly", name: str) -> str:
     """Give drawing and numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
-    for part in scene.parts.structural:
+    for part in scene.parts.structural():
         numbers = arguments_in_words(part.to_dict())
         rows[type(part).__name__] = ", ".join(f"{one} {value}" for one, value in numbers.items())
     left, right = setting.overturning_angles

@@ -171,10 +171,9 @@ class Parts:
     filled: tuple[tuple[str, Component | GroundMotion], ...] = ()
     # the same apart: parts that are no motion by their slots, and those of the package's own kinds
     components: dict[str, Component] = field(init=False, repr=False, compare=False)
-    # parts that are no motion, in a fixed order; those in slots that scenes of users' own have, by
-    # these; links between points of bodies, ground and walls, loads behind the others; and names of
-    # the parts that are no motion: rigid ground goes without saying, and an elastic wall is a link
-    structural: tuple[Component, ...] = field(init=False, repr=False, compare=False)
+    # those in slots that scenes of users' own have, by these; links between points of bodies,
+    # ground and walls, loads behind the others; and names of the parts that are no motion: rigid
+    # ground goes without saying, and an elastic wall is a link
     own: dict[str, Component] = field(init=False, repr=False, compare=False)
     links: tuple[Link, ...] = field(init=False, repr=False, compare=False)
     signature: frozenset[str] = field(init=False, repr=False, compare=False)
@@ -193,16 +192,13 @@ class Parts:
         vars(self).update({slot: found.get(slot) for slot in SHIPPED if slot != RESTRAINER})
         components = {slot: part for slot, part in found.items() if slot != "motion"}
         kinds = {slot: kind_of_slot(slot) for slot in components}
-        structural, stiff = tuple(components.values()), self.wall and not self.wall.elastic
-        links = [
-            one for one in structural if isinstance(one, Link) and not (one is self.wall and stiff)
-        ]
+        stiff = self.wall if self.wall is not None and not self.wall.elastic else None
+        links = [one for one in components.values() if isinstance(one, Link) and one is not stiff]
         signature = frozenset(kinds.values()) - {"ground"}
-        if self.wall is not None and not stiff:
+        if self.wall is not stiff:
             signature = signature - {"wall"} | {RESTRAINER}
         vars(self).update(
             components=components,
-            structural=structural,
             own={slot: components[slot] for slot, kind in kinds.items() if kind not in SHIPPED},
             links=tuple(sorted(links, key=lambda part: isinstance(part, Load))),
             signature=signature,
@@ -237,6 +233,10 @@ class Parts:
     def changed(self, **by_slot: Component | GroundMotion | None) -> "Parts":
         """Give the parts with others in some slots."""
         return Parts.of({**dict(self.filled), **by_slot})
+
+    def structural(self) -> list[Component]:
+        """Give the parts that are no motion, in a fixed order."""
+        return list(self.components.values())
 
     def standing(self) -> "Parts":
         """Give the parts with the rigid ground on which bodies stand when no base is given."""

@@ -75,7 +75,7 @@ class Setting(ABC):
         vars(self).update(
             body=body, options=options, gravity=options.gravity, slope=options.slope,
             leans=body.eccentricity != 0.0 or not options.slope.level,
-            overturning_angles=body.overturning_angles.on_slope(options.slope, small=options.small),
+            overturning_angles=self.load.overturning_angles,
         )  # fmt: skip
 
     @property

@@ -13,7 +13,7 @@ from rockframe.dynamics.alone import alone, rigid_body
 from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import CENTRE
 from rockframe.dynamics.events import EventKind
-from rockframe.dynamics.protocol import Start, of_each
+from rockframe.dynamics.protocol import Start
 from rockframe.dynamics.sliding import is_lifted, speed_noise
 from rockframe.signals import Motion
 from rockframe.solve.accuracy import accuracy_of
@@ -130,7 +130,7 @@ def test_a_corner_that_slides_keeps_its_level_and_dissipates(model, restraint):
     run = drop(one)
     sliding = slides(one, run.mode)
     assert sliding.sum() > 5
-    assert (of_each(one.system.moving_in, run.mode[sliding]) == 3).all()
+    assert (one.moving(run.mode[sliding]) == 3).all()
     alpha, y, _, spin, speed, _ = run.state[sliding].T
     assert np.abs(level(alpha, y, -1.0) - DELTA).max() < 1e-9
     assert np.abs(speed + lever(alpha, -1.0) * spin).max() < 1e-9

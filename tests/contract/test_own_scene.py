@@ -137,7 +137,7 @@ class TestRun:
                 np.testing.assert_array_equal(read[name], response[name])
                 assert read[name].attrs == response[name].attrs
             again = rf.System.from_dataset(read)
-        assert again.parts.structural == system.parts.structural
+        assert again.parts.structural() == system.parts.structural()
         repeated = again.simulate(**RUN, outputs=["energy", "edge_height"])
         for name in response.variables:
             np.testing.assert_array_equal(repeated[name], response[name], err_msg=name)

@@ -145,7 +145,7 @@ def with_ties(drawn, rng):
     """Give a scene with ties beside; None on a slope, or if they tip the block."""
     if not drawn.system.options.slope.level:
         return None
-    block, *others = drawn.system.parts.structural
+    block, *others = drawn.system.parts.structural()
     parts, models = draw_ties(rng, block)
     try:
         system = rf.System(block, *others, *parts, restraint=drawn.system.restraint)

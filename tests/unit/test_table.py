@@ -58,7 +58,7 @@ def test_of_points_and_restrainers_each_has_a_column():
     tie = rf.Restrainer(
         on=("-0.4 m", "4 m"), to=("-2 m", "4 m"), stiffness="1 MN/m", name="strap"
     )  # fmt: skip
-    tied = rf.System(*SYSTEM.parts.structural[:1], tie)
+    tied = rf.System(*SYSTEM.parts.structural()[:1], tie)
     found = rf.sweep(
         tied, PULSE, scale=SCALES[:2], points={"top": ("0 m", "4 m")}, free_vibration="1 s"
     )

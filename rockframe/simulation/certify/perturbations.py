@@ -29,7 +29,7 @@ SceneAt = Callable[[float], Assembly | None]
 def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
     """Give every parameter of every part of a scene, and the scene with it changed."""
     options = system.options.to_dict()
-    parts = system.parts.structural
+    parts = system.parts.structural()
 
     def changed(place: int, name: str) -> SceneAt:
         def at(change: float) -> Assembly | None:

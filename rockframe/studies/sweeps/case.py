@@ -287,7 +287,7 @@ def _system(scene: SweptScene, values: dict[Axis, Any]) -> System:
 
 def _of_assembly(assembly: Assembly) -> System:
     options: dict[str, Any] = assembly.options.to_dict()
-    return System(*assembly.parts.structural, **options)
+    return System(*assembly.parts.structural(), **options)
 
 
 def unscaled_motion(

@@ -92,7 +92,7 @@ def _runs_as_python(study: Study) -> bool:
         return True
     try:
         system, _, plan = CasesOfJob(study.job(range(1))).planned(0)
-        own = any(isinstance(part, OwnBase) for part in system.parts.structural)
+        own = any(isinstance(part, OwnBase) for part in system.parts.structural())
         if not own and not isinstance(system.setting, OwnScene):
             return False
         glimpse = replace(plan.bare(), duration=_GLIMPSE * plan.duration)
