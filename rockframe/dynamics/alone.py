@@ -259,7 +259,7 @@ def alone(
     mass : float
         Of the body [kg].
     rest_rotation : float
-        Of the body at rest, :meth:`rockframe.dynamics.statics.Chain.rest` [rad].
+        Of the body at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest` [rad].
 
     Returns
     -------
