@@ -41,10 +41,15 @@ from rockframe.system.bodies import BaseLoad
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
-from rockframe.system.pads import PadSupport, pads_under
-from rockframe.system.soil import BedSupport, bed_under
 from rockframe.system.statics import Statics
-from rockframe.system.support import BaseWords, Support
+from rockframe.system.support import (
+    BaseWords,
+    BedSupport,
+    PadSupport,
+    Support,
+    bed_under,
+    pads_under,
+)
 from rockframe.system.words import Words
 from rockframe.units import NOT_NEGATIVE, POSITIVE, UNIT_INTERVAL, Measure, Unit
 

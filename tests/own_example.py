@@ -11,14 +11,14 @@ from typing import Any
 
 from rockframe.results.diagnostics import DIAGNOSTICS
 from rockframe.results.schema import SCHEMA
+from rockframe.system import assembly
 from rockframe.system import parts as parts_of
-from rockframe.system import scenes
 
 FOLDER = Path(__file__).parents[1] / "examples"
 FILE = FOLDER / "own_base.py"
 NAME = FILE.stem  # as who runs `import own_base` finds it, with the same machine code
 SCENE_FILE = FOLDER / "own_scene.py"
-TABLES: tuple[dict[Any, Any], ...] = (SCHEMA, DIAGNOSTICS, scenes._OWN, parts_of._KINDS)
+TABLES: tuple[dict[Any, Any], ...] = (SCHEMA, DIAGNOSTICS, assembly._OWN, parts_of._KINDS)
 """What registration adds to."""
 
 

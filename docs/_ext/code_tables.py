@@ -59,8 +59,8 @@ from rockframe.results.variables.studies import (
 )
 from rockframe.results.variables.variable import EVENT, Variable
 from rockframe.solve.accuracy import LEVELS
+from rockframe.system.assembly import scenes
 from rockframe.system.options import Restraint, Rotation
-from rockframe.system.scenes import scenes
 from rockframe.units import Unit
 
 Rows = Iterable[tuple[str, ...]]

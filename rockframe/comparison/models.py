@@ -108,9 +108,9 @@ def model_ladder(system: System) -> dict[str, System]:
         rows = _UPON if present & {"pads", "soil"} else _ON_RIGID
     rows = _FRAME if "frame" in present else rows
     rows = _WALL if "wall" in present else rows
-    if system.parts.own():
+    if system.parts.own:
         rows = _STACK[:1]
-    slides = system.setting.slides and not system.parts.own()
+    slides = system.setting.slides and not system.parts.own
     if slides and "stack" not in present and squat(system.parts.the_block, ""):
         rows = ()  # held it would not rock
     whole, held = given, Sliding.CHECKED if slides else system.sliding
@@ -122,7 +122,7 @@ def model_ladder(system: System) -> dict[str, System]:
         "sliding": held,
     }  # fmt: skip
     models: dict[str, System] = {}
-    links = () if system.parts.own() else system.parts.links
+    links = () if system.parts.own else system.parts.links
     acts = " and ".join(dict.fromkeys(_LINKS.get(type(one), type(one).__name__) for one in links))
     with warnings.catch_warnings():
         # what is left out may be said of a rung, but the scene itself has said its own
@@ -148,7 +148,7 @@ def model_ladder(system: System) -> dict[str, System]:
         computed: dict[str, Any] = {**options, "sliding": Sliding.COMPUTED}
         last = list(models)[-1] if models else "rigid ground"
         models[f"{last}, sliding"] = System(*whole.values(), **computed)
-    if system.parts.own():
+    if system.parts.own:
         models[system.setting.model] = System(*given.values(), rotation=system.rotation, **options)
     return models
 

@@ -15,8 +15,8 @@ from rockframe.comparison.models import check_system, model_ladder
 from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import verdict_of
+from rockframe.results.schema import build_dataset
 from rockframe.shared_arguments import takes
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes

@@ -52,6 +52,9 @@ class Signature:
         return self is other or (isinstance(other, Signature) and self.value == other.value)
 
 
+_shared = cache(Signature)
+
+
 class Source:
     """A function and the structure of a tuple that it can be bound to."""
 
@@ -80,6 +83,9 @@ class Source:
         return _shared(signature_of(self.function))
 
 
+_source = cache(Source)
+
+
 class Bound:
     """A function bound to a tuple: plain Python, and what entries call in its place."""
 
@@ -87,7 +93,9 @@ class Bound:
 
     def __init__(self, source: Source, bundle: Any) -> None:
         self.source = source
-        self._bundle = _own(bundle)
+        if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):  # in one of its own
+            bundle = type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
+        self._bundle = bundle
 
     def call(self, *arguments: Any) -> Any:
         """Call the function with the tuple in place of its numbers, the last argument."""
@@ -104,20 +112,3 @@ def bound_in_lanes(function: Callable[..., Any], bundle: Any) -> Bound:
     """Bind a function to the class of a tuple, of which each lane has its own."""
     structure = structure_of(bundle)
     return Bound(_source(function, structure, True), tuple_from(structure))
-
-
-def _own(bundle: Any) -> Any:
-    """Give a tuple with an array of its own, if it ends with one."""
-    if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):
-        return type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
-    return bundle
-
-
-@cache
-def _source(function: Callable[..., Any], structure: tuple[Any, ...], in_lanes: bool) -> Source:
-    return Source(function, structure, in_lanes)
-
-
-@cache
-def _shared(signature: Any) -> Signature:
-    return Signature(signature)

@@ -44,20 +44,14 @@ class Shape(Protocol):
 class BodyGeometry:
     """What follows from where the centre of mass of a body is above its base."""
 
-    @property
-    def left(self: Shape) -> float:
-        """From the foot of the centre of mass to the left end of the base, b + e_c [m]."""
-        return self.half_width + self.eccentricity
+    # from the foot of the centre of mass to both ends of the base, b + e_c and b - e_c [m]
+    left: float
+    right: float
+    radius: float  # R0, from an end of the base to that centre, were it above the middle [m]
 
-    @property
-    def right(self: Shape) -> float:
-        """From there to the right end, b - e_c [m]."""
-        return self.half_width - self.eccentricity
-
-    @property
-    def radius(self: Shape) -> float:
-        """R0, from an end of the base to the centre of mass, were that above the middle [m]."""
-        return hypot(self.half_width, self.centre_height)
+    def __post_init__(self: Shape) -> None:
+        b, beside = self.half_width, self.eccentricity
+        vars(self).update(left=b + beside, right=b - beside, radius=hypot(b, self.centre_height))
 
     def frequency_at(self: Shape, gravity: float) -> float:
         """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""

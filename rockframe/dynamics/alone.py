@@ -2,7 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Final, NamedTuple
+from functools import partial
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -28,7 +29,8 @@ from rockframe.dynamics.switching import lift_by_slip, switch_part
 from rockframe.many import atan2, hypot, sqrt
 
 HORIZONTAL: Final = 2
-"""Place in the state, see :mod:`rockframe.dynamics.bodies`."""
+OWN: Final = 2 * DEGREES
+"""Places in the state, see :mod:`rockframe.dynamics.bodies`; the base's own variables are last."""
 
 
 class OnePart(NamedTuple):
@@ -80,18 +82,13 @@ class Alone(InState, OnePart):
     @inlined
     def own_place(self, k: int) -> int:
         """Give the place of the variables of the base's own in the state."""
-        return 2 * DEGREES
-
-    @inlined
-    def own_in(self, state: Vector) -> Any:
-        """Read the variables of the base's own."""
-        return self.part.base.read(state, 2 * DEGREES)
+        return OWN
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
         """Give accelerations, rates of the base's own variables, and powers."""
         standing = self.part.mode_of(mode)
-        body, own = self.state_of(0, state), self.own_in(state)
+        body, own = self.state_of(0, state), self.part.base.read(state, OWN)
         rates = self.part.rates_in(standing, body, own, ground)
         accelerations = (rates.rotation, rates.vertical, rates.horizontal)
         return accelerations + rates.own_rates + (rates.dissipated, rates.supplied)
@@ -117,7 +114,7 @@ class Alone(InState, OnePart):
                 standing, body, slope[ROTATION], slope[HORIZONTAL], push,
                 lift_by_slip(self, self.part, 0, mode, state),
             )  # fmt: skip
-        own = self.own_in(state)
+        own = self.part.base.read(state, OWN)
         return self.part.guards_with(standing, body, own, slope[VERTICAL], slope[ROTATION], sliding)
 
     @kernel
@@ -129,7 +126,7 @@ class Alone(InState, OnePart):
     def energies(self, mode: int, state: Vector) -> Energies:
         """Give kinetic, gravity and elastic energy, and elastic less that at rest."""
         body = self.state_of(0, state)
-        elastic, change = self.part.elastic_energy(body, self.own_in(state))
+        elastic, change = self.part.elastic_energy(body, self.part.base.read(state, OWN))
         kinetic = self.part.kinetic_energy(self.part.mode_of(mode), body)
         return Energies(kinetic, self.part.body.gravity * body.vertical, elastic, change)
 
@@ -154,7 +151,7 @@ class Alone(InState, OnePart):
             slope[VERTICAL],
             shear,
             slope[VERTICAL] + self.part.body.gravity + ground.y,
-        ) + self.part.observed_base(standing, body, attitude, self.own_in(state))
+        ) + self.part.observed_base(standing, body, attitude, self.part.base.read(state, OWN))
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
@@ -191,7 +188,7 @@ class Alone(InState, OnePart):
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
         """Give the accelerations of the ends of the base in a mode, upwards."""
-        body, own = self.state_of(0, state), self.own_in(state)
+        body, own = self.state_of(0, state), self.part.base.read(state, OWN)
         rates = self.part.rates_in(self.part.mode_of(mode), body, own, ground)
         return self.part.end_rises(body, rates.vertical, rates.rotation)
 
@@ -262,7 +259,7 @@ def alone(
     mass : float
         Of the body [kg].
     rest_rotation : float
-        Of the body at rest, :meth:`rockframe.dynamics.statics.Chain.rest` [rad].
+        Of the body at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest` [rad].
 
     Returns
     -------
@@ -292,7 +289,7 @@ def alone(
         fastest_frequency=fastest,
         damping_rate=base.damping_time * fastest**2,
         energy_scale=body.gravity * size * body.angle,
-        initial=_starting(part, rest_rotation),
+        initial=partial(_initial, part, rest_rotation),
         rounding=rounding_at(size, base.settlement, answers, fastest, len(base.variable_scales)),
     )  # fmt: skip
 
@@ -348,24 +345,17 @@ def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[
     return state, part.standing(base.starting(body.base_line_at(state), own), state)
 
 
-def at_rotation(start: Start, rest_rotation: float) -> Start:
-    """Give a start whose rotation is known: that at rest, unless it says otherwise."""
-    return start if start.rotation is not None else replace(start, rotation=rest_rotation)
-
-
-def _starting(part: OnBase, rest_rotation: float) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    def initial(given: Start) -> tuple[int, Vector, Vector]:
-        start = at_rotation(given, rest_rotation)
-        own = np.zeros(part.base.variables())
-        body, mode = starting_state(part, start, part.base.read(own, 0))
-        # the held point starts where it is when the body rests, so that x = 0 there
-        pin = part.starting_pin(mode, body)
-        x = 0.0
-        if part.is_free(mode):
-            x = pin + part.body.about_pin(pin, part.body.attitude(body.rotation))
-        places = (body.rotation, body.vertical, x)
-        rates = (body.angular_velocity, body.vertical_velocity, 0.0)
-        memory = np.array([pin if k == HELD_PLACE else 0.0 for k in range(len(MEMORY))])
-        return part.number_of(mode), np.array([*places, *rates, *own]), memory
-
-    return initial
+def _initial(part: OnBase, rest_rotation: float, given: Start) -> tuple[int, Vector, Vector]:
+    """Give mode, state and memory at the start of a run; at rest unless it says otherwise."""
+    start = given if given.rotation is not None else replace(given, rotation=rest_rotation)
+    own = np.zeros(part.base.variables())
+    body, mode = starting_state(part, start, part.base.read(own, 0))
+    # the held point starts where it is when the body rests, so that x = 0 there
+    pin = part.starting_pin(mode, body)
+    x = 0.0
+    if part.is_free(mode):
+        x = pin + part.body.about_pin(pin, part.body.attitude(body.rotation))
+    places = (body.rotation, body.vertical, x)
+    rates = (body.angular_velocity, body.vertical_velocity, 0.0)
+    memory = np.array([pin if k == HELD_PLACE else 0.0 for k in range(len(MEMORY))])
+    return part.number_of(mode), np.array([*places, *rates, *own]), memory

@@ -45,25 +45,6 @@ def pivot_of(
     return PIVOT_CENTRE
 
 
-@inlined
-def pivot_guard(
-    rule: int,
-    pivot: int,
-    scale: float,
-    rotation: float,
-    angular_velocity: float,
-    angular_acceleration: float,
-) -> tuple[float, float]:
-    """Give the guard of the rule that the leading corner is held, and its rate."""
-    if rule != LEADING_CORNER:
-        return 1.0, 0.0
-    if pivot == PIVOT_CENTRE:  # upright and at rest: whichever corner it leans to
-        departure = angular_velocity if angular_velocity != 0.0 else angular_acceleration
-        return -abs(rotation) / scale, -abs(departure) / scale
-    side = (1.0 if pivot == PIVOT_RIGHT else -1.0) / scale
-    return side * rotation, side * angular_velocity
-
-
 class BodyState(NamedTuple):
     """Placement and rates of a body relative to its base; the centre of mass, from rest.
 

@@ -4,23 +4,22 @@ The forces of the bases are differentiated in the contacts that they are in, as 
 motion take them, and so is what the weights do.
 """
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.body import BodyState
-from rockframe.dynamics.statics import Stand, StandingBody, StandingChain
+from rockframe.dynamics.statics import (
+    PLACES,
+    RATES,
+    STENCIL,
+    Stand,
+    StandingChain,
+    moved_by,
+    of_base,
+    step_of,
+)
 from rockframe.dynamics.trigonometry import sine_cosine
-from rockframe.many import sqrt
-
-STEP: Final = 1e-3
-"""By which coordinates are moved, over the settlement and over the rotation that it allows;
-rates, over these times the rate of a vibration that settles as much."""
-STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
-"""Steps to both sides, and weights of a first derivative that is exact to the fourth order."""
-PLACES: Final = ("rotation", "vertical")
-RATES: Final = ("angular_velocity", "vertical_velocity")
 
 
 class Linear(NamedTuple):
@@ -48,29 +47,14 @@ def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
     return Linear(_mass(chain, stands), damping, stiffness)
 
 
-def of_base(link: StandingBody, stand: Stand, name: str) -> tuple[float, float]:
-    """Give minus the change of a base's moment and force with a coordinate or rate of its body."""
-    body, base = link.part
-    step = _step(link, name)
-    moment = upward = 0.0
-    for place, weight in STENCIL:
-        before, behind = (
-            base.force(stand.mode.contact, body.base_line_at(_moved(stand, name, by)), stand.own)
-            for by in (place * step, -place * step)
-        )
-        moment -= weight / step * (before.moment - behind.moment)
-        upward -= weight / step * (before.upward - behind.upward)
-    return moment, upward
-
-
 def _of_weight(
     chain: StandingChain, stands: list[Stand], k: int, name: str, states: list[int]
 ) -> Vector:
     """Give minus the changes of the generalised forces of all weights, and of links."""
-    link, stand, step = chain.links[k], stands[k], _step(chain.links[k], name)
+    link, stand, step = chain.links[k], stands[k], step_of(chain.links[k], name)
 
     def weights(by: float) -> Vector:
-        state = _moved(stand, name, by)
+        state = moved_by(stand, name, by)
         reach, across = link.way(link.part.body.attitude(state.rotation), stand.mode.pivot)
         arm = stand.arm + by if name == PLACES[1] else stand.arm
         moved = stand._replace(state=state, reach=reach, across=across, arm=arm)
@@ -83,16 +67,6 @@ def _of_weight(
          for place, weight in STENCIL),
         start=np.zeros(2 * len(stands)),
     )  # fmt: skip
-
-
-def _step(link: StandingBody, name: str) -> float:
-    size = link.allowed_rotation if name in (PLACES[0], RATES[0]) else link.settlement
-    rate = sqrt(link.part.body.gravity / link.settlement) if name in RATES else 1.0
-    return STEP * size * rate
-
-
-def _moved(stand: Stand, name: str, by: float) -> BodyState:
-    return stand.state._replace(**{name: getattr(stand.state, name) + by})
 
 
 def _mass(chain: StandingChain, stands: list[Stand]) -> Matrix:

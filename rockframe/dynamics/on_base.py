@@ -11,12 +11,14 @@ from typing import Any, Final, NamedTuple
 from rockframe.compiled import constant, inlined, kernel
 from rockframe.dynamics.base import Guards
 from rockframe.dynamics.body import (
+    LEADING_CORNER,
+    PIVOT_CENTRE,
+    PIVOT_RIGHT,
     Attitude,
     BaseLine,
     Body,
     BodyState,
     accelerated,
-    pivot_guard,
     pivot_of,
 )
 from rockframe.dynamics.events import FLIGHT, FULL, LEFT, RIGHT
@@ -210,14 +212,16 @@ class OnBase(NamedTuple):
         return found
 
     @inlined
-    def pivot_guard_in(self, mode: Mode, state: BodyState, angular: float) -> tuple[float, float]:
-        """Give the guard of the restraint rule, and its rate."""
-        if self.flies(mode.contact):
+    def pivot_guard(self, mode: Mode, state: BodyState, angular: float) -> tuple[float, float]:
+        """Give the guard of the rule that the leading corner is held, and its rate."""
+        body, rate = self.body, state.angular_velocity
+        if self.flies(mode.contact) or body.restraint != LEADING_CORNER:
             return 1.0, 0.0
-        return pivot_guard(
-            self.body.restraint, mode.pivot, self.body.angle, state.rotation,
-            state.angular_velocity, angular,
-        )  # fmt: skip
+        if mode.pivot == PIVOT_CENTRE:  # upright and at rest: whichever corner it leans to
+            departure = rate if rate != 0.0 else angular
+            return -abs(state.rotation) / body.angle, -abs(departure) / body.angle
+        side = (1.0 if mode.pivot == PIVOT_RIGHT else -1.0) / body.angle
+        return side * state.rotation, side * rate
 
     @inlined
     def guards_with(
@@ -233,7 +237,7 @@ class OnBase(NamedTuple):
         line = accelerated(self.body.base_line(state, attitude), rises[0], rises[1])
         left = self.end_guards_in(mode, True, line, own)
         right = self.end_guards_in(mode, False, line, own)
-        pivot, pivot_rate = self.pivot_guard_in(mode, state, angular)
+        pivot, pivot_rate = self.pivot_guard(mode, state, angular)
         return Guards(
             left.values + right.values + (sliding.hold, sliding.slip, pivot),
             left.changes + right.changes + (0.0, sliding.slip_rate, pivot_rate),

@@ -53,18 +53,6 @@ def corner_contact(contact: int, left: bool) -> int:
     return contact & CORNER_BITS if left else (contact >> RIGHT_BIT) & CORNER_BITS
 
 
-@inlined
-def corner_level(line: BaseLine, left: bool) -> float:
-    """Give the height of one corner above its place at rest."""
-    return line.left if left else line.right
-
-
-@inlined
-def corner_speed(line: BaseLine, left: bool) -> float:
-    """Give the speed of one corner upwards."""
-    return line.left_speed if left else line.right_speed
-
-
 class PadNumbers(NamedTuple):
     """Two pads, per unit mass of the body on them."""
 
@@ -146,29 +134,21 @@ class Pads(Base, PadNumbers):
         return float(corner_contact(contact, False) - corner_contact(contact, True))
 
     @inlined
-    def settlement_of(self, left: bool) -> float:
-        """Give how far a pad's first unloaded level stands above its corner's place at rest."""
-        return self.left_settlement if left else self.right_settlement
-
-    @inlined
-    def unloaded(self, left: bool, own: Any) -> float:
-        """Give how far a pad's unloaded level stands above its corner's place at rest."""
-        return self.settlement_of(left) - self.law.sunk(self.of_corner(own, left))
-
-    @inlined
     def level(self, left: bool, line: BaseLine, own: Any) -> float:
         """Give how much higher than its corner a pad's unloaded level is."""
-        return self.unloaded(left, own) - corner_level(line, left)
+        point = self.corner(left, line)
+        return point.settlement - self.law.sunk(self.of_corner(own, left)) - point.rise
 
     @inlined
     def corner(self, left: bool, line: BaseLine) -> Point:
         """Give one corner as its law sees it."""
-        settlement, level = self.settlement_of(left), corner_level(line, left)
+        settlement = self.left_settlement if left else self.right_settlement
+        rise = line.left if left else line.right
+        speed = line.left_speed if left else line.right_speed
         change = line.left_acceleration if left else line.right_acceleration
         return Point(
-            settlement - level, -corner_speed(line, left), -change, level, settlement,
-            0.0 if left else 1.0, line,
-        )  # fmt: skip
+            settlement - rise, -speed, -change, rise, settlement, 0.0 if left else 1.0, line
+        )
 
     @inlined
     def reaction(self, contact: int, left: bool, line: BaseLine, own: Any) -> float:
@@ -207,18 +187,18 @@ class Pads(Base, PadNumbers):
     @inlined
     def flow(self, contact: int, line: BaseLine, own: Any) -> Variables:
         """Give the rates of both laws' variables."""
-        return self.rates(contact, True, line, own) + self.rates(contact, False, line, own)
-
-    @inlined
-    def rates(self, contact: int, left: bool, line: BaseLine, own: Any) -> Variables:
-        """Give the rates of the variables of one law."""
-        state, point = self.state_if_touching(contact, left), self.corner(left, line)
-        return self.law.rates(state, point, self.of_corner(own, left))
+        left, right = self.corner(True, line), self.corner(False, line)
+        on_left, on_right = (
+            self.state_if_touching(contact, True), self.state_if_touching(contact, False),
+        )  # fmt: skip
+        return self.law.rates(on_left, left, self.of_corner(own, True)) + self.law.rates(
+            on_right, right, self.of_corner(own, False)
+        )
 
     @kernel
     def pad_energy(self, left: bool, line: BaseLine, own: Any) -> tuple[float, float]:
         """Give the energy of a pad, and that less the energy at rest."""
-        if corner_level(line, left) >= self.unloaded(left, own):
+        if self.level(left, line, own) <= 0.0:
             return 0.0, -self.rest_energy
         return self.law.energies(
             self.corner(left, line), self.rest, self.rest_energy, self.of_corner(own, left)
@@ -236,10 +216,8 @@ class Pads(Base, PadNumbers):
         """Give the guards of a corner and their rates; idle ones are 1."""
         corner, point = corner_contact(contact, left), self.corner(left, line)
         state, mine = self.law_state(contact, left), self.of_corner(own, left)
-        level, speed = corner_level(line, left), corner_speed(line, left)
         per_rest, per_weight = 1.0 / self.rest, 1.0 / self.gravity
-        gap, gap_rate = (level - self.unloaded(left, own)) * per_rest, speed * per_rest
-        leave, leave_rate = -gap, -gap_rate
+        leave, leave_rate = self.level(left, line, own) * per_rest, point.speed * per_rest
         again, again_rate, reverse, reverse_rate = 1.0, 0.0, 1.0, 0.0
         reaction = self.law.force(state, point, mine) * per_weight
         change = self.law.force_rate(state, point, mine) * per_weight
@@ -248,13 +226,13 @@ class Pads(Base, PadNumbers):
         elif corner == ENGAGING:  # until it is pressed, only its height can take it off again
             reverse, reverse_rate = -reaction, -change
         elif corner == CLEAR:
-            leave, leave_rate = gap, gap_rate
+            leave, leave_rate = -leave, -leave_rate
         elif corner == RELAXING:  # the pad presses again at a positive force
             again, again_rate = -reaction, -change
         else:  # after its separation the pad must have let go before
             again, again_rate = reaction, change
             scale = 1.0 / (self.rest * self.frequency)
-            reverse, reverse_rate = scale * speed, -scale * point.acceleration
+            reverse, reverse_rate = -scale * point.speed, -scale * point.acceleration
         of_law = self.law.guards(state, point, mine)
         if corner != TOUCHING:
             of_law = Guards(constant(1.0, of_law.values), constant(0.0, of_law.changes))
@@ -305,7 +283,7 @@ class Pads(Base, PadNumbers):
             return EndEvent(self.with_corner(contact, left, RELAXING), SILENT, False)
         if corner == ENGAGING and which == REVERSE:
             return EndEvent(self.with_corner(contact, left, TOUCHING), SILENT, False)
-        was, other_speed = other, corner_speed(line, not left)
+        was, other_speed = other, -self.corner(not left, line).speed
         event, crossed = REENGAGEMENT, False
         if corner < RELAXING:
             # in a motion that is symmetric both reactions are the same, on either side of zero;
@@ -324,7 +302,7 @@ class Pads(Base, PadNumbers):
             if corner == CLEAR:
                 event, crossed = IMPACT, True
                 level = abs(self.level(not left, line, own))
-                falls = other_speed < 0.0 or other_speed == corner_speed(line, left)
+                falls = other_speed < 0.0 or other_speed == -self.corner(left, line).speed
                 if other == CLEAR and level <= SIMULTANEOUS * self.rest and falls:
                     other = TOUCHING
             if other == LEAVING:
@@ -433,14 +411,15 @@ class Pads(Base, PadNumbers):
         """Give the reactions of the left and of the right pad, and what their laws show."""
         left, _ = self.reaction_and_power(contact, True, line, own)
         right, _ = self.reaction_and_power(contact, False, line, own)
-        seen = self.seen(contact, True, line, own) + self.seen(contact, False, line, own)
-        return (left, right) + seen
-
-    @kernel
-    def seen(self, contact: int, left: bool, line: BaseLine, own: Any) -> Variables:
-        """Give what one law shows."""
-        state, point = self.state_if_touching(contact, left), self.corner(left, line)
-        return self.law.seen(state, point, self.of_corner(own, left))
+        on_left, on_right = (
+            self.state_if_touching(contact, True), self.state_if_touching(contact, False),
+        )  # fmt: skip
+        seen = self.law.seen(on_left, self.corner(True, line), self.of_corner(own, True))
+        return (
+            (left, right)
+            + seen
+            + self.law.seen(on_right, self.corner(False, line), self.of_corner(own, False))
+        )
 
 
 class ElasticPads(Pads):

@@ -26,7 +26,7 @@ from rockframe.dynamics.body import (
 from rockframe.dynamics.following import Path, Sizes, followed
 from rockframe.dynamics.on_base import Mode, OnBase
 from rockframe.dynamics.trigonometry import sine_cosine, versine
-from rockframe.many import asin
+from rockframe.many import asin, sqrt
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.link_rows import ChainLink
@@ -375,11 +375,6 @@ def uplift_rotation(link: StandingBody, press: float) -> float:
         contact = settled(link, rotation, press).mode.contact
         return base.is_held(contact, True) and base.is_held(contact, False)
 
-    def spare(rotation: float) -> float:
-        """Give how much lower the higher end is than where it parts, over the settlement."""
-        stand = settled(link, rotation, press)
-        return base.level(True, stand.line, stand.own) / link.settlement
-
     most = math.inf if body.small else 0.5 * math.pi
     if not body.small and is_full(most):
         return math.nan
@@ -388,7 +383,9 @@ def uplift_rotation(link: StandingBody, press: float) -> float:
     guess = guess if body.small else asin(min(guess, 1.0))
     last, left, slope = math.nan, math.nan, 1.0 / guess
     for _ in range(HALVINGS):
-        now = spare(guess)
+        stand = settled(link, guess, press)
+        # how much lower the higher end is than where it parts, over the settlement
+        now = base.level(True, stand.line, stand.own) / link.settlement
         if not abs(now) > ROUNDING or guess == last:
             break
         slope = (left - now) / (guess - last) if left > now or left < now else slope
@@ -404,3 +401,39 @@ def uplift_rotation(link: StandingBody, press: float) -> float:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if is_full(middle) else (low, middle)
     return high
+
+
+STEP: Final = 1e-3
+"""By which coordinates are moved, over the settlement and over the rotation that it allows;
+rates, over these times the rate of a vibration that settles as much."""
+STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+"""Steps to both sides, and weights of a first derivative that is exact to the fourth order."""
+PLACES: Final = ("rotation", "vertical")
+RATES: Final = ("angular_velocity", "vertical_velocity")
+
+
+def of_base(link: StandingBody, stand: Stand, name: str) -> tuple[float, float]:
+    """Give minus the change of a base's moment and force with a coordinate or rate of its body."""
+    body, base = link.part
+    step = step_of(link, name)
+    moment = upward = 0.0
+    for place, weight in STENCIL:
+        before, behind = (
+            base.force(stand.mode.contact, body.base_line_at(moved_by(stand, name, by)), stand.own)
+            for by in (place * step, -place * step)
+        )
+        moment -= weight / step * (before.moment - behind.moment)
+        upward -= weight / step * (before.upward - behind.upward)
+    return moment, upward
+
+
+def step_of(link: StandingBody, name: str) -> float:
+    """Give by how much a coordinate or rate is moved to see what the base answers."""
+    size = link.allowed_rotation if name in (PLACES[0], RATES[0]) else link.settlement
+    rate = sqrt(link.part.body.gravity / link.settlement) if name in RATES else 1.0
+    return STEP * size * rate
+
+
+def moved_by(stand: Stand, name: str, by: float) -> BodyState:
+    """Give a state with another coordinate or rate."""
+    return stand.state._replace(**{name: getattr(stand.state, name) + by})

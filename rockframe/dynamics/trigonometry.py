@@ -23,11 +23,17 @@ TO_WHOLE: Final = 6755399441055744.0
 
 
 @inlined
-def quarter_sine_cosine(x: float) -> tuple[float, float]:
-    """Give sine and cosine of an angle up to a quarter turn, either way [rad].
+def sine_cosine(angle: float) -> tuple[float, float]:
+    """Give sine and cosine of an angle [rad].
 
     The terms are added in pairs, so that few of them wait for another.
     """
+    sign, x = 1.0, angle
+    if abs(angle) > QUARTER_TURN:
+        turns = (angle * PER_HALF_TURN + TO_WHOLE) - TO_WHOLE
+        half = (0.5 * turns + TO_WHOLE) - TO_WHOLE
+        sign = 1.0 - 2.0 * abs(turns - 2.0 * half)
+        x = (angle - turns * HALF_TURN) - turns * REST_OF_HALF_TURN
     z = x * x
     w = z * z
     v = w * w
@@ -37,19 +43,6 @@ def quarter_sine_cosine(x: float) -> tuple[float, float]:
     low = (C2 + C3 * z) + w * (C4 + C5 * z)
     high = (C6 + C7 * z) + w * (C8 + C9 * z)
     cosine = 1.0 + z * (C1 + z * (low + v * (high + v * C10)))
-    return sine, cosine
-
-
-@inlined
-def sine_cosine(angle: float) -> tuple[float, float]:
-    """Give sine and cosine of an angle [rad]."""
-    sign, rest = 1.0, angle
-    if abs(angle) > QUARTER_TURN:
-        turns = (angle * PER_HALF_TURN + TO_WHOLE) - TO_WHOLE
-        half = (0.5 * turns + TO_WHOLE) - TO_WHOLE
-        sign = 1.0 - 2.0 * abs(turns - 2.0 * half)
-        rest = (angle - turns * HALF_TURN) - turns * REST_OF_HALF_TURN
-    sine, cosine = quarter_sine_cosine(rest)
     return sign * sine, sign * cosine
 
 

@@ -17,7 +17,7 @@ from rockframe.identification.fitting import (
 from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.identification.prediction import Prediction
 from rockframe.identification.unknowns import Circumstance
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import FitStatus
 from rockframe.signals.arrays import Array
 

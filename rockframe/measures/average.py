@@ -13,7 +13,7 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.units import PERIOD, QuantityLike, RatioLike
 
 _OWNER: Final = "average_spectral_acceleration"

@@ -14,9 +14,8 @@ from rockframe.arguments import one_of_words
 from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.signals import Signal
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from rockframe.motion.pair import HorizontalPair, axis_and_intensities
 from rockframe.motion.processing.samples import say_coarse
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.signals.arrays import Array
 from rockframe.signals.spectra import (
     check_cost,

@@ -14,9 +14,9 @@ from rockframe.measures.common import (
 )
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.signals.integrals import ground_path, transform_of
-from rockframe.signals.polynomials import knots_of
+from rockframe.signals.motion import knots_of
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 _PREFIX = {GroundComponent.HORIZONTAL: "", GroundComponent.VERTICAL: "vertical_"}

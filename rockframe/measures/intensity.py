@@ -13,7 +13,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import GroundComponent, component_of, read_inputs
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.signals import Signal
 from rockframe.signals.integrals import (
     HOUSNER_PERIODS,
@@ -28,7 +28,7 @@ from rockframe.signals.integrals import (
     standardized_absolute_velocity,
     time_between_shares,
 )
-from rockframe.signals.polynomials import greatest
+from rockframe.signals.motion import greatest
 from rockframe.signals.spectra import DAMPING_RATIO, check_cost
 from rockframe.units import ACCELERATION, POSITIVE, QuantityLike, RatioLike, to_ratio, to_si
 

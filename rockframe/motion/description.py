@@ -1,4 +1,4 @@
-"""A ground motion in plain values, and back; its name as people see it; as notebooks show it."""
+"""A ground motion from plain values; its name as people see it; as notebooks show it."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from rockframe.arguments import truth
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import SchemaError, nearest, shown
 from rockframe.motion.constructors.analytic import PULSES
 from rockframe.motion.value import Made, MotionValue
 from rockframe.notebook import card, curve
 from rockframe.signals import Motion, Signal
-from rockframe.signals.signal import VERTICAL
+from rockframe.signals.motion import VERTICAL
 
 _SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
 
@@ -74,44 +73,6 @@ OPERATIONS: Final = (
     "through_storeys",
 )
 """Operations that a recipe may name."""
-
-
-def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
-    """Describe the motion: an analytic one completely, a record by its digest.
-
-    Parameters
-    ----------
-    samples : bool
-        Whether a motion that only its samples describe is described by them too, with its
-        metadata and its history.
-
-    Returns
-    -------
-    dict
-        Plain values, fit for JSON: constructor and arguments of an analytic motion,
-        with the ``operations`` done to it since; ``constructor`` is None for a
-        motion that only its samples describe.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").to_dict()["constructor"]
-    'half_sine_pulse'
-    """
-    kind = {"type": type(motion).__name__}
-    if motion.recipe is not None:
-        return {**kind, **motion.recipe}
-    known = {**kind, "constructor": None, "name": motion.name, "sha256": motion.sha256}
-    if not truth(samples, owner=f"{type(motion).__name__}.to_dict", name="samples"):
-        return known
-    return {
-        **known,
-        "metadata": dict(motion.metadata),
-        "history": list(motion.history),
-        "time_step": motion.si.time_step,
-        "horizontal": _described(motion.si.horizontal),
-        "vertical": None if motion.si.vertical is None else _described(motion.si.vertical),
-    }
 
 
 def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
@@ -175,11 +136,6 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         msg = f"found arguments that do not fit {constructor} or what was done to it: {problem}"
         raise SchemaError(msg) from problem
     return motion
-
-
-def _described(signal: Signal) -> dict[str, list[Any]]:
-    arrays = {"samples": signal.samples, "polynomials": signal.polynomials}
-    return {name: array.tolist() for name, array in arrays.items() if array is not None}
 
 
 def _sampled(kind: type[Made], description: Mapping[str, Any]) -> Made:

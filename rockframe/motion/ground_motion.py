@@ -6,7 +6,7 @@ from functools import wraps
 from typing import TYPE_CHECKING
 
 from rockframe.errors import ArgumentError, ComponentError, shown
-from rockframe.motion import dataset, description
+from rockframe.motion import dataset, description, value
 from rockframe.motion.constructors import (
     analytic,
     records,
@@ -106,7 +106,7 @@ class GroundMotion(MotionValue):
     to_dataset = dataset.to_dataset
     from_dataset = classmethod(dataset.from_dataset)
     to_at2 = writing.to_at2
-    to_dict = description.to_dict
+    to_dict = value.to_dict
     from_dict = classmethod(description.from_dict)
 
     window = timing.window

@@ -15,7 +15,7 @@ import numpy as np
 from rockframe.errors import ComponentError
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
-from rockframe.signals.signal import MAXIMUM_SAMPLES
+from rockframe.signals.motion import MAXIMUM_SAMPLES
 
 Shape: TypeAlias = Callable[[Array, float], tuple[Array, Array, Array]]
 """Gives a, a' h and a'' h^2 [m s^-2] at some places, and for the step h between them.

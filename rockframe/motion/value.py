@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
-from rockframe.arguments import text
+from rockframe.arguments import text, truth
 from rockframe.errors import AccessError, ComponentError, shown
 from rockframe.motion.quantities import with_quantity
 from rockframe.proposals import Proposing, proposing
-from rockframe.signals import Motion
+from rockframe.signals import Motion, Signal
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.polynomials import greatest, knots_of
+from rockframe.signals.motion import greatest, knots_of
 from rockframe.units import ACCELERATION, LENGTH, TIME, VELOCITY, Quantity
 
 UNNAMED: Final = "unnamed motion"
@@ -199,3 +199,46 @@ class _Line(str):
 
     def __new__(cls, text: str) -> _Line:
         return text if isinstance(text, cls) else super().__new__(cls, _one_line(text))
+
+
+def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
+    """Describe the motion: an analytic one completely, a record by its digest.
+
+    Parameters
+    ----------
+    samples : bool
+        Whether a motion that only its samples describe is described by them too, with its
+        metadata and its history.
+
+    Returns
+    -------
+    dict
+        Plain values, fit for JSON: constructor and arguments of an analytic motion,
+        with the ``operations`` done to it since; ``constructor`` is None for a
+        motion that only its samples describe.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").to_dict()["constructor"]
+    'half_sine_pulse'
+    """
+    kind = {"type": type(motion).__name__}
+    if motion.recipe is not None:
+        return {**kind, **motion.recipe}
+    known = {**kind, "constructor": None, "name": motion.name, "sha256": motion.sha256}
+    if not truth(samples, owner=f"{type(motion).__name__}.to_dict", name="samples"):
+        return known
+    return {
+        **known,
+        "metadata": dict(motion.metadata),
+        "history": list(motion.history),
+        "time_step": motion.si.time_step,
+        "horizontal": _described(motion.si.horizontal),
+        "vertical": None if motion.si.vertical is None else _described(motion.si.vertical),
+    }
+
+
+def _described(signal: Signal) -> dict[str, list[Any]]:
+    arrays = {"samples": signal.samples, "polynomials": signal.polynomials}
+    return {name: array.tolist() for name, array in arrays.items() if array is not None}

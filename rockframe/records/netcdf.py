@@ -23,7 +23,7 @@ from rockframe.records.reader import Format, Record, Request, Source, StoredMoti
 from rockframe.records.unit_names import RecordUnit
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import OWNER, Array
-from rockframe.signals.signal import VERTICAL
+from rockframe.signals.motion import VERTICAL
 from rockframe.units import Unit
 
 LONG_NAMES: Final = {

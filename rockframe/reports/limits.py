@@ -19,7 +19,7 @@ class Limit:
 
 
 def _on_rigid_ground(parts: Parts) -> bool:
-    return parts.pads is None and parts.soil is None and not parts.own()
+    return parts.pads is None and parts.soil is None and not parts.own
 
 
 SLIDING: Final = "Sliding"
@@ -29,7 +29,7 @@ LIMITS: Final = (
         SLIDING,
         "The base does not slide while it presses. The verdict holds only where the friction is "
         "at least what it says is needed.",
-        lambda parts: not parts.own(),
+        lambda parts: not parts.own,
     ),
     Limit(
         "Deformation",

@@ -158,13 +158,11 @@ def _tops(known: Array) -> tuple[Array, Array]:
         bends = known[:, :-2] - 2.0 * known[:, 1:-1] + known[:, 2:]
     last = bends.shape[-1] - 1
 
-    def at(values: Array, place: Integers) -> Array:
-        return values[row, place]
-
-    a, b, c, most = (at(known, place) for place in (middle - 1, middle, middle + 1, largest))
+    a, b, c = known[row, middle - 1], known[row, middle], known[row, middle + 1]
     before, bend, after = (
-        at(bends, np.minimum(np.maximum(middle - k, 0), last)) for k in (2, 1, 0)
+        bends[row, np.minimum(np.maximum(middle - k, 0), last)] for k in (2, 1, 0)
     )
+    most = known[row, largest]
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = 0.5 * (c - a)
         beside = -slope / bend

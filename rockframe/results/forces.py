@@ -94,10 +94,6 @@ class EventStates:
     before: Values  # columns and what follows from them, by their names in the schema
     after: Values
 
-    def until(self, time: float) -> "EventStates":
-        """Give the events up to a time [s]."""
-        return self.those(self.time <= time)
-
     def those(self, kept: NDArray[np.bool_]) -> "EventStates":
         """Give some of the events."""
         before, after = (
@@ -123,10 +119,11 @@ def peaks_along(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Give peaks of forces, and how far the middle of the base went down from rest at most."""
     ((shear, most), (_, when)), ((deepest,), _) = along.each_largest(
-        _shear_and_demand, lambda values: _settlement(values, load)[None]
+        lambda values: np.stack([np.abs(values["base_shear"]), values["friction_demand"]]),
+        lambda values: _settlement(values, load)[None],
     )
     level = min(HALF * most, ENOUGH)
-    lasted = along.above(_demand, level)[1] if level > 0.0 else 0.0
+    lasted = along.above(lambda values: values["friction_demand"], level)[1] if level > 0.0 else 0.0
     impulses = events.impulses(load.body.mass)
     struck = friction_demand(
         impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], load.body.mass
@@ -139,14 +136,6 @@ def peaks_along(
         "peak_base_shear": float(shear),
     }
     return forces, {"peak_settlement": max(float(deepest), 0.0) + 0.0}
-
-
-def _demand(values: Values) -> Array:
-    return values["friction_demand"]
-
-
-def _shear_and_demand(values: Values) -> Array:
-    return np.stack([np.abs(values["base_shear"]), _demand(values)])
 
 
 def residuals(values: Values, load: BaseLoad) -> dict[str, float]:

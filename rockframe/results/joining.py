@@ -11,8 +11,7 @@ import xarray as xr
 from rockframe.arguments import checked_dataset, truth
 from rockframe.errors import SchemaError, shown
 from rockframe.proposals import hinted
-from rockframe.results.dataset import dated
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, dated
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
 

@@ -1,7 +1,7 @@
 """A finished run in plain values: what the dataset is built from."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -24,9 +24,9 @@ from rockframe.results.variables.bodies import OF_EACH_BODY, OF_EACH_LINK
 from rockframe.results.variables.runs import Direction
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
-from rockframe.solve.layout import Status
 from rockframe.solve.observe import energies_of, memory_at_outputs
 from rockframe.solve.trajectory import Summary, Trajectory
+from rockframe.solve.workspace import Status
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.setting import Setting, SlipRange
 from rockframe.system.words import angle_words
@@ -275,13 +275,10 @@ _ENDINGS = {
 }
 
 
-def verdict(
-    run: Summary, setting: Setting, *, end: float, of: str = "", broken: Sequence[str] = ()
-) -> str:
-    """Say in one sentence what became of the block, whose rotation was `end` at last [rad].
-
-    `of` tells which body of several it is, `broken` which restrainers broke.
-    """
+def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
+    """Say in one sentence what became of the block."""
+    of = " of body 1" if model.shows_bodies else ""
+    broken = [setting.link_names[i] for i in broken_links(model, run.ending)]
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
     nearest = peak_of(run, setting.overturning_angles)
     peak = (
@@ -293,7 +290,7 @@ def verdict(
     if run.other_share > (1.0 + SAME) * nearest.share:
         peak += f", a lower body {100.0 * run.other_share:.3g} % of its own"
     if run.passed:
-        text = f"{_overturned(run, setting, end)}, after {impacts}"
+        text = f"{_overturned(run, setting, model)}, after {impacts}"
     elif not run.status.finished:
         text = f"Not finished: {_cut_off(run)}. Until then no overturning: {peak}; {impacts}"
     else:
@@ -330,9 +327,10 @@ def _slid(slips: SlipRange) -> str:
     return text
 
 
-def _overturned(run: Summary, setting: Setting, end: float) -> str:
+def _overturned(run: Summary, setting: Setting, model: ContactModel) -> str:
     """Tell when the overturning angle was passed, and what came of it where the run went on."""
     angles, side = setting.overturning_angles, Direction(run.overturning_direction)
+    end = model.rotation_in(run.ending.state)
     when = f"to the {side.name.lower()} at {run.overturning_time:.3f} s"
     if run.status is Status.TOPPLED:
         last = Direction.RIGHT if end > 0.0 else Direction.LEFT

@@ -1,4 +1,4 @@
 """Ground motions in numbers: integrals, durations, oscillators, transforms; SI arrays only."""
 
 from rockframe.signals.motion import Motion as Motion
-from rockframe.signals.signal import Signal as Signal
+from rockframe.signals.motion import Signal as Signal

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from rockframe.signals.arrays import Array
+from rockframe.signals.motion import divided, knots_of, slopes_of
 from rockframe.signals.oscillator import (
     QUANTITIES,
     STEPS_PER_PERIOD,
     fill_step,
     turning_value,
 )
-from rockframe.signals.polynomials import divided, knots_of, slopes_of
 
 Rows: TypeAlias = NDArray[np.intp]
 

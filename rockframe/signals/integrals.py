@@ -11,8 +11,14 @@ import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
-from rockframe.signals.polynomials import integral_of, knots_of, roots_of, turning_points
-from rockframe.signals.signal import MAXIMUM_SAMPLES, Signal
+from rockframe.signals.motion import (
+    MAXIMUM_SAMPLES,
+    Signal,
+    integral_of,
+    knots_of,
+    roots_of,
+    turning_points,
+)
 from rockframe.signals.spectra import spectral_peaks
 
 

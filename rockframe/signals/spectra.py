@@ -7,9 +7,8 @@ import numpy as np
 from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError
 from rockframe.signals.arrays import Array
+from rockframe.signals.motion import Signal, greatest
 from rockframe.signals.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all, march_pairs
-from rockframe.signals.polynomials import greatest
-from rockframe.signals.signal import Signal
 from rockframe.units import Condition
 
 DAMPING_RATIO: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)

@@ -11,7 +11,6 @@ from rockframe.dynamics.protocol import BODY_FORCES, column_of
 from rockframe.errors import or_missing
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
-from rockframe.results.dataset import fitting
 from rockframe.results.diagnostics import Diagnostic
 from rockframe.results.forces import (
     OF_SETTLEMENT,
@@ -36,17 +35,16 @@ from rockframe.results.outcome import (
     without_gravity,
 )
 from rockframe.results.points import point_histories, point_labels, point_peaks
-from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA
+from rockframe.results.schema import ENERGIES, ON_REQUEST, SCHEMA, fitting
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.signals.arrays import Array
 from rockframe.signals.motion import Slope
-from rockframe.simulation.friction import SlidingCheck, sliding_scalars, slidings
 from rockframe.simulation.plan import Plan
+from rockframe.simulation.soundness import SlidingCheck, sliding_scalars, slidings
 from rockframe.solve.observe import memory_at_outputs, observe_run, observe_states
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
-from rockframe.system.setting import Setting
 
 OF_SLIPS: Final = (SLIP, REVERSAL, STICK)
 """Events by which a base that could not be held any longer slips, and holds again."""
@@ -76,20 +74,18 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 
 def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
     """Give what the samples of a run tell: histories, if they are kept, peaks and points."""
-    setting, load, count = system.setting, system.setting.load, len(run.time)
-    columns, shown_at, ground, moved = _everything_of(system, plan, run)
-    values = {name: each[:count] for name, each in shown_at.items()}
+    setting, load = system.setting, system.setting.load
+    columns, values, events, ground, moved = _everything_of(system, plan, run)
     # energies are worked out apart; what else is no column may follow from columns
     if _everything(plan) or set(plan.requested).difference(values, ENERGIES):
-        values |= force_histories(values, moved[:count], load)
+        values |= force_histories(values, moved, load)
     values |= contact_histories(system.model, run)
     values |= cap_histories(values, setting)
     values = body_histories(system.model, run, values)
     values |= relative_histories(values, setting)
     vertical = plan.motion is not None and plan.motion.si.vertical is not None
-    values |= ground_histories(ground[:count], has_vertical_motion=vertical)
+    values |= ground_histories(ground, has_vertical_motion=vertical)
     values["time"] = run.time
-    events = _events_in(shown_at, run, setting)
     along, upright = _along(system, plan, run, columns, events), events
     if not along.steps.complete:
         missing.append(
@@ -97,7 +93,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
             "made more steps than are kept"
         )
     if run.overturning_time <= run.end_time:  # how a block falls is another matter
-        upright = events.until(run.overturning_time)
+        upright = events.those(events.time <= run.overturning_time)
     found = slidings(system, along)
     of_forces, of_settlement = peaks_along(along, upright, load)
     scalars: dict[str, Generic | float] = {
@@ -125,7 +121,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         scalars |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
         everything |= {name: each for name, each in own.items() if SCHEMA[name].dims}
     for one in plan.diagnostics:
-        state = _state_of(values, run.time, ground[:count])
+        state = _state_of(values, run.time, ground)
         history_and_peak = or_missing(
             lambda one=one, state=state: (one.of(state), _peak_of(one, along)),
             None, f"the diagnostic {one.name!r}", missing,
@@ -180,41 +176,30 @@ def _energies(
 
 def _everything_of(
     system: Assembly, plan: Plan, run: Trajectory
-) -> tuple[dict[str, Generic], dict[str, Generic], Array, Array]:
-    """Give what the model shows along the steps, and at samples, then before and after all events.
+) -> tuple[dict[str, Generic], dict[str, Generic], EventStates, Array, Array]:
+    """Give what the model shows along the steps, at samples, and on both sides of events.
 
-    With the latter, the ground's acceleration there as it was given, and along and normal to the
+    With it, the ground's acceleration at the samples as it was given, and along and normal to the
     base.
     """
-    events, slope = run.events, system.options.slope
+    events, slope, count = run.events, system.options.slope, len(run.time)
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
     moved, resolved = ground_on_slope(ground, slope)
-    names = None if _everything(plan) else _peaked(system)
+    names: tuple[str, ...] | None = None
+    if not _everything(plan):  # those whose peaks are told
+        names = BODY_FORCES + OF_SETTLEMENT + forces_of_links(system.model.links)
+        names += OF_SOIL_FRICTION if system.setting.stacked else ()
+        if system.model.shows_bodies:
+            names += rotations_of(system.model.system.bodies())
     along, shown = observe_run(system.model, run, names, resolved)
-    return along, without_gravity(shown, slope), ground, moved
-
-
-def _peaked(system: Assembly) -> tuple[str, ...]:
-    """Name the columns whose peaks are told."""
-    names = BODY_FORCES + OF_SETTLEMENT
-    if system.setting.stacked:
-        names += OF_SOIL_FRICTION
-    if system.model.shows_bodies:
-        names += rotations_of(system.model.system.bodies())
-    return names + forces_of_links(system.model.links)
-
-
-def _shown(
-    system: Assembly,
-    mode: Integers,
-    state: Array,
-    memory: Array,
-    memory_row: Integers,
-    ground: Array,
-) -> dict[str, Generic]:
-    """Give what the model shows in some states, on ground as the equations take it."""
-    shown = observe_states(system.model, mode, state, memory, memory_row, ground)
-    return without_gravity(shown, system.options.slope)
+    shown, last = without_gravity(shown, slope), count + len(events.time)
+    values, before, after = (
+        {name: each[part] for name, each in shown.items()}
+        for part in (slice(count), slice(count, last), slice(last, None))
+    )
+    is_impact = (events.kind == IMPACT) & system.setting.struck_by_base
+    states = EventStates(events.time, is_impact, before, after)
+    return along, values, states, ground[:count], moved[:count]
 
 
 def _along(
@@ -253,14 +238,10 @@ def _along(
         time = time.ravel()
         ground = ground_at(plan.motion, time)
         moved, resolved = ground_on_slope(ground, slope)
-        found = _shown(
-            system,
-            np.repeat(steps.mode[which], places),
-            states.reshape(-1, states.shape[-1]),
-            memory,
-            np.repeat(steps.memory_row[which], places),
-            resolved,
-        )
+        modes, rows = (np.repeat(of[which], places) for of in (steps.mode, steps.memory_row))
+        states = states.reshape(-1, states.shape[-1])
+        found = observe_states(system.model, modes, states, memory, rows, resolved)
+        found = without_gravity(found, slope)
         if not _everything(plan):
             return found | friction_demands(found, load)
         found |= force_histories(found, moved, load)
@@ -317,12 +298,3 @@ def _level(moved: Array, slope: Slope) -> Array:
     """Give horizontal and vertical components of those along and normal to the base."""
     back = replace(slope, inclination=-slope.inclination)
     return np.column_stack(back.turned(moved[:, 0], moved[:, 1]))
-
-
-def _events_in(shown_at: dict[str, Generic], run: Trajectory, setting: Setting) -> EventStates:
-    """Take what the model shows on both sides of events."""
-    first, count = len(run.time), len(run.events.time)
-    before = {name: each[first : first + count] for name, each in shown_at.items()}
-    after = {name: each[first + count :] for name, each in shown_at.items()}
-    is_impact = (run.events.kind == IMPACT) & setting.struck_by_base
-    return EventStates(run.events.time, is_impact, before, after)

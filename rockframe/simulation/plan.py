@@ -9,14 +9,14 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any, Final, TypeAlias, Unpack, cast
+from typing import Any, Final, Literal, TypeAlias, Unpack, cast
 
 import numpy as np
 import xarray as xr
 
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
-from rockframe.errors import AssemblyError, RockframeError, nearest, shown
+from rockframe.errors import AssemblyError, ComponentError, RockframeError, nearest, shown
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic
 from rockframe.results.forces import OF_SOIL_FRICTION
@@ -25,8 +25,8 @@ from rockframe.results.points import BodyPoint
 from rockframe.results.schema import ENERGIES, GROUPS, ON_REQUEST, SCHEMA, SCHEMA_VERSION
 from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.variable import TIME as OVER_TIME
-from rockframe.simulation.friction import has_limit
-from rockframe.simulation.run_arguments import RunArguments
+from rockframe.simulation.run_arguments import PROVED, Certification, RunArguments
+from rockframe.simulation.soundness import has_limit
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
@@ -136,7 +136,8 @@ def points_of(
     return tuple(points)
 
 
-_ATTRIBUTE = "end_state"
+END_STATE: Final = "end_state"
+"""The attribute that holds the end of a run, so that a later run can begin with it."""
 
 
 Beginning: TypeAlias = InitialState | Ending
@@ -151,22 +152,10 @@ def start_of(beginning: Beginning) -> Start | Ending:
     return Start(si.rotation, si.angular_velocity, si.vertical_displacement, si.vertical_velocity)
 
 
-def beginning_to_dict(beginning: Beginning) -> dict[str, Any]:
-    """Give a beginning as plain values, fit for JSON."""
-    if isinstance(beginning, Ending):
-        return {"type": "Continuation", "ending": _as_json(beginning)}
-    return beginning.to_dict()
-
-
-def end_attributes(ending: Ending) -> dict[str, str]:
-    """Give the end of a run as an attribute that a later run can begin with."""
-    return {_ATTRIBUTE: json.dumps(_as_json(ending))}
-
-
 def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
     """Read where a run ended, or note why none can go on from there."""
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
-    if _ATTRIBUTE not in attributes or "system_json" not in attributes:
+    if END_STATE not in attributes or "system_json" not in attributes:
         faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")
         return InitialState()
     if attributes.get("schema_version") != SCHEMA_VERSION:
@@ -174,7 +163,7 @@ def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) ->
             f"initial is the end of a run of rockframe {attributes.get('rockframe_version')}, "
             "which kept states in another way; run it again"
         )
-    stored: dict[str, Any] = json.loads(attributes[_ATTRIBUTE])
+    stored: dict[str, Any] = json.loads(attributes[END_STATE])
     ending = Ending(
         stored["mode"],
         np.array(stored["state"], dtype=np.float64),
@@ -195,7 +184,8 @@ def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
     return within and "status" in dataset and verdict_of(dataset) is False
 
 
-def _as_json(ending: Ending) -> dict[str, Any]:
+def ending_as_json(ending: Ending) -> dict[str, Any]:
+    """Give the end of a run as plain values."""
     return {
         "mode": ending.mode,
         "state": ending.state.tolist(),
@@ -282,7 +272,12 @@ class Plan(_Requested):
 
     def to_json(self) -> str:
         """Give the plan as JSON, without the motion."""
-        own = {"duration": _time(self.duration), "initial": beginning_to_dict(self.initial)}
+        initial = (
+            {"type": "Continuation", "ending": ending_as_json(self.initial)}
+            if isinstance(self.initial, Ending)
+            else self.initial.to_dict()
+        )
+        own = {"duration": _time(self.duration), "initial": initial}
         return json.dumps({**own, **self._described()})
 
 
@@ -294,7 +289,9 @@ def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunA
     """Check the arguments of a run against the system and one another."""
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
-    _check_motion(motion)
+    if not isinstance(motion, GroundMotion | None):  # pyright: ignore[reportUnnecessaryIsInstance]
+        fault = f"motion must be a GroundMotion, got {shown(motion)}{_motion_hint(motion)}"
+        raise AssemblyError([fault])
     arguments = read_arguments(faults, **asked)
     plan = fit_plan(arguments, system, motion, faults)
     if faults:
@@ -373,12 +370,6 @@ def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
     return _REST
 
 
-def _check_motion(given: object) -> None:
-    if given is not None and not isinstance(given, GroundMotion):
-        fault = f"motion must be a GroundMotion, got {shown(given)}{_motion_hint(given)}"
-        raise AssemblyError([fault])
-
-
 def _motion_hint(given: object) -> str:
     """Say how a motion is had from what was given, if that is known."""
     if isinstance(given, str | PathLike):
@@ -414,3 +405,18 @@ def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:
     if arguments.duration is not None:
         return arguments.duration
     return (0.0 if motion is None else motion.si.duration) + (arguments.free_vibration or 0.0)
+
+
+def certification_of(given: object) -> Certification | Literal["proved"] | None:
+    """Read the argument ``certify`` of a run."""
+    if given is False:
+        return None
+    if isinstance(given, str) and given == PROVED:
+        return PROVED
+    if given is True:
+        return Certification()
+    if isinstance(given, Certification):
+        return given
+    wanted = f"True, False, {PROVED!r} or a Certification(...)"
+    msg = f"simulate: certify must be {wanted}, got {shown(given)}"
+    raise ComponentError(msg)

@@ -12,11 +12,11 @@ from rockframe.proposals import hinted
 from rockframe.results.diagnostics import DIAGNOSTICS, Diagnostic, add_diagnostic
 from rockframe.results.schema import GROUPS, SCHEMA
 from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.system.assembly import add_scene, twin_of
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnAnswers, OwnBase
 from rockframe.system.own_scene import OwnScene
 from rockframe.system.parts import SHIPPED, add_base, add_link, add_part, slot_of_kind
-from rockframe.system.scenes import add_scene, twin_of
 from rockframe.units import Unit
 
 _OWNER: Final = "register"

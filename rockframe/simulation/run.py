@@ -1,5 +1,6 @@
 """One run: the integration and the dataset."""
 
+import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -12,7 +13,6 @@ import xarray as xr
 from rockframe.compiled import compiling_for
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, or_missing, warn
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import (
     Generic,
     broken_links,
@@ -23,15 +23,13 @@ from rockframe.results.outcome import (
     slope_attributes,
     verdict,
 )
-from rockframe.results.schema import schema_row
+from rockframe.results.schema import build_dataset, schema_row
 from rockframe.results.variables.runs import Direction
-from rockframe.signals import Motion
 from rockframe.simulation.answers import Answers, answers_of, ground_at
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look
-from rockframe.simulation.friction import friction_words, slips
-from rockframe.simulation.plan import Plan, end_attributes, start_of
+from rockframe.simulation.plan import END_STATE, Plan, ending_as_json, start_of
 from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.proving import proof_of
 from rockframe.simulation.run_arguments import PROVED, Certification
@@ -40,7 +38,9 @@ from rockframe.simulation.soundness import (
     STILL_MOVING,
     Uniqueness,
     doubtful_residual,
+    friction_words,
     may_overturn_later,
+    slips,
     unbalanced,
     uniqueness_of,
 )
@@ -66,14 +66,6 @@ TENSION: Final = 1e-9
 
 Caution: TypeAlias = tuple[type[RockframeWarning], str]
 """A warning's kind and text."""
-
-
-def base_motion(system: Assembly, plan: Plan) -> Motion | None:
-    """Give the motion as the integrator takes it: on a slope along and normal to the base."""
-    motion, slope = None if plan.motion is None else plan.motion.si, system.options.slope
-    if slope.level:
-        return motion
-    return slope.resolved(motion, duration=plan.duration, interval=STILL_INTERVAL)
 
 
 @dataclass(frozen=True)
@@ -136,10 +128,11 @@ class Response:
         )  # fmt: skip
         others = [
             or_missing(
-                lambda: [
-                    *_lost_weight(self.system, plan.motion),
-                    *_pulling(self.system, self.answers.values, summary.overturning_time),
-                ],
+                lambda: list(
+                    _leaving(
+                        self.system, plan.motion, self.answers.values, summary.overturning_time
+                    )
+                ),
                 [], _LEAVING, missing,
             ),
             or_missing(
@@ -149,7 +142,11 @@ class Response:
         ]  # fmt: skip
         _ = self.scalars  # what is missing of them is said, too
         return [
-            *([] if summary.status.finished else [(SolverWarning, _verdict(self.system, summary))]),
+            *(
+                []
+                if summary.status.finished
+                else [(SolverWarning, verdict(summary, setting, self.system.model))]
+            ),
             *((SolverWarning, text) for text in moving),
             *([] if audit is None else [(SolverWarning, audit)]),
             *((ModelWarning, text) for text in (self.uniqueness or NOT_LOOKED_AT).cautions),
@@ -191,7 +188,7 @@ def run(
     response = respond(system, plan)
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)
-    attributes |= end_attributes(summary.ending)
+    attributes[END_STATE] = json.dumps(ending_as_json(summary.ending))
     if response.uniqueness is not None:
         attributes |= response.uniqueness.attributes()
     if summary.status.finished and not system.setting.slides:
@@ -268,9 +265,12 @@ def respond(system: Assembly, plan: Plan) -> Response:
     output_step = plan.duration if sampled and not plan.histories else plan.output_step
     missing: list[str] = []
     answers = Answers()
+    motion, slope = None if plan.motion is None else plan.motion.si, system.options.slope
+    if not slope.level:  # along and normal to the base
+        motion = slope.resolved(motion, duration=plan.duration, interval=STILL_INTERVAL)
     with compiling_for(f"a run ({system.setting.model})"):
         trajectory = integrate(
-            system.model, start_of(plan.initial), base_motion(system, plan), plan.accuracy,
+            system.model, start_of(plan.initial), motion, plan.accuracy,
             duration=plan.duration, output_step=output_step,
             stop_at_overturning=plan.stop_at_overturning, with_work=bool(plan.energies),
             keep_steps=sampled,
@@ -288,7 +288,7 @@ def _attributes(
     description = or_missing(lambda: system.description, "", "the words of the model", missing)
     coupling = {"coupling": str(system.options.coupling)} if system.scene.coupling else {}
     return {
-        "verdict": _verdict(system, summary),
+        "verdict": verdict(summary, system.setting, system.model),
         "overturned": int(summary.passed),
         "overturning_time": summary.overturning_time,
         "overturning_direction": Direction(summary.overturning_direction).name.lower(),
@@ -316,35 +316,24 @@ def has_no_cautions(system: Assembly, summary: Summary) -> bool:
     return summary.status.finished and summary.energy_residual <= doubtful_residual(system)
 
 
-def _verdict(system: Assembly, summary: Summary) -> str:
-    setting, ending = system.setting, summary.ending
-    return verdict(
-        summary,
-        setting,
-        end=system.model.rotation_in(ending.state),
-        of=" of body 1" if system.model.shows_bodies else "",
-        broken=[setting.link_names[i] for i in broken_links(system.model, ending)],
-    )
-
-
-def _lost_weight(system: Assembly, motion: GroundMotion | None) -> Iterator[Caution]:
-    slope = system.options.slope
-    if system.setting.flies or motion is None:
-        return
-    if slope.level and motion.si.vertical is None:
-        return
-    moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
-    lowest = float(np.min(moved[:, 1]))
-    if lowest < -slope.normal_gravity:
-        which = "vertical" if slope.level else "normal"
-        found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
-        yield ModelWarning, f"{found}: {_LEAVES}"
-
-
-def _pulling(
-    system: Assembly, values: Mapping[str, Generic], overturning_time: float
+def _leaving(
+    system: Assembly,
+    motion: GroundMotion | None,
+    values: Mapping[str, Generic],
+    overturning_time: float,
 ) -> Iterator[Caution]:
-    if system.setting.flies or "left_reaction" not in values:
+    """Warn of a block that would leave ground which the equations do not let it leave."""
+    slope = system.options.slope
+    if system.setting.flies:
+        return
+    if motion is not None and not (slope.level and motion.si.vertical is None):
+        moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
+        lowest = float(np.min(moved[:, 1]))
+        if lowest < -slope.normal_gravity:
+            which = "vertical" if slope.level else "normal"
+            found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
+            yield ModelWarning, f"{found}: {_LEAVES}"
+    if "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # how a block falls is another matter
     reaction = (values["left_reaction"] + values["right_reaction"])[stands]

@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Final, Literal, TypeAlias, TypedDict
+from typing import Annotated, Final, TypeAlias, TypedDict
 
 import xarray as xr
 
 from rockframe.arguments import whole_number
 from rockframe.components import InitialState
-from rockframe.errors import ComponentError, shown
 from rockframe.proposals import proposing
 from rockframe.shared_arguments import Argument
 from rockframe.solve.accuracy import AccuracyLevel
@@ -164,18 +163,3 @@ class Certification:
 
 PROVED: Final = "proved"
 """In the place of what a certificate tries: that the verdict is to be proved."""
-
-
-def certification_of(given: object) -> Certification | Literal["proved"] | None:
-    """Read the argument ``certify`` of a run."""
-    if given is False:
-        return None
-    if isinstance(given, str) and given == PROVED:
-        return PROVED
-    if given is True:
-        return Certification()
-    if isinstance(given, Certification):
-        return given
-    wanted = f"True, False, {PROVED!r} or a Certification(...)"
-    msg = f"simulate: certify must be {wanted}, got {shown(given)}"
-    raise ComponentError(msg)

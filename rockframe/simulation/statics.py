@@ -8,9 +8,8 @@ import xarray as xr
 
 from rockframe.dynamics.events import ContactState
 from rockframe.errors import AssemblyError, ComponentError, shown
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, slope_attributes
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.system.assembly import Assembly
 from rockframe.system.small_motion import modes_of
 from rockframe.units import ANGLE, to_si_values

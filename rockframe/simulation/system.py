@@ -104,7 +104,7 @@ class System(SystemValue):
             parts, restraint=restraint, rotation=rotation, coupling=coupling, gravity=gravity,
             inclination=inclination, sliding=sliding,
         )  # fmt: skip
-        super().__init__(assembly)
+        self._assembly = assembly
         for caution in assembly.doubts:
             warn(caution, ModelWarning)
 
@@ -208,9 +208,8 @@ class System(SystemValue):
         >>> f"{float(run.peak_relative_rotation):.2f}, overturned: {bool(run.overturned)}"
         '0.28, overturned: False'
         """
-        from rockframe.simulation.plan import plan_run
+        from rockframe.simulation.plan import certification_of, plan_run
         from rockframe.simulation.run import run
-        from rockframe.simulation.run_arguments import certification_of
 
         plan = plan_run(
             self._assembly,

@@ -2,10 +2,9 @@
 
 from rockframe.motion import GroundMotion
 from rockframe.proposals import Proposing, proposing
-from rockframe.system.assembly import Assembly
+from rockframe.system.assembly import Assembly, Scene
 from rockframe.system.options import Coupling, Options, Restraint, Rotation, Sliding
 from rockframe.system.parts import Parts
-from rockframe.system.scenes import Scene
 from rockframe.system.setting import Setting
 from rockframe.units import ACCELERATION, ANGLE, Quantity, quantity
 
@@ -16,8 +15,7 @@ class SystemValue(metaclass=Proposing):
 
     __slots__ = ("_assembly",)
 
-    def __init__(self, assembly: Assembly) -> None:
-        self._assembly = assembly
+    _assembly: Assembly
 
     @property
     def assembly(self) -> Assembly:
@@ -88,7 +86,7 @@ class SystemValue(metaclass=Proposing):
         return hash(self._assembly)
 
     def __repr__(self) -> str:
-        parts = ", ".join(repr(part) for part in self.parts.present())
+        parts = ", ".join(repr(part) for part in self.parts)
         coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
         given = self.options.to_dict()
         others = "".join(

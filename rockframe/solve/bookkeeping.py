@@ -13,12 +13,13 @@ from rockframe.dynamics.protocol import (
     IMPULSIVE_INPUT,
     LINK_LOSS,
     REPINNING_LOSS,
+    Energies,
     Ground,
 )
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.crossings import extremum, interpolate
-from rockframe.solve.equations import BoundEquations, KnownMode, energies_at, slope_at
-from rockframe.solve.march import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, rotation_in_row
+from rockframe.solve.equations import BoundEquations, KnownMode
+from rockframe.solve.march import LEFT_LIMIT, RIGHT_LIMIT, WEIGHTS, rotation_in_step
 from rockframe.solve.workspace import (
     EventTable,
     Output,
@@ -51,8 +52,11 @@ def audit(
     The largest term is that of what moves: the elastic energy at rest, and the gravity energy
     that it takes over, say nothing of a quiet run.
     """
-    energies = energies_at(equations, mode, w.state, w.answers)
+    equations.stored.call(mode, w.state, w.answers, equations.numbers)
+    energies = Energies(w.answers[0], w.answers[1], w.answers[2], w.answers[3])
     stored = energies.gravity + energies.from_rest
+    if math.isnan(clock[at.START_ENERGY]):
+        clock[at.START_ENERGY] = energies.kinetic + energies.gravity + energies.from_rest
     lost = clock[at.DISSIPATED] + memory[IMPACT_LOSS] + memory[REPINNING_LOSS] + memory[LINK_LOSS]
     supplied = clock[at.SUPPLIED] + memory[IMPULSIVE_INPUT]
     balance = energies.kinetic + stored + lost - supplied - clock[at.START_ENERGY]
@@ -81,7 +85,8 @@ def work_between(
     for i in range(len(GAUSS_POINTS)):
         fraction = start + GAUSS_POINTS[i] * (end - start)
         interpolate(equations, count, fraction, span.h, w)
-        slope_at(equations, mode, w.scratch, ground_in(fraction, span, w.ground), w.powers)
+        ground = ground_in(fraction, span, w.ground)
+        equations.slope.call(mode, w.scratch, ground.x, ground.y, w.powers, equations.numbers)
         weight = GAUSS_WEIGHTS[i] * (end - start) * span.h
         dissipated += weight * w.powers[powers]
         supplied += weight * w.powers[powers + 1]
@@ -173,9 +178,9 @@ def peaks_in_step(
     row: int, size: int, count: int, h: float, left: float, right: float, w: Workspace
 ) -> tuple[float, float]:
     """Raise the peaks of a rotation to both sides, by the place of its limits."""
-    rotation = rotation_in_row(row, size, w.limits, w.state, w.new)
+    rotation = rotation_in_step(row, size, w.limits, w.state, w.new)
     peaks = rotation.may_peak(h, left, right)
-    left, right = max(left, rotation.largest_left()), max(right, rotation.largest_right())
+    left, right = max(left, rotation.left), max(right, rotation.right)
     if peaks:
         a0 = a1 = 0.0
         for i in range(count):
@@ -193,7 +198,7 @@ def peaks_in_step(
 def reach_limit(time: float, size: int, progress: Progress, w: Workspace) -> tuple[int, int]:
     """Mark overturning, or the fall that ends a run; give the event's kind and a status."""
     clock = progress.clock
-    if clock[at.OVERTURNING_TIME] >= 0.0:
+    if not math.isnan(clock[at.OVERTURNING_TIME]):
         return TOPPLED, at.FELL
     rotation = 0.0
     for i in range(size):
@@ -235,7 +240,7 @@ def record_event(
         counters[at.IMPACTS] += 1
     if after.contact == FLIGHT and before.contact != FLIGHT:
         counters[at.FLIGHTS] += 1
-    if after.contact != FULL and clock[at.FIRST_UPLIFT] < 0.0:
+    if after.contact != FULL and math.isnan(clock[at.FIRST_UPLIFT]):
         clock[at.FIRST_UPLIFT] = time
     close = time - clock[at.EVENT_TIME] <= progress.controls[at.CHATTER_TIME]
     counters[at.CLOSE_EVENTS] = counters[at.CLOSE_EVENTS] + 1 if close else 0

@@ -9,9 +9,9 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, kernel
-from rockframe.solve.equations import BoundEquations, write_guards
+from rockframe.solve.equations import BoundEquations
 from rockframe.solve.march import DIP_MARGIN, may_dip
-from rockframe.solve.workspace import Span, Workspace
+from rockframe.solve.workspace import Span, Workspace, ground_in
 
 
 @kernel
@@ -195,7 +195,10 @@ def _guard_inside(
 ) -> float:
     """Give a guard's value at a fraction of the step, from the dense solution."""
     interpolate(equations, count, fraction, span.h, w)
-    write_guards(equations, mode, w.scratch, w.scratch_rates, fraction, span, w.inside, w)
+    ground = ground_in(fraction, span, w.ground)
+    equations.guarding.call(
+        mode, w.scratch, w.scratch_rates, ground.x, ground.y, w.limits, w.inside, equations.numbers
+    )
     return w.inside[which]
 
 

@@ -8,10 +8,10 @@ of room in the event table and entered again.
 import math
 from typing import Final
 
-from rockframe.compiled import Integers, Vector, entry_at_once, inlined, kernel
+from rockframe.compiled import Vector, entry_at_once, inlined, kernel
 from rockframe.dynamics.events import FLIGHT
 from rockframe.dynamics.protocol import LAST_EVENT, POWERS, Ground
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.bookkeeping import (
     ON_SAMPLE,
     accept,
@@ -25,10 +25,7 @@ from rockframe.solve.crossings import earliest_crossing
 from rockframe.solve.equations import (
     BoundEquations,
     KnownMode,
-    energies_at,
     known_mode,
-    slope_at,
-    write_guards,
 )
 from rockframe.solve.march import (
     AT_END,
@@ -68,23 +65,6 @@ ROUNDING: Final = 1e-15
 """Share of the time so far below which such a correction is rounding."""
 TIME_NOISE: Final = 8.0 * ROUNDING
 """Share of the time so far by which an event may be misplaced."""
-FIXED_STEPS: Final = 0.0
-"""Stands for the tolerance of a run with fixed sub-steps."""
-
-
-@kernel
-def broken_guard(tolerance: Vector, now: float, w: Workspace) -> int:
-    """Give a guard that a mode breaks from its start, or -1.
-
-    One that rises may lie below zero by what it changes within the rounding of time.
-    """
-    guards = len(tolerance)
-    for i in range(guards):
-        rounding, rate = tolerance[i], w.before[guards + i]
-        noise = rounding + TIME_NOISE * now * abs(rate)
-        if w.before[i] < -noise or (w.before[i] <= rounding and rate < 0.0):
-            return i
-    return -1
 
 
 @inlined
@@ -95,14 +75,27 @@ def time_of(progress: Progress) -> float:
 
 
 @kernel
-def look_ahead(equations: BoundEquations, mode: int, progress: Progress, w: Workspace) -> None:
-    """Evaluate accelerations and guards anew, after a switch or a jump of the ground."""
-    clock, here = progress.clock, span_of(0.0, progress)
-    ground = ground_in(0.0, here, w.ground)
-    clock[at.GROUND_X] = ground.x
-    clock[at.GROUND_Y] = ground.y
-    slope_at(equations, mode, w.state, ground, w.first)
-    write_guards(equations, mode, w.state, w.first, 0.0, here, w.before, w)
+def look_ahead(
+    equations: BoundEquations, mode: int, tolerance: Vector, progress: Progress, w: Workspace
+) -> int:
+    """Evaluate accelerations and guards anew, after a switch or a jump of the ground.
+
+    Gives a guard that the mode breaks from its start, or -1. One that rises may lie below zero by
+    what it changes within the rounding of time.
+    """
+    clock, guards = progress.clock, len(tolerance)
+    ground = ground_in(0.0, span_of(0.0, progress), w.ground)
+    clock[at.GROUND_X], clock[at.GROUND_Y] = ground.x, ground.y
+    equations.slope.call(mode, w.state, ground.x, ground.y, w.first, equations.numbers)
+    equations.guarding.call(
+        mode, w.state, w.first, ground.x, ground.y, w.limits, w.before, equations.numbers
+    )
+    for i in range(guards):
+        rounding, rate = tolerance[i], w.before[guards + i]
+        noise = rounding + TIME_NOISE * time_of(progress) * abs(rate)
+        if w.before[i] < -noise or (w.before[i] <= rounding and rate < 0.0):
+            return i
+    return -1
 
 
 @inlined
@@ -228,15 +221,6 @@ def carry_out(
     return after, max(status, chatter)
 
 
-@inlined
-def next_output(controls: Vector, counters: Integers, output: Output) -> float:
-    """Give the time from which on a step's end has an output to store."""
-    row = counters[at.OUTPUTS]
-    if row >= len(output.mode):
-        return math.inf
-    return (row - ON_SAMPLE) * controls[at.OUTPUT_STEP]
-
-
 @kernel
 def keep_start(mode: int, progress: Progress, steps: StepTable, w: Workspace) -> None:
     """Keep where steps start anew, in place of a start from which no step was made."""
@@ -265,15 +249,13 @@ def run_on(
     controls, clock, counters = progress.controls, progress.clock, progress.counters
     known = known_mode(equations, counters[at.MODE], w.answers)
     if math.isnan(clock[at.START_ENERGY]):
-        start = energies_at(equations, known.mode, w.state, w.answers)
-        clock[at.START_ENERGY] = start.kinetic + start.gravity + start.from_rest
         audit(equations, known.mode, memory, clock, w)
     home, half = w, 0
     counters[at.HALF] = 0
     index = counters[at.INTERVAL]
     counters[at.DEGREE_X] = load_interval(index, pieces.x, 0, w.ground)
     counters[at.DEGREE_Y] = load_interval(index, pieces.y, TERMS, w.ground)
-    fixed, shortest = controls[at.RTOL] == FIXED_STEPS, SHORTEST * controls[at.DURATION]
+    fixed, shortest = controls[at.RTOL] == at.FIXED_STEPS, SHORTEST * controls[at.DURATION]
     crossed = counters[at.PENDING]
     stale = counters[at.STALE] == 1  # slope and guards at the state, after a switch or a jump
     steps, anew = output.steps, False
@@ -283,10 +265,10 @@ def run_on(
             status = at.MORE_ROOM
             break
         if stale:
-            look_ahead(equations, known.mode, progress, w)
+            broken = look_ahead(equations, known.mode, tolerance, progress, w)
             stale, anew = False, True
             if crossed < 0:
-                crossed = broken_guard(tolerance, time_of(progress), w)
+                crossed = broken
         if crossed >= 0:
             if counters[at.EVENTS] >= len(events.codes):
                 status = at.MORE_ROOM
@@ -303,7 +285,9 @@ def run_on(
         if anew and len(steps.codes) > 0:
             keep_start(known.mode, progress, steps, w)
         anew = False
-        clock[at.NEXT_OUTPUT] = next_output(controls, counters, output)
+        row = counters[at.OUTPUTS]  # that is stored at the end of a step
+        more = row < len(output.mode)
+        clock[at.NEXT_OUTPUT] = (row - ON_SAMPLE) * controls[at.OUTPUT_STEP] if more else math.inf
         happened = make_steps(equations, known, 0.0, pieces, progress, steps, w)
         if counters[at.HALF] != half:
             half = 1 - half
@@ -363,16 +347,5 @@ def run_on(
     return status
 
 
-@entry_at_once
-def advance(
-    equations: BoundEquations,
-    tolerance: Vector,
-    memory: Vector,
-    pieces: Pieces,
-    progress: Progress,
-    output: Output,
-    events: EventTable,
-    w: Workspace,
-) -> int:
-    """Integrate one run, see :func:`run_on`."""
-    return run_on(equations, tolerance, memory, pieces, progress, output, events, w)
+advance = entry_at_once(run_on)
+"""Integrates one run, as machine code where there is some."""

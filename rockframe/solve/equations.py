@@ -18,7 +18,7 @@ from rockframe.compiled import (
     put,
     seldom_called,
 )
-from rockframe.dynamics.protocol import Energies, Equations, Ground
+from rockframe.dynamics.protocol import Equations, Ground
 from rockframe.solve.accuracy import STABLE
 from rockframe.solve.march import (
     guards_at,
@@ -26,7 +26,6 @@ from rockframe.solve.march import (
     march_fixed,
     march_fixed_by_rates,
 )
-from rockframe.solve.workspace import Span, Workspace, ground_in
 
 
 @kernel
@@ -35,15 +34,6 @@ def slope(
 ) -> None:
     """Write accelerations, rates of variables of first order, and powers."""
     put(system.accelerate(mode, state, Ground(ground_x, ground_y)), 0, out)
-
-
-@kernel
-def guards_of_state(
-    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
-    limits: Vector, out: Vector,
-) -> None:  # fmt: skip
-    """Write the guards of a state and their rates."""
-    guards_at(system, mode, state, slope, Ground(ground_x, ground_y), limits, out)
 
 
 @seldom_called
@@ -109,9 +99,7 @@ def equations_of(system: Equations, *, fixed_steps: bool) -> BoundEquations:
     march = march_by_tolerance
     if fixed_steps:
         march = march_fixed_by_rates if gives_powers(system) else march_fixed
-    functions = bound(
-        (march, switched, slope, guards_of_state, observed, energies, meaning), system
-    )
+    functions = bound((march, switched, slope, guards_at, observed, energies, meaning), system)
     return BoundEquations(
         *functions,  # type: ignore[call-arg]
         numbers=numbers_in(system),
@@ -154,30 +142,3 @@ def known_mode(equations: BoundEquations, mode: int, room: Vector) -> KnownMode:
     equations.meaning.call(mode, room, equations.numbers)
     longest = STABLE / room[2] if room[2] > 0.0 else math.inf
     return KnownMode(mode, int(room[0]), int(room[1]), longest)
-
-
-@inlined
-def slope_at(
-    equations: BoundEquations, mode: int, state: Vector, ground: Ground, out: Vector
-) -> None:
-    """Write the slope of a state."""
-    equations.slope.call(mode, state, ground.x, ground.y, out, equations.numbers)
-
-
-@inlined
-def energies_at(equations: BoundEquations, mode: int, state: Vector, room: Vector) -> Energies:
-    """Give the energies of a state; `room` is for four numbers."""
-    equations.stored.call(mode, state, room, equations.numbers)
-    return Energies(room[0], room[1], room[2], room[3])
-
-
-@inlined
-def write_guards(
-    equations: BoundEquations, mode: int, state: Vector, slope: Vector, fraction: float, span: Span,
-    out: Vector, w: Workspace,
-) -> None:  # fmt: skip
-    """Write the guards of a state at a fraction of a step, and their rates."""
-    ground = ground_in(fraction, span, w.ground)
-    equations.guarding.call(
-        mode, state, slope, ground.x, ground.y, w.limits, out, equations.numbers
-    )

@@ -21,10 +21,10 @@ from rockframe.dynamics.protocol import (
     Start,
 )
 from rockframe.signals import Motion
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.accuracy import Accuracy, substeps_of
 from rockframe.solve.bookkeeping import ON_SAMPLE, ROUNDING
-from rockframe.solve.driver import FIXED_STEPS, advance
+from rockframe.solve.driver import advance
 from rockframe.solve.equations import (
     BoundEquations,
     equations_of,
@@ -32,22 +32,22 @@ from rockframe.solve.equations import (
     runs_as_python,
     steps_as_machine_code,
 )
-from rockframe.solve.layout import Status
 from rockframe.solve.schemes import STAGES
 from rockframe.solve.trajectory import Events, Steps, Trajectory, run_counts, steps_of
 from rockframe.solve.workspace import (
     BESIDE,
     CODES,
     ERRORS,
+    NO_STEPS,
     TERMS,
     EventTable,
     Output,
     Pieces,
     Progress,
+    Status,
     StepTable,
     Workspace,
     has_no_room,
-    no_steps,
 )
 
 FIRST_SCALE: Final = 1e-6
@@ -70,7 +70,7 @@ class Begun:
     state: Vector  # coordinates, their rates, and variables of first order
     memory: Vector  # the model's memory, twice
     start_memory: Vector
-    controls: Vector  # laid out in :mod:`rockframe.solve.layout`
+    controls: Vector  # laid out in :mod:`rockframe.solve.workspace`
     clock: Vector
     counters: Integers
     reference: Vector  # largest size so far of each variable
@@ -117,13 +117,18 @@ def begun(
     SolverError
         Steps of the length asked for would not be stable.
     """
-    mode, state, memory = _state_of(model, start)
+    if isinstance(start, Start):
+        mode, state, memory = model.initial(start)
+    else:
+        mode, state, memory = start.mode, start.state.copy(), start.memory.copy()
+        # losses are counted anew in each run
+        memory[[IMPACT_LOSS, REPINNING_LOSS, IMPULSIVE_INPUT, LINK_LOSS]] = 0.0
     contact = model.system.contact_state_of(mode, 0)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     substeps = substeps_of(accuracy, model, interval)
     # numbers may be those of many cases: put together first, then made a row
     controls = {
-        at.RTOL: accuracy.rtol or FIXED_STEPS,
+        at.RTOL: accuracy.rtol or at.FIXED_STEPS,
         at.FLOOR: accuracy.floor,
         at.MAX_STEP: (
             interval / substeps if substeps else shortest_period / accuracy.steps_per_period
@@ -140,8 +145,8 @@ def begun(
         at.PEAK_LEFT: max(-rotation, 0.0),
         at.PEAK_RIGHT: max(rotation, 0.0),
         at.OTHER_SHARE: model.other_share_in(state),
-        at.FIRST_UPLIFT: -1.0 if contact == FULL else 0.0,
-        at.OVERTURNING_TIME: -1.0,
+        at.FIRST_UPLIFT: math.nan if contact == FULL else 0.0,
+        at.OVERTURNING_TIME: math.nan,
         at.EVENT_TIME: -1.0,
         at.START_ENERGY: math.nan,
         at.GROUND_X: math.nan,
@@ -170,15 +175,6 @@ def begun(
 def _filled(size: int, numbers: Mapping[int, float]) -> Vector:
     """Give a row of numbers by their places, of zeros elsewhere."""
     return np.array([numbers.get(place, 0.0) for place in range(size)])
-
-
-def _state_of(model: ContactModel, start: Start | Ending) -> tuple[int, Vector, Vector]:
-    if isinstance(start, Start):
-        return model.initial(start)
-    memory = start.memory.copy()
-    # losses are counted anew in each run
-    memory[[IMPACT_LOSS, REPINNING_LOSS, IMPULSIVE_INPUT, LINK_LOSS]] = 0.0
-    return start.mode, start.state.copy(), memory
 
 
 def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: float) -> Vector:
@@ -268,14 +264,13 @@ def integrate(
 
     progress = Progress(run.controls, clock, counters)
     first_steps: Steps | None = None
-
-    def steps_in(table: StepTable) -> Steps:
-        kept = int(counters[at.STEPS_KEPT])
-        return steps_of(table, kept, width, exact=accuracy.rtol is not None)
+    exact = accuracy.rtol is not None
 
     def take_samples(steps: Steps) -> Integers:
         """Count the first outputs by the steps that end there, and take their modes."""
-        which = steps.first_at_multiples(output_step or 1.0, ON_SAMPLE)[:sampled]
+        # each first row at a multiple of the output step, or a share before it
+        passed = np.floor(steps.time / (output_step or 1.0) + ON_SAMPLE)
+        which = 1 + np.flatnonzero(passed[1:] > passed[:-1])[:sampled]
         count = 1 + len(which)
         out_mode[1:count] = steps.mode[which]
         if count <= sampled:  # there are no more
@@ -283,7 +278,7 @@ def integrate(
         return which
 
     taken = np.empty(0, dtype=np.int64)
-    steps = no_steps()
+    steps = NO_STEPS
     if keep_steps:
         intervals = duration / run.controls[at.TIME_STEP]
         room = STEP_ROOM + math.ceil(STEPS_PER_INTERVAL * intervals * max(run.substeps, 1))
@@ -318,13 +313,16 @@ def integrate(
             if counters[at.STEPS_KEPT] < MOST_STEPS_KEPT:
                 steps = StepTable(*_longer(*steps))
             else:
-                first_steps, steps = replace(steps_in(steps), complete=False), no_steps()
+                first_steps, steps = steps_of(steps, counters, width, exact=exact), NO_STEPS
+                first_steps = replace(first_steps, complete=False)
                 taken, sampled = take_samples(first_steps), 0
 
     if not COMPILED or not runs_as_python(equations):  # of which more has been said
         say_slow(as_python)
 
-    kept = (first_steps or steps_in(steps)) if keep_steps else None
+    kept = first_steps
+    if keep_steps and kept is None:
+        kept = steps_of(steps, counters, width, exact=exact)
     if sampled and kept is not None:
         taken = take_samples(kept)
     stored = int(counters[at.OUTPUTS])
@@ -418,14 +416,8 @@ def pieces_of(motion: Motion | None) -> Pieces:
     """Give the polynomials of both directions."""
     if motion is None:
         return Pieces(_STILL, _STILL)
-    vertical = _STILL if motion.vertical is None else _read_only(motion.vertical.pieces)
-    return Pieces(_read_only(motion.horizontal.pieces), vertical)
-
-
-def _read_only(array: Matrix) -> Matrix:
-    view = array.view()
-    view.flags.writeable = False
-    return view
+    vertical = _STILL if motion.vertical is None else motion.vertical.pieces
+    return Pieces(motion.horizontal.pieces, vertical)
 
 
 def _events(table: EventTable, count: int, width: int) -> Events:
@@ -441,4 +433,5 @@ def _events(table: EventTable, count: int, width: int) -> Events:
     )
 
 
-_STILL: Matrix = _read_only(np.zeros((0, 2)))
+_STILL: Matrix = np.zeros((0, 2))
+_STILL.setflags(write=False)

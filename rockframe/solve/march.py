@@ -4,16 +4,19 @@ Written for any system and compiled for each, so that the equations are compiled
 the driver calls it by its address, and sees to all that is not a quiet step.
 """
 
+import math
 from typing import Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of, put
 from rockframe.dynamics.protocol import POWERS, Equations, Ground, Guards
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.schemes import (
     FixedSteps,
     FixedStepsByRates,
     StepsByTolerance,
+    adapted,
     next_step,
+    rest_of,
 )
 from rockframe.solve.workspace import TERMS, Span, ground_in, has_no_room, keep_row, load_interval
 
@@ -33,11 +36,12 @@ THIRD: Final = 1.0 / 3.0
 
 @inlined
 def guards_at(
-    system: Equations, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector,
-    out: Vector,
+    system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
+    limits: Vector, out: Vector,
 ) -> None:  # fmt: skip
     """Write the guards of a state, see :func:`put_guards`; of several limits the nearest."""
-    put_guards(system, system.guards_in(mode, state, slope, ground), state, limits, out)
+    found = system.guards_in(mode, state, slope, Ground(ground_x, ground_y))
+    put_guards(system, found, state, limits, out)
     size, last = system.coordinates(), system.guards()
     row = WEIGHTS + size
     while row < len(limits):
@@ -93,53 +97,35 @@ def may_fall(system: Equations, h: float, before: Vector, after: Vector) -> bool
 
 
 class RotationInStep(NamedTuple):
-    """The rotation and its rate at the start and at the end of a step."""
+    """A rotation and its rate at the start and at the end of a step."""
 
     start: float
     start_rate: float
     end: float
     end_rate: float
-
-    @inlined
-    def largest_left(self) -> float:
-        """Give the largest rotation to the left at the ends."""
-        return max(-self.start, -self.end)
-
-    @inlined
-    def largest_right(self) -> float:
-        """Give the largest rotation to the right at the ends."""
-        return max(self.start, self.end)
+    left: float  # largest to either side at the ends
+    right: float
 
     @inlined
     def may_peak(self, h: float, left: float, right: float) -> bool:
         """Whether it reverses within a step of length h, and may do so beyond its peaks so far."""
         ahead = 0.5 * h * max(abs(self.start_rate), abs(self.end_rate))
-        rises_left = self.largest_left() + ahead > left
-        rises_right = self.largest_right() + ahead > right
-        rises = rises_right if self.start_rate > 0.0 else rises_left
+        rises = self.right + ahead > right if self.start_rate > 0.0 else self.left + ahead > left
         return (self.start_rate * self.end_rate < 0.0) & rises
 
 
 @inlined
 def rotation_in_step(
-    system: Equations, limits: Vector, state: Vector, new: Vector
-) -> RotationInStep:
-    """Give the rotation at both ends of a step, the weighted sum of the coordinates."""
-    return rotation_in_row(0, system.coordinates(), limits, state, new)
-
-
-@inlined
-def rotation_in_row(
     row: int, size: int, limits: Vector, state: Vector, new: Vector
 ) -> RotationInStep:
-    """Give a rotation at both ends of a step, by the place of its limits."""
+    """Give a rotation, a weighted sum of the coordinates, by the place of its limits."""
     r0 = v0 = r1 = v1 = 0.0
     for i in range(size):
         r0 += limits[row + WEIGHTS + i] * state[i]
         v0 += limits[row + WEIGHTS + i] * state[size + i]
         r1 += limits[row + WEIGHTS + i] * new[i]
         v1 += limits[row + WEIGHTS + i] * new[size + i]
-    return RotationInStep(r0, v0, r1, v1)
+    return RotationInStep(r0, v0, r1, v1, max(-r0, -r1), max(r0, r1))
 
 
 @inlined
@@ -149,7 +135,7 @@ def other_may_peak(
     """Whether another rotation may come nearer to its limit inside a step than it has come."""
     found, row = False, WEIGHTS + size
     while row < len(limits):
-        rotation = rotation_in_row(row, size, limits, state, new)
+        rotation = rotation_in_step(row, size, limits, state, new)
         found |= rotation.may_peak(
             h, share * limits[row + LEFT_LIMIT], share * limits[row + RIGHT_LIMIT]
         )
@@ -243,7 +229,7 @@ def march(
     ground : ndarray
         Coefficients of the ground motion in the interval.
     controls, clock, counters : ndarray
-        Settings and progress, laid out in :mod:`rockframe.solve.layout`.
+        Settings and progress, laid out in :mod:`rockframe.solve.workspace`.
     kept, codes : ndarray
         Table of steps, see :class:`rockframe.solve.workspace.StepTable`.
 
@@ -260,7 +246,7 @@ def march(
     index, tau, h_next = counters[at.INTERVAL], clock[at.INTO_INTERVAL], clock[at.NEXT_STEP]
     time_step = controls[at.TIME_STEP]
     intervals = max(len(pieces_x), len(pieces_y))
-    shortest = SHORTEST * controls[at.DURATION]
+    fixed, shortest = controls[at.RTOL] == at.FIXED_STEPS, SHORTEST * controls[at.DURATION]
     degree_x, degree_y = counters[at.DEGREE_X], counters[at.DEGREE_Y]
     begin, length = index * time_step, interval_length(index, intervals, controls)
     result = AT_END
@@ -286,7 +272,7 @@ def march(
             result = EXHAUSTED
             break
         asked = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
-        h = trial if trial > 0.0 else scheme.step_length(asked)
+        h = trial if trial > 0.0 else min(asked, scheme.longest)
         span = Span(h, tau / time_step, h / time_step, degree_x, degree_y)
         here, there = half * stride, stride - half * stride
         state, new = part_of(ends, here), part_of(ends, there)
@@ -296,7 +282,7 @@ def march(
             system, mode, count, span, ground, state, first, new, last, stages, works
         )
         now = ground_in(1.0, span, ground)
-        guards_at(system, mode, new, last, now, limits, after)
+        guards_at(system, mode, new, last, now.x, now.y, limits, after)
         if trial > 0.0:
             return TRIED
         scale = max(clock[at.LARGEST_TERM], clock[at.DISSIPATED], abs(clock[at.SUPPLIED]))
@@ -308,29 +294,33 @@ def march(
                 result = TOO_SMALL
                 break
             continue
-        rotation = rotation_in_step(system, limits, state, new)
+        rotation = rotation_in_step(0, size, limits, state, new)
         peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
-        peaks |= other_may_peak(system.coordinates(), limits, h, state, new, clock[at.OTHER_SHARE])
+        peaks |= other_may_peak(size, limits, h, state, new, clock[at.OTHER_SHARE])
         found = may_fall(system, h, before, after)
         seen = begin + tau + h >= clock[at.NEXT_OUTPUT] or has_no_room(codes, counters)
         if found or peaks or seen:
             clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, asked, excess
             result = GUARDED if found else TO_BE_SEEN
             break
-        h_next = scheme.step_after(h, asked, h_next, excess, shortest, controls)
+        if fixed:
+            h_next = rest_of(asked, h, shortest, controls)
+        else:
+            h_next = adapted(h, h_next, excess, controls)
+            for i in range(width):
+                reference[i] = max(reference[i], abs(new[i]))
         tau += h
         if len(codes) > 0:
             keep_row(
                 begin + tau, h, mode, now, width, slope_end - width - POWERS, new, last, counters,
                 kept, codes,
             )  # fmt: skip
-        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
-        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
-        nearest = other_share(system.coordinates(), limits, new)
+        clock[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.left)
+        clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.right)
+        nearest = other_share(size, limits, new)
         clock[at.OTHER_SHARE] = max(clock[at.OTHER_SHARE], nearest)
         if flies == 1:
             clock[at.FLIGHT_TIME] += h
-        scheme.keep_sizes(system, new, reference)
         clock[at.DISSIPATED] += works[0]
         clock[at.SUPPLIED] += works[1]
         clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(clock[at.SUPPLIED]))
@@ -381,6 +371,6 @@ def march_by_tolerance(
 ) -> int:  # fmt: skip
     """Make steps of the Dormand-Prince pair, see :func:`march`."""
     return march(
-        StepsByTolerance(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
+        StepsByTolerance(math.inf), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
         stages, works, reference, limits, ground, controls, clock, counters, kept, codes,
     )  # fmt: skip

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Vector, inlined, kernel, put, table
 from rockframe.dynamics.protocol import POWERS, Equations, Ground
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.workspace import ERRORS, Span, ground_in
 
 ORDER: Final = 5
@@ -128,32 +128,6 @@ def errors_of_rates(system: Equations, h: float, stages: Vector, works: Vector) 
         works[ERRORS + size + i] = h * change
 
 
-@inlined
-def runge_kutta_step(
-    system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
-    first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
-) -> None:  # fmt: skip
-    """Step the first `count` coordinates and all variables of first order.
-
-    Arguments as in :func:`rockframe.solve.march.march`. Gives the energies
-    dissipated and put in by the ground, integrated with the weights of the fifth order, the
-    error of their difference, and the local errors of what moves.
-    """
-    size = system.coordinates()
-    slope = size + system.variables() + POWERS
-    begin_stages(system, state, first, stages)
-    for s in range(1, STAGES):
-        before = s * (s - 1) // 2
-        weights = STAGE_WEIGHTS[before : before + s]
-        stage_places(system, count, span.h, weights, state, stages, new)
-        stage_rates(system, count, span.h, weights, state, stages, new)
-        found = system.accelerate(mode, new, ground_in(NODES[s], span, ground))
-        put(found, STAGES * size + s * slope, stages)
-    end_works(system, span.h, stages, last, works)
-    errors_of_places(system, span.h, stages, works)
-    errors_of_rates(system, span.h, stages, works)
-
-
 # step-size control, after Hairer, Norsett, Wanner, "Solving Ordinary Differential
 # Equations I", 2nd ed., section II.4
 SAFETY: Final = 0.9
@@ -161,26 +135,6 @@ SMALLEST_FACTOR: Final = 0.2
 LARGEST_FACTOR: Final = 5.0
 EASY: Final = 0.5
 """Error below which a step that spans its whole interval needs no new step size."""
-
-
-@inlined
-def excess_error(
-    system: Equations, count: int, imbalance: float, new: Vector, works: Vector, reference: Vector,
-    controls: Vector,
-) -> float:  # fmt: skip
-    """Give the largest error of a step, of the state or of its works, over the error allowed.
-
-    `imbalance` is the error of the works over the largest energy.
-    """
-    size, floor = system.coordinates(), controls[at.FLOOR]
-    largest, total = abs(imbalance), imbalance
-    for i in range(2 * size + system.variables()):
-        # what does not move has no error
-        moves = (i < count) | ((size <= i) & (i < size + count)) | (i >= 2 * size)
-        error = abs(works[ERRORS + i]) if moves else 0.0
-        largest = max(largest, error / max(abs(new[i]), floor * reference[i]))
-        total += error
-    return largest / controls[at.RTOL] if math.isfinite(total) else math.inf
 
 
 @kernel
@@ -287,11 +241,6 @@ class FixedSteps(NamedTuple):
         return slope[powers], slope[powers + 1]
 
     @inlined
-    def step_length(self, asked: float) -> float:
-        """Give the length of the next step."""
-        return min(asked, self.longest)
-
-    @inlined
     def make_step(
         self, system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
@@ -310,18 +259,6 @@ class FixedSteps(NamedTuple):
     ) -> float:  # fmt: skip
         """Give 0, or infinity where the step has not ended in numbers."""
         return 0.0 if done else math.inf
-
-    @inlined
-    def step_after(
-        self, h: float, asked: float, h_next: float, excess: float, shortest: float,
-        controls: Vector,
-    ) -> float:  # fmt: skip
-        """Give the next step."""
-        return rest_of(asked, h, shortest, controls)
-
-    @inlined
-    def keep_sizes(self, system: Equations, new: Vector, reference: Vector) -> None:
-        """Do nothing: no error is measured."""
 
 
 class FixedStepsByRates(FixedSteps):
@@ -354,22 +291,35 @@ class FixedStepsByRates(FixedSteps):
 
 
 class StepsByTolerance(NamedTuple):
-    """Steps of the Dormand-Prince pair."""
+    """Steps of the Dormand-Prince pair, which may be as long as its errors let them."""
 
-    longest: float
-
-    @inlined
-    def step_length(self, asked: float) -> float:
-        """Give the length of the next step."""
-        return asked
+    longest: float = math.inf
 
     @inlined
     def make_step(
         self, system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
-        """Make a step; its errors tell whether it has ended in numbers."""
-        runge_kutta_step(system, mode, count, span, ground, state, first, new, last, stages, works)
+        """Step the first `count` coordinates and all variables of first order.
+
+        Arguments as in :func:`rockframe.solve.march.march`. Gives the energies
+        dissipated and put in by the ground, integrated with the weights of the fifth order, the
+        error of their difference, and the local errors of what moves, which tell whether the step
+        has ended in numbers.
+        """
+        size = system.coordinates()
+        slope = size + system.variables() + POWERS
+        begin_stages(system, state, first, stages)
+        for s in range(1, STAGES):
+            before = s * (s - 1) // 2
+            weights = STAGE_WEIGHTS[before : before + s]
+            stage_places(system, count, span.h, weights, state, stages, new)
+            stage_rates(system, count, span.h, weights, state, stages, new)
+            found = system.accelerate(mode, new, ground_in(NODES[s], span, ground))
+            put(found, STAGES * size + s * slope, stages)
+        end_works(system, span.h, stages, last, works)
+        errors_of_places(system, span.h, stages, works)
+        errors_of_rates(system, span.h, stages, works)
         return True
 
     @inlined
@@ -377,19 +327,17 @@ class StepsByTolerance(NamedTuple):
         self, system: Equations, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
-        """Give the largest error over the error allowed."""
-        return excess_error(system, count, works[2] / scale, new, works, reference, controls)
+        """Give the largest error of a step, of the state or of its works, over the error allowed.
 
-    @inlined
-    def step_after(
-        self, h: float, asked: float, h_next: float, excess: float, shortest: float,
-        controls: Vector,
-    ) -> float:  # fmt: skip
-        """Give the next step."""
-        return adapted(h, h_next, excess, controls)
-
-    @inlined
-    def keep_sizes(self, system: Equations, new: Vector, reference: Vector) -> None:
-        """Raise the largest size so far of each variable."""
-        for i in range(2 * system.coordinates() + system.variables()):
-            reference[i] = max(reference[i], abs(new[i]))
+        `scale` is the largest energy, over which the error of the works is taken.
+        """
+        size, floor = system.coordinates(), controls[at.FLOOR]
+        imbalance = works[2] / scale
+        largest, total = abs(imbalance), imbalance
+        for i in range(2 * size + system.variables()):
+            # what does not move has no error
+            moves = (i < count) | ((size <= i) & (i < size + count)) | (i >= 2 * size)
+            error = abs(works[ERRORS + i]) if moves else 0.0
+            largest = max(largest, error / max(abs(new[i]), floor * reference[i]))
+            total += error
+        return largest / controls[at.RTOL] if math.isfinite(total) else math.inf

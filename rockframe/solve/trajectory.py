@@ -5,7 +5,7 @@ Also the steps of a run as they were made, and the solution inside them.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Final, cast
 
@@ -14,10 +14,9 @@ import numpy as np
 from rockframe.compiled import Integers, Matrix, Vector
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import isnan, largest
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.crossings import cubic, quintic
-from rockframe.solve.layout import Status
-from rockframe.solve.workspace import BESIDE, CODES, StepTable
+from rockframe.solve.workspace import BESIDE, CODES, Status, StepTable
 
 _quintic: Final = cast("Callable[..., tuple[Matrix, ...]]", quintic)  # of arrays too
 _cubic: Final = cast("Callable[..., tuple[Matrix, ...]]", cubic)
@@ -35,40 +34,25 @@ class Steps:
     exact: bool
     complete: bool = True  # whether they go on to the end of the run
 
-    @property
-    def time(self) -> Vector:
-        """Time of each row [s]."""
-        return self.values[:, 0]
+    # columns of these: time of each row, and length of the step that ends there, 0 in the row of a
+    # start [s]; mode of the model; number of events before, by which its memory is found; ground
+    # acceleration as the equations take it, shape (rows, 2) [m s^-2]; state; accelerations, and
+    # rates of variables of first order
+    time: Vector = field(init=False)
+    length: Vector = field(init=False)
+    mode: Integers = field(init=False)
+    memory_row: Integers = field(init=False)
+    ground: Matrix = field(init=False)
+    state: Matrix = field(init=False)
+    slope: Matrix = field(init=False)
 
-    @property
-    def length(self) -> Vector:
-        """Length of the step that ends there; 0 in the row of a start [s]."""
-        return self.values[:, 1]
-
-    @property
-    def mode(self) -> Integers:
-        """Mode of the model."""
-        return self.codes[:, 0]
-
-    @property
-    def memory_row(self) -> Integers:
-        """Number of events before, by which the model's memory is found."""
-        return self.codes[:, 1]
-
-    @property
-    def ground(self) -> Matrix:
-        """Ground acceleration as the equations take it, shape (rows, 2) [m s^-2]."""
-        return self.values[:, 2:BESIDE]
-
-    @property
-    def state(self) -> Matrix:
-        """State, shape (rows, 2 n + variables)."""
-        return self.values[:, BESIDE : BESIDE + self.width]
-
-    @property
-    def slope(self) -> Matrix:
-        """Accelerations, and rates of variables of first order, shape (rows, n + variables)."""
-        return self.values[:, BESIDE + self.width :]
+    def __post_init__(self) -> None:
+        values, codes, end = self.values, self.codes, BESIDE + self.width
+        vars(self).update(
+            time=values[:, 0], length=values[:, 1], ground=values[:, 2:BESIDE],
+            state=values[:, BESIDE:end], slope=values[:, end:],
+            mode=codes[:, 0], memory_row=codes[:, 1],
+        )  # fmt: skip
 
     def until(self, time: float) -> "Steps":
         """Give the steps that end up to a time [s]."""
@@ -76,11 +60,6 @@ class Steps:
         if count and self.length[count - 1] == 0.0:  # no step goes on from there
             count -= 1
         return replace(self, values=self.values[:count], codes=self.codes[:count])
-
-    def first_at_multiples(self, interval: float, tolerance: float) -> Integers:
-        """Find the rows that come first to each multiple of an interval, or a share before it."""
-        passed = np.floor(self.time / interval + tolerance)
-        return 1 + np.flatnonzero(passed[1:] > passed[:-1])
 
     def inside(self, which: Integers, model: ContactModel, fraction: Vector) -> Matrix:
         """Give states inside steps by their dense solution, :eq:`eq-hermite`."""
@@ -105,9 +84,9 @@ class Steps:
         return np.concatenate([place, np.where(moves, speed, state[..., v]), value], axis=-1)
 
 
-def steps_of(table: StepTable, count: int, width: int, *, exact: bool) -> Steps:
+def steps_of(table: StepTable, counters: Integers, width: int, *, exact: bool) -> Steps:
     """Give the kept steps, whose states have `width` numbers."""
-    codes = table.codes.reshape(-1, CODES)
+    codes, count = table.codes.reshape(-1, CODES), int(counters[at.STEPS_KEPT])
     values = table.values.reshape(len(codes), -1)
     return Steps(values[:count], codes[:count], width, exact).until(np.inf)
 
@@ -222,9 +201,9 @@ def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
         "peak_left": reals[at.PEAK_LEFT],
         "peak_right": reals[at.PEAK_RIGHT],
         "other_share": reals[at.OTHER_SHARE],
-        "overturning_time": _time_or_nan(reals[at.OVERTURNING_TIME]),
+        "overturning_time": reals[at.OVERTURNING_TIME],
         "overturning_direction": int(reals[at.OVERTURNING_SIDE]),
-        "first_uplift_time": _time_or_nan(reals[at.FIRST_UPLIFT]),
+        "first_uplift_time": reals[at.FIRST_UPLIFT],
         "flight_time": reals[at.FLIGHT_TIME],
         "impact_count": wholes[at.IMPACTS],
         "flight_count": wholes[at.FLIGHTS],
@@ -232,7 +211,3 @@ def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
         "rejected_count": wholes[at.REJECTED],
         "energy_residual": residual / moved if moved > 0.0 else 0.0,
     }
-
-
-def _time_or_nan(value: float) -> float:
-    return value if value >= 0.0 else math.nan

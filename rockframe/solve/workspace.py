@@ -1,8 +1,11 @@
-"""The arrays of a run, in named tuples: what the integrator reads, works on and fills.
+"""The arrays of a run, and what stands where in them: read, worked on and filled by the integrator.
 
-Also the ground acceleration inside one interval of the motion, a polynomial.
+The integrator can stop (for want of room for events) and go on; everything it must remember stands
+in three small arrays, :class:`Progress`. Also the ground acceleration inside one interval of the
+motion, a polynomial.
 """
 
+from enum import IntEnum
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -16,7 +19,108 @@ from rockframe.compiled import (
     inlined,
 )
 from rockframe.dynamics.protocol import Ground
-from rockframe.solve import layout as at
+
+
+class Status(IntEnum):
+    """How a run ended."""
+
+    COMPLETED = 0
+    OVERTURNED = 1
+    TOPPLED = 2
+    STEP_LIMIT = 3
+    STEP_TOO_SMALL = 4
+    CHATTER = 5
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run went as far as it was asked to."""
+        return self <= Status.TOPPLED
+
+    @property
+    def overturned(self) -> bool | None:
+        """Whether the block overturned; None if the run was cut off before it could tell.
+
+        This is the verdict of a run, in the sense in which it was asked: one that ends at the
+        overturning angle has reached it; one that goes on beyond it has fallen flat.
+        """
+        return self is not Status.COMPLETED if self.finished else None
+
+
+# Results of the integrator: a Status, or one of these.
+MORE_ROOM: Final = -1
+PAUSED: Final = -2
+
+COMPLETED: Final = int(Status.COMPLETED)
+OVERTURNED: Final = int(Status.OVERTURNED)
+FELL: Final = int(Status.TOPPLED)
+STEP_LIMIT: Final = int(Status.STEP_LIMIT)
+STEP_TOO_SMALL: Final = int(Status.STEP_TOO_SMALL)
+CHATTER: Final = int(Status.CHATTER)
+
+# controls: real settings
+RTOL: Final = 0
+FLOOR: Final = 1
+MAX_STEP: Final = 2
+DURATION: Final = 3
+TIME_STEP: Final = 4
+OUTPUT_STEP: Final = 5
+CHATTER_TIME: Final = 6
+CONTROLS: Final = 7
+
+FIXED_STEPS: Final = 0.0
+"""Stands for the tolerance of a run with fixed sub-steps."""
+
+# clock: real progress; what a step changes stands first
+INTO_INTERVAL: Final = 0
+NEXT_STEP: Final = 1
+FLIGHT_TIME: Final = 2
+PEAK_LEFT: Final = 3
+PEAK_RIGHT: Final = 4
+DISSIPATED: Final = 5
+SUPPLIED: Final = 6
+LARGEST_MOVED: Final = 7
+GROUND_X: Final = 8
+GROUND_Y: Final = 9
+OF_STEPS: Final = 10
+FIRST_UPLIFT: Final = 10
+OVERTURNING_TIME: Final = 11
+OVERTURNING_SIDE: Final = 12
+RESIDUAL: Final = 13
+LARGEST_TERM: Final = 14
+START_ENERGY: Final = 15
+EVENT_TIME: Final = 16
+TIME: Final = 17
+STEP: Final = 18
+ASKED: Final = 19
+EXCESS: Final = 20
+NEXT_OUTPUT: Final = 21
+OTHER_SHARE: Final = 22  # largest of another rotation in its limit
+CLOCK: Final = 23
+
+# counters: integer progress and switches
+MODE: Final = 0
+INTERVAL: Final = 1
+OUTPUTS: Final = 2
+EVENTS: Final = 3
+STEPS: Final = 4
+REJECTED: Final = 5
+IMPACTS: Final = 6
+FLIGHTS: Final = 7
+PENDING: Final = 8
+CLOSE_EVENTS: Final = 9
+MAX_STEPS: Final = 10
+STOP_AT_OVERTURNING: Final = 11
+HALF: Final = 12
+DEGREE_X: Final = 13
+DEGREE_Y: Final = 14
+STALE: Final = 15  # whether slope and guards at the state are to be evaluated anew
+LAST_INTERVAL: Final = 16  # at whose end the run pauses
+STEPS_KEPT: Final = 17
+PAUSE_AT: Final = 18  # steps, tried ones too, after which the run pauses
+COUNTERS: Final = 19
+
+CLOSE_EVENTS_LIMIT: Final = 1000
+"""Events in a row, each within CHATTER_TIME of the one before, that end a run as chatter."""
 
 TERMS: Final = 6
 """Most coefficients per direction and interval; a record needs two, an analytic pulse six."""
@@ -38,7 +142,7 @@ class Pieces(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """Settings and progress, laid out in :mod:`rockframe.solve.layout`."""
+    """Settings and progress, by the indices above."""
 
     controls: Vector
     clock: Vector
@@ -99,9 +203,8 @@ class Workspace(NamedTuple):
     answers: Vector  # room for a few numbers that the system gives
 
 
-def no_steps() -> StepTable:
-    """Give the table of a run whose steps are not kept."""
-    return StepTable(np.empty(0), np.empty(0, dtype=np.int64))
+NO_STEPS: Final = StepTable(np.empty(0), np.empty(0, dtype=np.int64))
+"""The table of a run whose steps are not kept."""
 
 
 @inlined
@@ -110,7 +213,7 @@ def keep_row(
     slope: Vector, counters: Integers, values: Vector, codes: Integers,
 ) -> None:  # fmt: skip
     """Fill a row of the table of steps with `width` and `slopes` numbers of state and slope."""
-    row = counters[at.STEPS_KEPT]
+    row = counters[STEPS_KEPT]
     begin = row * (BESIDE + width + slopes)
     values[begin], values[begin + 1] = time, length
     values[begin + 2], values[begin + 3] = ground.x, ground.y
@@ -118,14 +221,14 @@ def keep_row(
         values[begin + BESIDE + i] = state[i]
     for i in range(slopes):
         values[begin + BESIDE + width + i] = slope[i]
-    codes[CODES * row], codes[CODES * row + 1] = mode, counters[at.EVENTS]
-    counters[at.STEPS_KEPT] = row + 1
+    codes[CODES * row], codes[CODES * row + 1] = mode, counters[EVENTS]
+    counters[STEPS_KEPT] = row + 1
 
 
 @inlined
 def has_no_room(codes: Integers, counters: Integers) -> bool:
     """Whether a table of steps that are kept has no room for a start and the step from it."""
-    return CODES * (counters[at.STEPS_KEPT] + 2) > len(codes) > 0
+    return CODES * (counters[STEPS_KEPT] + 2) > len(codes) > 0
 
 
 @inlined

@@ -11,8 +11,8 @@ import xarray as xr
 from rockframe.arguments import whole_number
 from rockframe.errors import StudyError
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, overturns
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array

@@ -14,17 +14,16 @@ from rockframe.comparison.models import check_system
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
-from rockframe.signals.polynomials import turning_points
+from rockframe.signals.motion import turning_points
 from rockframe.simulation.certify.run_summary import RunSummary
-from rockframe.simulation.friction import has_limit
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import run, summary_of
 from rockframe.simulation.run_arguments import ScaleArguments
-from rockframe.simulation.soundness import STILL_MOVING
+from rockframe.simulation.soundness import STILL_MOVING, has_limit
 from rockframe.simulation.system import System
 from rockframe.studies.flips import (
     Followed,

@@ -8,12 +8,12 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, StudyError, warn
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
-from rockframe.simulation.friction import share_words, slip_words
+from rockframe.simulation.soundness import share_words, slip_words
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import Intensity, intensity_in, of_study
 from rockframe.studies.limit_states import (

@@ -9,7 +9,7 @@ import xarray as xr
 from rockframe.arguments import checked_dataset, several
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson, read_level

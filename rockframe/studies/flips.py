@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.certify.scan import Side, may_change_between
-from rockframe.simulation.friction import share_words, slip_words
+from rockframe.simulation.soundness import share_words, slip_words
 
 FINEST: Final = 0.002
 """Length of an interval of scales that is not looked into for hidden flips, over its far end."""

@@ -11,8 +11,8 @@ from rockframe.arguments import several
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic, overturns
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.intensities import PeriodLike, measure_in, told_period

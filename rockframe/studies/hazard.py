@@ -12,7 +12,7 @@ from numpy.polynomial.legendre import leggauss
 from rockframe.arguments import checked_dataset, function_of
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.words import measures_of

@@ -11,9 +11,8 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, several
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import overturns
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus

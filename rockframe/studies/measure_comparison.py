@@ -11,8 +11,8 @@ import xarray as xr
 from rockframe.arguments import several
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.cloud import Cloud, cloud_of, laid_out, read_least

@@ -11,8 +11,7 @@ from rockframe.arguments import function_of, whole_number
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array

@@ -10,8 +10,8 @@ import xarray as xr
 
 from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array

@@ -14,13 +14,13 @@ from rockframe.arguments import by_words, several
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import CASE_COUNT
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
 from rockframe.signals.arrays import Array
-from rockframe.signals.signal import COEFFICIENTS
+from rockframe.signals.motion import COEFFICIENTS
 from rockframe.simulation.certify.perturbations import cut
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System

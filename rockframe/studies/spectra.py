@@ -10,8 +10,8 @@ import xarray as xr
 from rockframe.comparison.models import check_system
 from rockframe.components import Block
 from rockframe.errors import ComponentError, StudyError, collected_warnings, shown
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array

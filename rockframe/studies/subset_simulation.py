@@ -17,8 +17,8 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import concat
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array

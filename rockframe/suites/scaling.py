@@ -9,9 +9,8 @@ import xarray as xr
 from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.columns import column
 from rockframe.suites.target import TargetSpectrum

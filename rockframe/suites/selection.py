@@ -11,7 +11,7 @@ from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.suites.candidates import Combination, candidates_of
 from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set
 from rockframe.suites.target import TargetSpectrum

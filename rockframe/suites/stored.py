@@ -17,10 +17,10 @@ from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.records import LONG_NAMES, is_netcdf
-from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
+from rockframe.results.schema import build_dataset
 from rockframe.signals import Motion, Signal
-from rockframe.signals.signal import COEFFICIENTS, VERTICAL
+from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.suites.columns import known_columns
 from rockframe.suites.value import LabelledMotions
 from rockframe.units import Unit

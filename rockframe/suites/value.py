@@ -11,8 +11,8 @@ from rockframe.errors import ComponentError, LabelError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.proposals import Proposing, proposing
-from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import MOTION
+from rockframe.results.schema import build_dataset
 from rockframe.results.table import table as table_of
 from rockframe.suites.columns import (
     check_column,

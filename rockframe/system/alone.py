@@ -1,22 +1,25 @@
-"""The scene of one body on a base that gives way: its numbers, its words and its model."""
+"""The scene of one body on a base that gives way, which may slip on it: numbers, words, models."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
+from rockframe.components import Component
 from rockframe.errors import AssemblyError
 from rockframe.many import isnan
+from rockframe.system.fitting import SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting
+from rockframe.system.setting import Setting, SlipRange
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics
 from rockframe.system.support import Support
-from rockframe.system.words import Words, angle_words
+from rockframe.system.words import SLIPS, Words, angle_words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.protocol import ContactModel
+    from rockframe.dynamics.chain.slips import SlippingBodies
+    from rockframe.dynamics.protocol import ContactModel, Ending
 
 
 @dataclass(frozen=True)
@@ -104,3 +107,62 @@ class AloneSetting(Setting):
             shown = self.statics(self.rest_rotation).reactions
             found |= {f"static_{name}": value for name, value in shown.items()}
         return found
+
+
+@dataclass(frozen=True)
+class SlidingAloneSetting(AloneSetting):
+    """A body on a base with friction."""
+
+    friction: BaseFriction
+    slides = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return f"{self.support.model}-sliding"
+
+    def words(self) -> Words:
+        """Tell the base, and the friction that holds the body on it."""
+        base = super().words()
+        return Words(
+            equations=[
+                *base.equations, SLIPS,
+            ],
+            restraint=f"{base.restraint.partition(';')[0]}; as far as friction can",
+            numbers=[
+                *base.numbers,
+                ("friction at rest, and of slip", self.friction.words()),
+            ],
+            left_out=[one for one in base.left_out if one != "sliding"],
+        )  # fmt: skip
+
+    @cached_property
+    def _model(self) -> "ContactModel":
+        """The equations of a body that slips on its base: those of a chain of one."""
+        from rockframe.dynamics.chain.model import AtRest, ChainBody, chain
+
+        body, rest = self.load.rigid_body, None
+        if self.leans and self.support.standing.rest is not None:
+            stands = self.support.standing.rest[0].state
+            rest = [AtRest(stands.rotation, stands.vertical)]
+        one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
+        return chain([one], self.body.mass, rest, frictions=[self.friction])
+
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of slip, rotation and rise."""
+        return self._model
+
+    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+        """Tell how far the body slipped."""
+        system = cast("SlippingBodies", self._model.system)
+        return (SlipRange(*system.slips(0, ending)),)
+
+
+def alone_on(part: Component, held: AloneSetting) -> AloneSetting:
+    """Give the setting of a body on a base: of one that slips on it where that has friction."""
+    found = friction_under(part, held.options)
+    if found is None:
+        return held
+    if held.options.small:
+        raise AssemblyError([SMALL_SLIDING])
+    return SlidingAloneSetting(held.load, held.support, found, cap_offset=held.cap_offset)

@@ -10,7 +10,7 @@ from rockframe.components.ground import Impact
 from rockframe.many import isfinite
 from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase
-from rockframe.system.parts import Parts, slot_of
+from rockframe.system.parts import Parts, slot_of_kind
 from rockframe.system.rear_wall import IMPACT_TIME, yielding_wall
 
 SMALL_SLIDING: Final = (
@@ -27,7 +27,7 @@ def misfits(parts: Parts) -> list[str]:
     """Give the faults of a combination of parts, whatever their sizes."""
     block, pads, cap, soil = parts.block, parts.pads, parts.cap, parts.soil
     faults: list[str] = []
-    if parts.own():  # of a user's own scene, which says itself what goes together
+    if parts.own:  # of a user's own scene, which says itself what goes together
         return ["no Block is given"] if block is None else []
     if parts.stack is not None:
         faults += _misfits_of_stack(parts.stack, parts)
@@ -150,7 +150,7 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
         "the bodies of a Stack stand on TwoSpringSupport, WinklerSoil or RigidGround, not on "
         f"{type(one).__name__}"
         for one in standing
-        if slot_of(one) not in BASES or isinstance(one, OwnBase)
+        if slot_of_kind(type(one)) not in BASES or isinstance(one, OwnBase)
     ]
     if any(isinstance(one, RigidGround) and one.si.restitution is not None for one in standing):
         faults.append(
@@ -188,14 +188,14 @@ def unused(parts: Parts, options: Options) -> list[str]:
             f"coupling={str(options.coupling)!r} changes nothing here: it is how pads, a "
             "CushionCap and soil are joined, and the scene has not all of them"
         )
-    yielding = any(slot_of(part) in ("pads", "soil") for part in bases)
-    if options.restraint is not Restraint.CONTACT_STATE and not yielding and not parts.own():
+    yielding = any(slot_of_kind(type(part)) in ("pads", "soil") for part in bases)
+    if options.restraint is not Restraint.CONTACT_STATE and not yielding and not parts.own:
         told.append(
             f"restraint={str(options.restraint)!r} changes nothing here: on rigid ground it is the "
             "corner that bears which is held"
         )
     has_friction = any(getattr(part.si, "friction", None) is not None for part in bases)
-    if options.sliding is Sliding.CHECKED and not has_friction and not parts.own():
+    if options.sliding is Sliding.CHECKED and not has_friction and not parts.own:
         told.append(
             f"sliding={str(options.sliding)!r} changes nothing here: no base has a friction that "
             "could be compared with what is needed"
@@ -239,7 +239,7 @@ def missizes(parts: Parts, options: Options) -> list[str]:
     behind_wall = parts.wall is not None and not parts.wall.elastic
     held = behind_wall or parts.ground is None or friction_under(parts.ground, options) is None
     # impacts of bodies that slide, and of those in a stack, let a squat one land flat
-    if block is not None and not parts.own() and held:
+    if block is not None and not parts.own and held:
         faults += squat(block.si, type(block).__name__)
     if block is not None and cap is not None:
         body = parts.the_cap

@@ -27,10 +27,8 @@ from rockframe.errors import LabelError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import BaseLoad, Cap, cap_under
 from rockframe.system.own_base import OwnBase
-from rockframe.system.pads import pads_under
 from rockframe.system.rigid_base import rigid_under
-from rockframe.system.soil import bed_under
-from rockframe.system.support import Support
+from rockframe.system.support import Support, bed_under, pads_under
 
 
 @dataclass(frozen=True)
@@ -99,11 +97,6 @@ def add_part(kind: type[Component], slot: str) -> None:
 def known_kind(of: type) -> type | None:
     """Give the nearest class, among a class and its ancestors, that scenes know."""
     return next((kind for kind in of.__mro__ if kind in _KINDS), None)
-
-
-def slot_of(part: object) -> str | None:
-    """Give the slot that a part fills; None if it is no part."""
-    return slot_of_kind(type(part))
 
 
 def slot_of_kind(of: type) -> str | None:
@@ -178,6 +171,12 @@ class Parts:
     filled: tuple[tuple[str, Component | GroundMotion], ...] = ()
     # the same apart: parts that are no motion by their slots, and those of the package's own kinds
     components: dict[str, Component] = field(init=False, repr=False, compare=False)
+    # those in slots that scenes of users' own have, by these; links between points of bodies,
+    # ground and walls, loads behind the others; and names of the parts that are no motion: rigid
+    # ground goes without saying, and an elastic wall is a link
+    own: dict[str, Component] = field(init=False, repr=False, compare=False)
+    links: tuple[Link, ...] = field(init=False, repr=False, compare=False)
+    signature: frozenset[str] = field(init=False, repr=False, compare=False)
     block: Block | None = field(init=False, repr=False, compare=False)
     stack: Stack | None = field(init=False, repr=False, compare=False)
     frame: RockingFrame | None = field(init=False, repr=False, compare=False)
@@ -192,7 +191,18 @@ class Parts:
         found = dict(self.filled)
         vars(self).update({slot: found.get(slot) for slot in SHIPPED if slot != RESTRAINER})
         components = {slot: part for slot, part in found.items() if slot != "motion"}
-        vars(self)["components"] = components
+        kinds = {slot: kind_of_slot(slot) for slot in components}
+        stiff = self.wall if self.wall is not None and not self.wall.elastic else None
+        links = [one for one in components.values() if isinstance(one, Link) and one is not stiff]
+        signature = frozenset(kinds.values()) - {"ground"}
+        if self.wall is not stiff:
+            signature = signature - {"wall"} | {RESTRAINER}
+        vars(self).update(
+            components=components,
+            own={slot: components[slot] for slot, kind in kinds.items() if kind not in SHIPPED},
+            links=tuple(sorted(links, key=lambda part: isinstance(part, Load))),
+            signature=signature,
+        )
 
     @classmethod
     def of(cls, by_slot: Mapping[str, Component | GroundMotion | None]) -> "Parts":
@@ -215,7 +225,7 @@ class Parts:
 
     def __iter__(self) -> Iterator[Component | GroundMotion]:
         """Give the parts, in a fixed order."""
-        return iter(self.present())
+        return (part for _, part in self.filled)
 
     def __len__(self) -> int:
         return len(self.filled)
@@ -224,10 +234,6 @@ class Parts:
         """Give the parts with others in some slots."""
         return Parts.of({**dict(self.filled), **by_slot})
 
-    def present(self) -> list[Component | GroundMotion]:
-        """Give the parts that are there, in a fixed order."""
-        return [part for _, part in self.filled]
-
     def structural(self) -> list[Component]:
         """Give the parts that are no motion, in a fixed order."""
         return list(self.components.values())
@@ -235,25 +241,7 @@ class Parts:
     def standing(self) -> "Parts":
         """Give the parts with the rigid ground on which bodies stand when no base is given."""
         bases = {"pads", "soil", "ground"}.intersection(self.components)
-        return self if bases or self.own() else self.changed(ground=RigidGround())
-
-    def own(self) -> dict[str, Component]:
-        """Give the parts in slots that scenes of users' own have, by these."""
-        return {
-            slot: part
-            for slot, part in self.components.items()
-            if kind_of_slot(slot) not in SHIPPED
-        }
-
-    @property
-    def links(self) -> tuple[Link, ...]:
-        """The links between points of bodies, ground and walls; loads stand behind the others."""
-        found = [
-            part
-            for part in self.structural()
-            if isinstance(part, Link) and (not isinstance(part, RearWall) or part.elastic)
-        ]
-        return tuple(sorted(found, key=lambda part: isinstance(part, Load)))
+        return self if bases or self.own else self.changed(ground=RigidGround())
 
     @property
     def the_block(self) -> BlockSI:
@@ -287,23 +275,12 @@ class Parts:
             raise TypeError
         return cap_under(self.the_block, self.cap.si)
 
-    @property
-    def signature(self) -> frozenset[str]:
-        """Names of the structural parts that are there; rigid ground goes without saying.
-
-        An elastic wall is a link.
-        """
-        found = frozenset(kind_of_slot(slot) for slot in self.components) - {"ground"}
-        if self.wall is not None and self.wall.elastic:
-            found = found - {"wall"} | {RESTRAINER}
-        return found
-
 
 def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
     """Put each part in its slot; note doubled parts and things that are no parts."""
     found: dict[str, Any] = {}
     for part in given:
-        slot = slot_of(part)
+        slot = slot_of_kind(type(part))
         if slot is None:
             faults.append(f"{shown(part)} is not a part of a system{hint_for(part)}")
         elif slot == RESTRAINER:

@@ -49,11 +49,11 @@ class RearWallSetting(RigidGroundSetting):
         """Sign of the rotations that the wall allows."""
         return 1.0 if self.wall.given.side is WallSide.LEFT else -1.0
 
-    @property
-    def overturning_angles(self) -> OverturningAngles:
-        """That of the side that the wall leaves open, for both: the other is never met."""
-        outwards = self.load.overturning_angles.on_side_of(self.direction)
-        return OverturningAngles(outwards, outwards)
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        # that of the side that the wall leaves open, for both: the other is never met
+        outwards = self.overturning_angles.on_side_of(self.direction)
+        vars(self).update(overturning_angles=OverturningAngles(outwards, outwards))
 
     @property
     def overturning_rotations(self) -> tuple[float, ...]:

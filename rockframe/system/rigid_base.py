@@ -10,8 +10,8 @@ import numpy as np
 from rockframe.components import RigidGround
 from rockframe.dynamics.following import Path
 from rockframe.system.bodies import BaseLoad
-from rockframe.system.statics import StandingBodies, Statics, work_against
-from rockframe.system.support import BaseWords, Support
+from rockframe.system.statics import Statics, work_against
+from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import uplift_words
 
 if TYPE_CHECKING:

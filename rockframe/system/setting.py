@@ -53,6 +53,10 @@ class Setting(ABC):
     options: Options = field(init=False, repr=False, compare=False)
     gravity: float = field(init=False, repr=False, compare=False)
     slope: Slope = field(init=False, repr=False, compare=False)
+    # whether the body is not symmetric, or stands on a slope; rotations of unstable equilibrium to
+    # either side, relative to the base line [rad]
+    leans: bool = field(init=False, repr=False, compare=False)
+    overturning_angles: OverturningAngles = field(init=False, repr=False, compare=False)
     stacked: ClassVar[bool] = False
     """Whether the body stands on pads on a cap on soil."""
     flies: ClassVar[bool] = True
@@ -67,20 +71,12 @@ class Setting(ABC):
     """Whether the impulses of impacts are those of the base alone, so that friction bears them."""
 
     def __post_init__(self) -> None:
-        options = self.load.options
+        body, options = self.load.body, self.load.options
         vars(self).update(
-            body=self.load.body, options=options, gravity=options.gravity, slope=options.slope
-        )
-
-    @property
-    def leans(self) -> bool:
-        """Whether the body is not symmetric, or stands on a slope."""
-        return self.body.eccentricity != 0.0 or not self.slope.level
-
-    @property
-    def overturning_angles(self) -> OverturningAngles:
-        """Rotations of unstable equilibrium to either side, relative to the base line [rad]."""
-        return self.load.overturning_angles
+            body=body, options=options, gravity=options.gravity, slope=options.slope,
+            leans=body.eccentricity != 0.0 or not options.slope.level,
+            overturning_angles=self.load.overturning_angles,
+        )  # fmt: skip
 
     @property
     def overturning_angle(self) -> float:

@@ -25,8 +25,8 @@ from rockframe.system.rigid_base import (
 )
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import StandingBodies, Statics, least_overturning_energy
-from rockframe.system.support import Support
+from rockframe.system.statics import Statics, least_overturning_energy
+from rockframe.system.support import StandingBodies, Support
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:
@@ -51,6 +51,13 @@ class StackSetting(Setting):
     bases: tuple[Support, ...]  # what each stands on, under all that it carries
     ties: tuple[PlacedLink, ...] = ()  # what links their points
     frictions: tuple[BaseFriction, ...] = ()  # of each base; none where all bases hold
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        # one side is not as the other, by bodies, offsets or ties
+        eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
+        leans = bool(self.ties) or eccentric or any(self.offsets) or not self.slope.level
+        vars(self).update(leans=leans)
 
     @property
     def model(self) -> str:
@@ -102,14 +109,6 @@ class StackSetting(Setting):
     def link_names(self) -> tuple[str, ...]:
         """What results call the ties."""
         return tuple(one.name for one in self.ties if not isinstance(one.part, Load))
-
-    @property
-    def leans(self) -> bool:
-        """Whether one side is not as the other, by bodies, offsets or ties."""
-        if self.ties:
-            return True
-        eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
-        return eccentric or any(self.offsets) or not self.slope.level
 
     def cautions(self) -> list[str]:
         """Give the warnings of all bases, each with the body that it is under."""

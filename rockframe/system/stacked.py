@@ -16,8 +16,8 @@ from rockframe.system.bodies import Cap
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import StandingBodies, Statics
-from rockframe.system.support import BaseWords, Support
+from rockframe.system.statics import Statics
+from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import Words
 
 if TYPE_CHECKING:

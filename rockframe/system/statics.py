@@ -1,26 +1,15 @@
-"""Bodies on bases that give way: at rest, held at rotations, and in small motion."""
+"""Bodies held at rotations: their states, and the work that it takes."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rockframe.dynamics.statics import Stand, StandingChain
 from rockframe.errors import SolverError
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.base_numbers import BaseNumbers
-    from rockframe.signals.arrays import Array
     from rockframe.system.setting import Setting
-
-
-LEAST: Final = 2.0**-20
-"""Rotation, over that which the settlement allows, below which moments are linear in it: of the
-difference of the ends' forces, rounding leaves too little."""
-SMALL: Final = 2.0**-6
-"""Rotation, likewise, at which their slope is found."""
 
 
 @dataclass(frozen=True)
@@ -62,82 +51,6 @@ def required_states(rotations: Sequence[float], states: Sequence[Statics | None]
             raise SolverError(msg)
         found.append(state)
     return found
-
-
-@dataclass(frozen=True)
-class StandingBodies:
-    """Bodies that stand on one another, in SI units."""
-
-    chain: StandingChain  # the bodies on their bases, as the equations take them
-    mass: float  # that the chain is measured by, that of its highest body [kg]
-    bases: "tuple[BaseNumbers, ...]"  # under each body, from the top down
-
-    @cached_property
-    def rest(self) -> list[Stand] | None:
-        """How the bodies rest under their weight; None if they fall by it."""
-        return self.chain.rest()
-
-    @cached_property
-    def upright(self) -> list[Stand]:
-        """How they stand while all are held upright."""
-        return self.chain.settled([0.0] * len(self.bases)) or []
-
-    def held(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the states with the highest body held at rotations; None where there is none."""
-        curve = self.chain.curve(rotations)
-        found = [None if stands is None else self.statics_of(stands) for stands in curve]
-        least = LEAST * self.chain.links[0].allowed_rotation if self.chain.upright else 0.0
-        for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
-            if state is not None and abs(rotation) < least:
-                found[i] = self._near_upright(rotation, state)
-        return found
-
-    def _near_upright(self, rotation: float, state: Statics) -> Statics:
-        """Give a state with moments to all digits, by their slope, exact to the fourth order."""
-        step = SMALL * self.chain.links[0].allowed_rotation
-        near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
-        share = rotation / (6.0 * step)
-        return replace(
-            state,
-            base_moment=share * (8.0 * near.base_moment - far.base_moment),
-            restoring_moment=share * (8.0 * near.restoring_moment - far.restoring_moment),
-        )
-
-    def statics_of(self, stands: list[Stand]) -> Statics:
-        """Give the moments by which bodies stand so, and what their bases show."""
-        (part, *_), lowest = self.chain.links[0], stands[-1]
-        body = self.chain.links[-1].part.body
-        attitude = body.attitude(lowest.state.rotation)
-        arm = body.height * attitude.sine + 0.5 * (body.left - body.right) * attitude.cosine
-        held = [part.base.is_held(stands[0].mode.contact, left) for left in (True, False)]
-        return Statics(
-            vertical_displacement=self.chain.rise(stands),
-            base_moment=self.mass * (lowest.press * arm - lowest.force.moment),
-            restoring_moment=-self.mass * self.chain.moments(stands)[0],
-            contact_state="full" if all(held) else "left" if held[0] else "right",
-            reactions=self.reactions(stands),
-        )
-
-    def reactions(self, stands: list[Stand]) -> dict[str, float]:
-        """Give what the bases show, by the names of the schema."""
-        found = dict[str, float]()
-        for link, stand, numbers in zip(self.chain.links, stands, self.bases, strict=True):
-            if link.corner:
-                continue
-            base = link.part.base
-            shown = base.observed(stand.mode.contact, stand.line, stand.own)
-            for column, value in zip(numbers.columns, shown, strict=True):
-                found[column.name] = (self.mass if column.per_mass else 1.0) * value
-        if len(stands) > 1:
-            found["cap_rotation"] = stands[-1].state.rotation
-        return found
-
-    def small_motion(self, stands: list[Stand]) -> "tuple[Array, Array, Array]":
-        """Give mass, damping and stiffness about rest, by rotation and height of each body."""
-        from rockframe.dynamics.linear import linear
-
-        mass, damping, stiffness = linear(self.chain, stands)
-        return self.mass * mass, self.mass * damping, self.mass * stiffness
 
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(12)

@@ -1,20 +1,114 @@
-"""A base as it is under a body: what both scenes and stacks ask of it.
+"""A base as it is under a body: pads, a bed of soil; and bodies that stand on such bases.
 
 The numbers of a base follow from its component and from the body on it; its words tell them,
 and its law is what the equations take.
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar, Final
 
-from rockframe.dynamics.base_numbers import BaseNumbers
+from rockframe.components import TwoSpringSupport, WinklerSoil
+from rockframe.components.soil import Separation
+from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
+from rockframe.dynamics.statics import Stand, StandingChain, link_of, of_base, uplift_rotation
 from rockframe.many import sqrt
-from rockframe.system.bodies import BaseLoad
-from rockframe.system.statics import StandingBodies, Statics, required_states
-from rockframe.system.words import vibration_words
+from rockframe.system.bodies import (
+    BaseLoad,
+    Restitutions,
+    resolve_restitution,
+    restitution_cautions,
+)
+from rockframe.system.statics import Statics, required_states
+from rockframe.system.words import uplift_words, vibration_words
+
+if TYPE_CHECKING:
+    from rockframe.signals.arrays import Array
+
+LEAST: Final = 2.0**-20
+"""Rotation, over that which the settlement allows, below which moments are linear in it: of the
+difference of the ends' forces, rounding leaves too little."""
+SMALL: Final = 2.0**-6
+"""Rotation, likewise, at which their slope is found."""
+
+
+@dataclass(frozen=True)
+class StandingBodies:
+    """Bodies that stand on one another, in SI units."""
+
+    chain: StandingChain  # the bodies on their bases, as the equations take them
+    mass: float  # that the chain is measured by, that of its highest body [kg]
+    bases: tuple[BaseNumbers, ...]  # under each body, from the top down
+
+    @cached_property
+    def rest(self) -> list[Stand] | None:
+        """How the bodies rest under their weight; None if they fall by it."""
+        return self.chain.rest()
+
+    @cached_property
+    def upright(self) -> list[Stand]:
+        """How they stand while all are held upright."""
+        return self.chain.settled([0.0] * len(self.bases)) or []
+
+    def held(self, rotations: Sequence[float]) -> list[Statics | None]:
+        """Give the states with the highest body held at rotations; None where there is none."""
+        curve = self.chain.curve(rotations)
+        found = [None if stands is None else self.statics_of(stands) for stands in curve]
+        least = LEAST * self.chain.links[0].allowed_rotation if self.chain.upright else 0.0
+        for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
+            if state is not None and abs(rotation) < least:
+                found[i] = self._near_upright(rotation, state)
+        return found
+
+    def _near_upright(self, rotation: float, state: Statics) -> Statics:
+        """Give a state with moments to all digits, by their slope, exact to the fourth order."""
+        step = SMALL * self.chain.links[0].allowed_rotation
+        near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
+        share = rotation / (6.0 * step)
+        return replace(
+            state,
+            base_moment=share * (8.0 * near.base_moment - far.base_moment),
+            restoring_moment=share * (8.0 * near.restoring_moment - far.restoring_moment),
+        )
+
+    def statics_of(self, stands: list[Stand]) -> Statics:
+        """Give the moments by which bodies stand so, and what their bases show."""
+        (part, *_), lowest = self.chain.links[0], stands[-1]
+        body = self.chain.links[-1].part.body
+        attitude = body.attitude(lowest.state.rotation)
+        arm = body.height * attitude.sine + 0.5 * (body.left - body.right) * attitude.cosine
+        held = [part.base.is_held(stands[0].mode.contact, left) for left in (True, False)]
+        return Statics(
+            vertical_displacement=self.chain.rise(stands),
+            base_moment=self.mass * (lowest.press * arm - lowest.force.moment),
+            restoring_moment=-self.mass * self.chain.moments(stands)[0],
+            contact_state="full" if all(held) else "left" if held[0] else "right",
+            reactions=self.reactions(stands),
+        )
+
+    def reactions(self, stands: list[Stand]) -> dict[str, float]:
+        """Give what the bases show, by the names of the schema."""
+        found = dict[str, float]()
+        for link, stand, numbers in zip(self.chain.links, stands, self.bases, strict=True):
+            if link.corner:
+                continue
+            base = link.part.base
+            shown = base.observed(stand.mode.contact, stand.line, stand.own)
+            for column, value in zip(numbers.columns, shown, strict=True):
+                found[column.name] = (self.mass if column.per_mass else 1.0) * value
+        if len(stands) > 1:
+            found["cap_rotation"] = stands[-1].state.rotation
+        return found
+
+    def small_motion(self, stands: list[Stand]) -> "tuple[Array, Array, Array]":
+        """Give mass, damping and stiffness about rest, by rotation and height of each body."""
+        from rockframe.dynamics.linear import linear
+
+        mass, damping, stiffness = linear(self.chain, stands)
+        return self.mass * mass, self.mass * damping, self.mass * stiffness
 
 
 @dataclass(frozen=True)
@@ -73,8 +167,6 @@ class Support(ABC):
     @cached_property
     def uplift_angle(self) -> float:
         """Rotation at which contact is first lost; NaN if it never is [rad]."""
-        from rockframe.dynamics.statics import uplift_rotation
-
         return uplift_rotation(self.standing.chain.links[0], self.load.options.slope.normal_gravity)
 
     @abstractmethod
@@ -128,7 +220,6 @@ class Support(ABC):
         """Its body alone on it, by the law."""
         from rockframe.dynamics.alone import eccentricity_of
         from rockframe.dynamics.on_base import OnBase
-        from rockframe.dynamics.statics import StandingChain, link_of
 
         body, numbers = self.load.rigid_body, self.base_numbers
         link = link_of(OnBase(body, numbers.law), beside=eccentricity_of(body))
@@ -153,8 +244,6 @@ class Support(ABC):
 
     def _slopes(self, name: str) -> tuple[float, float]:
         """Give how moment and force on the upright body fall with a coordinate or a rate."""
-        from rockframe.dynamics.linear import of_base
-
         return of_base(self.standing.chain.links[0], self.standing.upright[0], name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
@@ -168,3 +257,200 @@ class Support(ABC):
             ratio = 0.5 * damping / (body.base_inertia * rate)
             rows.append((rocking, vibration_words("omega_r", rate, ratio)))
         return rows
+
+
+@dataclass(frozen=True)
+class PadSupport(Support):
+    """Two pads, in SI units.
+
+    Parameters
+    ----------
+    load : BaseLoad
+        The block on them.
+    stiffness, damping : float
+        Of one pad [N m^-1], [N s m^-1].
+    restitution : Restitutions
+        eps of a landing corner [1].
+    """
+
+    stiffness: float
+    damping: float
+    restitution: Restitutions
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "two-spring"
+
+    def cautions(self) -> list[str]:
+        """Give warnings about restitution and stability."""
+        found = restitution_cautions(self.restitution, self.load.body.maximum_restitution)
+        if self.rocking_stiffness <= 0.0:
+            found.append(
+                "the pads are too soft to hold the block upright: 2 k b^2 is below m g h, so "
+                "that the smallest disturbance overturns it"
+            )
+        return found
+
+    def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
+        """Give the pads as the equations take them."""
+        return pads_numbers(
+            body,
+            stiffness=self.stiffness / mass,
+            damping=self.damping / mass,
+            restitution=self.restitution,
+            load=load_mass / mass,
+        )
+
+    def words(self) -> BaseWords:
+        """Tell the pads in words."""
+        omega = self.load.body.frequency_at(self.load.options.gravity)
+        return BaseWords(
+            law="pad forces as in Eqs. (12) and (15)",
+            equations=[
+                ("full", "Eq. (12), corrected: 2 zeta sin(a)/(beta omega) in (12a); sin(2a)/2, "
+                 "beta^2 omega^4/g and 2 zeta/(beta omega) in (12b)"),
+                ("left", "Eq. (15), upper signs, corrected: [cos(theta) - cos(theta + a) + ...] in "
+                 "(15a); the sign of the bearing corner and omega^4 in (15b)"),
+                ("right", "Eq. (15), lower signs, with the same corrections"),
+                ("flight", "free fall and constant rotation rate (left out by the paper)"),
+                ("impact", f"a landing corner keeps {self.restitution.words()} of its speed, "
+                 "Eqs. (2)-(4) with the corner inertia for the printed I_O"),
+            ],
+            uplift=("uplift angle, Eq. (16)", uplift_words(self.uplift_angle)),
+            numbers=[
+                ("rocking frequency omega, Eq. (6)", f"{omega:.6g} rad/s"),
+                ("frequency ratio beta, Eq. (8)", f"{self.vertical_frequency / omega:.6g}"),
+                ("pad stiffness k, damping c",
+                 f"{self.stiffness:.6g} N/m, {self.damping:.6g} N s/m"),
+                ("settlement delta", f"{self.settlement:.6g} m"),
+                *self.vibrations("vertical vibration", "rocking vibration in full contact"),
+                ("restitution eps", self.restitution.words()),
+            ],
+            left_out=["tension in the pads"],
+        )  # fmt: skip
+
+
+def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
+    """Give pads under a block: stiffness and damping of one pad by Eqs. (7) and (8)."""
+    given, body = pads.si, load.body
+    if given.stiffness is not None:
+        stiffness = given.stiffness
+        vertical = sqrt(2.0 * stiffness / body.mass)
+    else:
+        vertical = given.frequency_ratio * body.frequency_at(load.options.gravity)
+        stiffness = 0.5 * body.mass * vertical**2
+    damping = given.damping
+    if damping is None:
+        damping = given.damping_ratio * body.mass * vertical
+    restitution = resolve_restitution(given.restitution, body.maximum_restitution)
+    return PadSupport(load, stiffness, damping, restitution)
+
+
+_SEPARATION = {
+    Separation.DISPLACEMENT: "above the level of the unloaded bed",
+    Separation.PRESSURE: "above the level of the unloaded bed, and where the dashpots would pull",
+}
+
+
+@dataclass(frozen=True)
+class BedSupport(Support):
+    """A Winkler bed, in SI units.
+
+    Parameters
+    ----------
+    load : BaseLoad
+        The body on it.
+    stiffness, damping : float
+        k0 and c0, per length of the base [Pa], [Pa s].
+    separation : Separation
+        Where the base parts from the bed.
+    """
+
+    stiffness: float
+    damping: float
+    separation: Separation
+    settlement_name: ClassVar[str] = "soil_settlement"
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "Winkler"
+
+    def cautions(self) -> list[str]:
+        """Give warnings about stability."""
+        if self.rocking_stiffness > 0.0:
+            return []
+        return [
+            "the soil is too soft to hold the body upright: (2/3) k0 b^3 is below m g h, so "
+            "that the smallest disturbance overturns it"
+        ]
+
+    def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
+        """Give the bed as the equations take it."""
+        return bed_numbers(
+            body,
+            stiffness=self.stiffness / mass,
+            damping=self.damping / mass,
+            by_pressure=self.separation is Separation.PRESSURE,
+            load=load_mass / mass,
+        )
+
+    def words(self) -> BaseWords:
+        """Tell the bed in words."""
+        one_sided = (
+            "Eq. (19), corrected: inertia I_O + m (h + b a)^2 and its a'^2 term in (19b), (19e), "
+            "(19f), (19h); resultants over the part in contact"
+        )
+        if self.load.options.small:
+            one_sided = (
+                "Eq. (19), corrected: (19e), (19f), (19h); inertia I_M and heights to second "
+                "order, so that energies balance"
+            )
+        return BaseWords(
+            law="soil's resultants as in Eqs. (18) and (19)",
+            equations=[
+                ("full", "Eq. (18) at small rotation; at finite rotation the same bed with "
+                 "x' = h cos(a), and its resultants over the whole base"),
+                ("left, right", one_sided),
+                ("flight", "free fall and constant rotation rate"),
+                ("contact", f"without impact law; the base parts from the bed "
+                 f"{_SEPARATION[self.separation]}"),
+            ],
+            uplift=("uplift angle, arcsin(delta/b)", uplift_words(self.uplift_angle)),
+            numbers=self._numbers(),
+            left_out=["yielding of the soil", "impact on the soil"],
+            body="body",
+            end="end",
+        )  # fmt: skip
+
+    def _numbers(self) -> list[tuple[str, str]]:
+        body = self.load.body
+        return [
+            ("mass on the soil", f"{body.mass:.6g} kg, centre {body.centre_height:.6g} m above it"),
+            ("soil stiffness k0, damping c0", f"{self.stiffness:.6g} Pa, {self.damping:.6g} Pa s"),
+            ("settlement delta", f"{self.settlement:.6g} m"),
+            *self.vibrations("vertical vibration, Eq. (18a)", "rocking in full contact, Eq. (18b)"),
+        ]
+
+
+def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
+    """Give a bed under a body; a damping ratio is that of the vertical motion of all its mass.
+
+    Parameters
+    ----------
+    soil : WinklerSoil
+        As given by the user.
+    load : BaseLoad
+        All that stands on it, as one body.
+
+    Returns
+    -------
+    BedSupport
+    """
+    given, body = soil.si, load.body
+    damping = given.damping
+    if damping is None:
+        critical = sqrt(2.0 * body.half_width * given.stiffness * body.mass)
+        damping = given.damping_ratio * critical / body.half_width
+    return BedSupport(load, given.stiffness, damping, given.separation)

@@ -9,7 +9,6 @@ from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import HELD, BaseFriction, friction_under
 from rockframe.system.setting import SlipRange
-from rockframe.system.sliding_base import sheared
 from rockframe.system.sliding_ground import (
     friction_to_roll_over,
     ill_posed,
@@ -17,6 +16,7 @@ from rockframe.system.sliding_ground import (
     slide_rock_of,
     slips_on_ground,
 )
+from rockframe.system.sliding_stack import sheared
 from rockframe.system.stack import StackSetting
 from rockframe.system.words import SLIPS, Words
 

@@ -66,7 +66,7 @@ def describe(setting: "Setting", parts: "Parts") -> str:
     """Tell the model, its equations, its numbers and its limits."""
     words, body, height = setting.words(), setting.body, setting.body.centre_height
     lines = [f"Model: {setting.model}"]
-    lines += _section("Parts", [("", repr(part)) for part in parts.present()])
+    lines += _section("Parts", [("", repr(part)) for part in parts])
     lines += _section("Contact states and their equations", words.equations)
     lines += _section("Horizontal restraint", [("", words.restraint)])
     lines += _section(

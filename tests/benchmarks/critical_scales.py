@@ -22,7 +22,7 @@ from records import records_folder
 
 import rockframe as rf
 from rockframe.errors import RockframeWarning
-from rockframe.signals.polynomials import greatest
+from rockframe.signals.motion import greatest
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import summary_of

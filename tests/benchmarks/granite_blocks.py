@@ -13,7 +13,7 @@ from scipy.stats import qmc
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
-from rockframe.signals.polynomials import greatest
+from rockframe.signals.motion import greatest
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.run import outcome
 

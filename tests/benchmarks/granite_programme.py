@@ -11,7 +11,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.polynomials import greatest
+from rockframe.signals.motion import greatest
 
 VARIABLE = "ROCKFRAME_GRANITE"
 _BESIDE_THE_PROJECT = (

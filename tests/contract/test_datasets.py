@@ -29,8 +29,8 @@ from rockframe.errors import SolverWarning
 from rockframe.results.outcome import verdict
 from rockframe.results.schema import ENERGIES, SCHEMA
 from rockframe.solve.accuracy import accuracy_of
-from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
+from rockframe.solve.workspace import Status
 from rockframe.system.bodies import OverturningAngles
 
 pytestmark = pytest.mark.contract
@@ -588,12 +588,14 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
     setting = SimpleNamespace(
         overturning_angles=angles, leans=False, stacked=pads_on_cap, slips_of=lambda _: []
     )
-    assert verdict(replace(summary, **found), setting, end=0.1) == words
-    upper = verdict(replace(summary, first_uplift_time=math.nan), setting, end=0.1, of=" of body 1")
+    model = SimpleNamespace(system=None, links=0, shows_bodies=False, rotation_in=lambda _: 0.1)
+    assert verdict(replace(summary, **found), setting, model) == words
+    of_several = SimpleNamespace(**vars(model) | {"shows_bodies": True})
+    upper = verdict(replace(summary, first_uplift_time=math.nan), setting, of_several)
     assert pads_on_cap or "1 impact, no uplift of body 1." in upper
     if not summary.overturned and summary.status.finished and not found:
         setting.overturning_angles, setting.leans = OverturningAngles(0.2, 0.025), True
-        told = verdict(summary, setting, end=0.1)
+        told = verdict(summary, setting, model)
         assert "peak rotation 0.005 rad, 20 % of the overturning angle to the right;" in told
 
 

@@ -8,7 +8,7 @@ import rockframe as rf
 from rockframe.dynamics.protocol import Start
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
-from rockframe.solve.layout import Status
+from rockframe.solve.workspace import Status
 
 pytestmark = pytest.mark.convergence
 

@@ -143,7 +143,7 @@ def test_an_eccentricity_of_zero_changes_no_bit():
         usual = block.replace(centre_height=None, eccentricity=None)
         assert block.si == usual.si
         assert block != usual
-        parts = [usual if part == block else part for part in given.parts.present()]
+        parts = [usual if part == block else part for part in given.parts]
         options = {"restraint": scenario.base, "rotation": scenario.rotation}
         if scenario.scene in ("coupled", "cascade"):
             options["coupling"] = scenario.scene

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.dynamics.pads import RELAXING, corner_contact, corner_level
+from rockframe.dynamics.pads import RELAXING, corner_contact
 from rockframe.dynamics.protocol import Start
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
@@ -68,7 +68,7 @@ def free_forces(kind, model, run):
     for mode, state in zip(run.mode, run.state, strict=True):
         for left in free[mode]:
             line = body.base_line_at(system.state_of(0, state))
-            if corner_level(line, left) < pads.settlement_of(left):
+            if pads.corner(left, line).pressed > 0.0:
                 found.append(pads.reaction(RELAXING, left, line, ()) / gravity)
     return found
 

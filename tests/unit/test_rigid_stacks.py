@@ -11,7 +11,7 @@ from plainly import plainly
 import rockframe as rf
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.errors import AssemblyError, ModelWarning
-from rockframe.solve.layout import Status
+from rockframe.solve.workspace import Status
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
 PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")

@@ -12,7 +12,7 @@ from rockframe.simulation.certify.certificate import SAFETY
 from rockframe.simulation.certify.second_look import MORE, OFF, doubts, peak_error
 from rockframe.simulation.plan import plan_run
 from rockframe.simulation.run import outcome
-from rockframe.solve.layout import Status
+from rockframe.solve.workspace import Status
 
 SYSTEM = rf.System(
     rf.Block.from_size(radius="2.5 m", slenderness=4.5, mass="20 t"),

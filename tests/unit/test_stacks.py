@@ -14,7 +14,7 @@ from rockframe.dynamics.events import ContactState
 from rockframe.dynamics.protocol import MOST_MODES
 from rockframe.errors import AssemblyError, ComponentError
 from rockframe.simulation.certify.perturbations import parameters
-from rockframe.system.sliding_base import MOST_THAT_SLIDE
+from rockframe.system.sliding_stack import MOST_THAT_SLIDE
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
 PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")

@@ -18,8 +18,8 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS, OPERATIONS
 from rockframe.proposals import hints_of
 from rockframe.reports.project import CHECKS, project_json
-from rockframe.simulation.plan import read_arguments
-from rockframe.simulation.run_arguments import Certification, certification_of
+from rockframe.simulation.plan import certification_of, read_arguments
+from rockframe.simulation.run_arguments import Certification
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
 from rockframe.system.options import Overturning

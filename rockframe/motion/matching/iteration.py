@@ -12,7 +12,7 @@ from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.velocity_pulse import LEAST_INDICATOR
 from rockframe.signals import Signal
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.polynomials import greatest, knots_of
+from rockframe.signals.motion import greatest, knots_of
 from rockframe.signals.spectra import pseudo_spectra, spectral_peaks
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from rockframe.proposals import hinted
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.records import VERTICAL as EITHER
 from rockframe.signals import Motion, Signal
-from rockframe.signals.signal import COEFFICIENTS, VERTICAL
+from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.units import ANGLE, QuantityLike, to_si
 
 if TYPE_CHECKING:

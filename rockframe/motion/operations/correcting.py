@@ -16,7 +16,7 @@ from rockframe.motion.processing.samples import (
 )
 from rockframe.motion.value import Made
 from rockframe.proposals import hinted
-from rockframe.signals.signal import MAXIMUM_SAMPLES
+from rockframe.signals.motion import MAXIMUM_SAMPLES
 from rockframe.units import FREQUENCY, POSITIVE, QuantityLike, to_si
 
 _HIGHEST_ORDER: Final = 12

@@ -16,7 +16,7 @@ from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.proposals import hinted
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.polynomials import knots_of
+from rockframe.signals.motion import knots_of
 from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, QuantityLike, to_si
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from rockframe.motion.value import Made
 from rockframe.proposals import hinted
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.polynomials import greatest
+from rockframe.signals.motion import greatest
 from rockframe.signals.spectra import (
     DAMPING_RATIO,
     check_cost,

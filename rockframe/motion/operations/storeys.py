@@ -25,7 +25,7 @@ from rockframe.motion.quantities import ArrayLike
 from rockframe.motion.value import Made
 from rockframe.proposals import hinted
 from rockframe.signals import Motion
-from rockframe.signals.signal import MAXIMUM_SAMPLES
+from rockframe.signals.motion import MAXIMUM_SAMPLES
 from rockframe.signals.spectra import DAMPING_RATIO, MAXIMUM_PARTS
 from rockframe.units import (
     MASS,

@@ -18,7 +18,7 @@ from rockframe.motion.operations.following import (
 from rockframe.motion.processing.samples import band_limited, coarsened, refined, tapered
 from rockframe.motion.value import Made
 from rockframe.proposals import hinted
-from rockframe.signals.signal import MAXIMUM_SAMPLES
+from rockframe.signals.motion import MAXIMUM_SAMPLES
 from rockframe.units import POSITIVE, TIME, TIME_STEP, QuantityLike, to_si
 
 if TYPE_CHECKING:

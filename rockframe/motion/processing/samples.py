@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from rockframe.errors import RecordWarning, warn
-from rockframe.signals import polynomials
 from rockframe.signals.arrays import Array
-from rockframe.signals.signal import Signal
+from rockframe.signals.motion import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rockframe.signals import Signal
-
+from rockframe.signals.motion import divided
 
 _INTEGER_RATIO: Final = 1e-9
 _ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slowest motion
@@ -136,7 +135,7 @@ def divided_signal(signal: Signal, parts: int) -> Signal:
     step = signal.time_step / parts
     if signal.polynomials is None:
         return replace(signal, time_step=step, samples=refined(signal, step))
-    pieces = polynomials.divided(signal.polynomials, parts)
+    pieces = divided(signal.polynomials, parts)
     samples = np.append(pieces[:, 0], signal.samples[-1])
     samples[::parts] = signal.samples
     return replace(signal, time_step=step, samples=samples, polynomials=pieces)

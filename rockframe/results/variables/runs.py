@@ -15,7 +15,7 @@ from rockframe.results.variables.variable import (
     counting,
     flag,
 )
-from rockframe.solve.layout import Status
+from rockframe.solve.workspace import Status
 from rockframe.units import Unit
 
 
@@ -28,7 +28,7 @@ class Direction(IntEnum):
 
 
 class RunStatus(IntEnum):
-    """How a run ended, :class:`rockframe.solve.layout.Status`; or why a case has none."""
+    """How a run ended, :class:`rockframe.solve.workspace.Status`; or why a case has none."""
 
     COMPLETED = Status.COMPLETED
     OVERTURNED = Status.OVERTURNED

@@ -12,8 +12,8 @@ from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.simulation.plan import Plan
 from rockframe.solve.bookkeeping import RIGHT_ANGLE
-from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
+from rockframe.solve.workspace import Status
 from rockframe.system.assembly import Assembly
 
 LATER: Final = 0.05

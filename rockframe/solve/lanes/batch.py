@@ -20,7 +20,7 @@ from rockframe.compiled import (
     stretch,
 )
 from rockframe.dynamics.events import FLIGHT
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.driver import run_on
 from rockframe.solve.equations import BoundEquations, known_mode
 from rockframe.solve.lanes import fields

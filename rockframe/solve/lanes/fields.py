@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 from rockframe.compiled import ReadOnlyMatrix, Vector, as_integers, inlined, lane_of
 from rockframe.dynamics.protocol import POWERS, Equations
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.march import SHORTEST, WEIGHTS, jumps
 from rockframe.solve.schemes import STAGES
 from rockframe.solve.workspace import ERRORS, TERMS

@@ -12,21 +12,21 @@ from rockframe.compiled.bound import elements_of, structure_of
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import Many
 from rockframe.signals import Motion
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.equations import BoundEquations, equations_of
 from rockframe.solve.integrate import EVENT_ROOM, Begun, make_workspace, pieces_of
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.batch import Batch, BatchSizes, advance_batch
 from rockframe.solve.lanes.fields import Places, places_of
 from rockframe.solve.lanes.steps import steps_in_lanes
-from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary, run_counts
 from rockframe.solve.workspace import (
+    NO_STEPS,
     EventTable,
     Output,
     Pieces,
+    Status,
     Workspace,
-    no_steps,
 )
 
 ROOM: Final = 4_000_000
@@ -50,8 +50,8 @@ class Outcomes:
     """What became of runs, by their number."""
 
     clock: Matrix  # ndarray, shape (runs, n)
-    counters: Whole  # laid out in :mod:`rockframe.solve.layout`
-    status: Whole  # how they ended, :class:`rockframe.solve.layout.Status`
+    counters: Whole  # laid out in :mod:`rockframe.solve.workspace`
+    status: Whole  # how they ended, :class:`rockframe.solve.workspace.Status`
     modes: Whole  # of the model, where they ended
     states: Matrix
     memories: Matrix
@@ -231,7 +231,7 @@ def _scratch(
 ) -> tuple[Output, EventTable, Workspace]:
     """Give room for a single run: no outputs, events that are not kept, a step."""
     width = there.first - there.state
-    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int64), np.empty((0, 2)), no_steps())
+    output = Output(np.empty((0, width)), np.empty(0, dtype=np.int64), np.empty((0, 2)), NO_STEPS)
     events = EventTable(
         np.empty((EVENT_ROOM, 1 + 2 * width + memory)), np.empty((EVENT_ROOM, 3), dtype=np.int64)
     )

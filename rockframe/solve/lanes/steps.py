@@ -20,7 +20,7 @@ from rockframe.compiled import (
     widest_registers,
 )
 from rockframe.dynamics.protocol import POWERS, Equations, Ground
-from rockframe.solve import layout as at
+from rockframe.solve import workspace as at
 from rockframe.solve.equations import gives_powers
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import Places, enter_intervals, evaluate_ground, places_of
@@ -36,12 +36,12 @@ from rockframe.solve.schemes import (
     STAGES,
     FixedSteps,
     FixedStepsByRates,
+    StepsByTolerance,
     adapted,
     begin_stages,
     end_works,
     errors_of_places,
     errors_of_rates,
-    excess_error,
     fixed_step,
     next_step,
     rest_of,
@@ -70,7 +70,7 @@ def is_quiet(system: Equations, room: Vector, lane: int) -> bool:
     found = system.guards_in(held, new, lane_of(room, there.last, lane), ground)
     put_guards(system, found, new, limits, after)
     falls = may_fall(system, h, lane_of(room, there.before, lane), after)
-    rotation = rotation_in_step(system, limits, state, new)
+    rotation = rotation_in_step(0, system.coordinates(), limits, state, new)
     peaks = rotation.may_peak(h, clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT])
     return not (falls | peaks | slides(system, room, lane))
 
@@ -93,13 +93,13 @@ def account_for(system: Equations, room: Vector, lane: int) -> None:
         lane_of(room, there.works, lane), lane_of(room, there.clock, lane),
     )  # fmt: skip
     limits, h = lane_of(room, fields.LIMITS, lane), own[fields.STEP]
-    rotation = rotation_in_step(system, limits, start, end)
+    rotation = rotation_in_step(0, system.coordinates(), limits, start, end)
     flight, flies = clock[at.FLIGHT_TIME], lane_of(whole, fields.OWN_WHOLE, lane)[fields.FLIES]
     supplied = clock[at.SUPPLIED] + works[1]
     new[at.INTO_INTERVAL] = clock[at.INTO_INTERVAL] + h
     new[at.FLIGHT_TIME] = flight + h if flies == 1 else flight
-    new[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.largest_left())
-    new[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.largest_right())
+    new[at.PEAK_LEFT] = max(clock[at.PEAK_LEFT], rotation.left)
+    new[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.right)
     new[at.DISSIPATED] = clock[at.DISSIPATED] + works[0]
     new[at.SUPPLIED] = supplied
     new[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], abs(supplied))
@@ -336,10 +336,10 @@ def end_step(system: Equations, room: Vector, lane: int) -> None:
         lane_of(room, there.last, lane), works,
     )  # fmt: skip
     scale = max(clock[at.LARGEST_TERM], clock[at.DISSIPATED], abs(clock[at.SUPPLIED]))
-    clock[at.EXCESS] = excess_error(
-        system, lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ACTIVE],
-        works[2] / scale, lane_of(room, there.new, lane), works,
-        lane_of(room, there.reference, lane), lane_of(room, fields.CONTROLS, lane),
+    clock[at.EXCESS] = StepsByTolerance(math.inf).excess_of(
+        system, lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.ACTIVE], True, scale,
+        lane_of(room, there.new, lane), works, lane_of(room, there.reference, lane),
+        lane_of(room, fields.CONTROLS, lane),
     )  # fmt: skip
 
 

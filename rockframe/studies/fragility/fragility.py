@@ -10,9 +10,9 @@ import xarray as xr
 from rockframe.arguments import one_of_names
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.proposals import hinted
-from rockframe.results.dataset import build_dataset
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.analyses import LIMIT_STATE
-from rockframe.simulation.friction import share_words
+from rockframe.simulation.soundness import share_words
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Fit

@@ -8,8 +8,8 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.results.dataset import build_dataset
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson

@@ -8,11 +8,10 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint, point_labels
-from rockframe.results.schema import SCHEMA
+from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus

@@ -19,9 +19,9 @@ import numpy as np
 
 from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
-from rockframe.results.dataset import SOURCE, dated
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint
+from rockframe.results.schema import SOURCE, dated
 from rockframe.studies.sweeps.axes import Axis, Grid, chunks_of
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.execution import Chunk

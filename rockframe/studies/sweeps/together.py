@@ -18,8 +18,8 @@ from rockframe.simulation.plan import run_length
 from rockframe.simulation.run import has_no_cautions, in_motion, scalars_of
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.lanes.integrate import LaneRun, Outcomes, integrate_lanes, joined, rows_of
-from rockframe.solve.layout import Status
 from rockframe.solve.trajectory import Summary
+from rockframe.solve.workspace import Status
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.side_by_side import TOGETHER, Finished, LaneScene, prepared
 

@@ -10,13 +10,13 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ModelWarning, SolverWarning, warn
-from rockframe.results.dataset import build_dataset
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import LEAST_SLIP, Generic, overturned_by
+from rockframe.results.schema import build_dataset
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
-from rockframe.simulation.friction import counts_of_slides
 from rockframe.simulation.run import NONE
+from rockframe.simulation.soundness import counts_of_slides
 from rockframe.studies.sweeps.axes import OWNER
 
 SCREENED: Final = (REPEATED, VERDICT_CHANGED)

@@ -12,7 +12,7 @@ from rockframe.comparison.tradeoff import (
     relative_peak_error,
     verdicts_agree,
 )
-from rockframe.solve.layout import Status
+from rockframe.solve.workspace import Status
 
 
 def made(rotation=(), time=(), kinds=(), instants=(), status=Status.COMPLETED, fell=False):

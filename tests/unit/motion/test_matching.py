@@ -11,7 +11,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, UnitsError
 from rockframe.motion.matching.iteration import PEAKS, unusual
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.polynomials import knots_of
+from rockframe.signals.motion import knots_of
 
 # that other things change beside the spectrum is looked at in one test
 pytestmark = pytest.mark.filterwarnings("ignore:(?s).*the wavelets have changed")

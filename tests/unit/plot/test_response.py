@@ -10,7 +10,7 @@ from records import record_path
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning
 from rockframe.plot._response import CONTACT_COLOURS, mixed_colours
-from rockframe.solve.layout import Status
+from rockframe.solve.workspace import Status
 
 BLOCK = rf.Block(width="1 m", height="6 m", mass="10 t")
 PULSE = rf.GroundMotion.sine_pulse("-2 m/s^2", "1 Hz")

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from rockframe.simulation.certify.run_summary import RunSummary
-from rockframe.solve.layout import Status
+from rockframe.solve.workspace import Status
 from rockframe.studies.flips import FINEST, flips_sentence, follow
 
 ROW = [0.1 * k for k in range(41)]

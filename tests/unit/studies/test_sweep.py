@@ -31,7 +31,7 @@ from rockframe.errors import (
 from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation import run as of_a_run
 from rockframe.simulation.soundness import STILL_MOVING
-from rockframe.solve.layout import Status
+from rockframe.solve.workspace import Status
 from rockframe.studies.sweeps import case as of_cases
 from rockframe.studies.sweeps import labelling
 

@@ -1,4 +1,4 @@
-"""Scenes of bodies that slip on bases that give way: their numbers, words and models."""
+"""The scene of bodies upon one another that slip: its numbers, its words and its model."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Final, cast
 
 from rockframe.components import Component, Tendon
 from rockframe.errors import AssemblyError
-from rockframe.system.alone import AloneSetting
-from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
+from rockframe.system.fitting import HELD, SMALL_SLIDING, friction_under
 from rockframe.system.options import Sliding
 from rockframe.system.setting import SlipRange
 from rockframe.system.sliding_ground import ill_posed
@@ -25,65 +24,6 @@ LEAST_OVERHANG: Final = 0.1
 """Share of half the width of its base by which a body is beyond an edge when that is told.
 
 By as much the lever of the edge, which bears in its place, is shorter than that of its corner."""
-
-
-@dataclass(frozen=True)
-class SlidingAloneSetting(AloneSetting):
-    """A body on a base with friction."""
-
-    friction: BaseFriction
-    slides = True
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return f"{self.support.model}-sliding"
-
-    def words(self) -> Words:
-        """Tell the base, and the friction that holds the body on it."""
-        base = super().words()
-        return Words(
-            equations=[
-                *base.equations, SLIPS,
-            ],
-            restraint=f"{base.restraint.partition(';')[0]}; as far as friction can",
-            numbers=[
-                *base.numbers,
-                ("friction at rest, and of slip", self.friction.words()),
-            ],
-            left_out=[one for one in base.left_out if one != "sliding"],
-        )  # fmt: skip
-
-    @cached_property
-    def _model(self) -> "ContactModel":
-        """The equations of a body that slips on its base: those of a chain of one."""
-        from rockframe.dynamics.chain.model import AtRest, ChainBody, chain
-
-        body, rest = self.load.rigid_body, None
-        if self.leans and self.support.standing.rest is not None:
-            stands = self.support.standing.rest[0].state
-            rest = [AtRest(stands.rotation, stands.vertical)]
-        one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
-        return chain([one], self.body.mass, rest, frictions=[self.friction])
-
-    def contact_model(self) -> "ContactModel":
-        """Give the equations of slip, rotation and rise."""
-        return self._model
-
-    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Tell how far the body slipped."""
-        system = cast("SlippingBodies", self._model.system)
-        return (SlipRange(*system.slips(0, ending)),)
-
-
-def alone_on(part: Component, held: AloneSetting) -> AloneSetting:
-    """Give the setting of a body on a base: of one that slips on it where that has friction."""
-    found = friction_under(part, held.options)
-    if found is None:
-        return held
-    if held.options.small:
-        raise AssemblyError([SMALL_SLIDING])
-    return SlidingAloneSetting(held.load, held.support, found, cap_offset=held.cap_offset)
 
 
 @dataclass(frozen=True)
