@@ -16,6 +16,7 @@ PLOTS = [name for name in rf.plot.__all__ if inspect.isfunction(getattr(rf.plot,
 
 
 LISTED = re.compile(r"^   ([A-Za-z][\w.]+)$", re.MULTILINE)
+EVERY = re.compile(r"^   :every: (\w+)$", re.MULTILINE)
 INDEX = Path(__file__).resolve().parents[2] / "docs" / "reference" / "index.md"
 PACKAGES = [name for name in rf.__all__ if inspect.ismodule(getattr(rf, name))]
 
@@ -52,7 +53,9 @@ def test_every_public_name_is_documented(name):
 
 def test_every_public_name_has_a_page():
     """The lists of the reference are what pages are made of, each name once."""
-    listed = LISTED.findall(INDEX.read_text(encoding="utf-8"))
+    text = INDEX.read_text(encoding="utf-8")
+    listed = LISTED.findall(text)
+    listed += [f"{one}.{name}" for one in EVERY.findall(text) for name in getattr(rf, one).__all__]
     assert len(listed) == len(set(listed)) > 100
     public = {name for name in rf.__all__ if name not in (*PACKAGES, "__version__")}
     for package in ("plot", "export", "codes", "errors", "measures"):
