@@ -1,17 +1,12 @@
-"""Analytic motions: each constructor a row of title, formula, parameters, units and source.
-
-What is read of the arguments is told in the name, the history and the recipe of the motion.
-"""
+"""Analytic motions: each constructor a row of title, formula, parameters, units and source."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial, wraps
-from inspect import signature
-from typing import TYPE_CHECKING, Any, Final, Self, TypeVar, cast
+from functools import partial
+from typing import Final, Self
 
-from rockframe.motion.constructors.analytic_arguments import ArgumentReader
+from rockframe.motion.constructors.analytic_arguments import PULSES, pulse
 from rockframe.motion.pulses import (
     QUARTER_TURN,
     mavroeidis_papageorgiou,
@@ -21,61 +16,11 @@ from rockframe.motion.pulses import (
     type_c,
 )
 from rockframe.motion.value import MotionValue
-from rockframe.proposals import hinted
-from rockframe.shared_arguments import with_raises
-from rockframe.units import (
-    POSITIVE,
-    Condition,
-    QuantityLike,
-    RatioLike,
-)  # fmt: skip
+from rockframe.units import Condition, QuantityLike, RatioLike
 
-if TYPE_CHECKING:
-    from rockframe.signals import Motion
-
-Constructor = TypeVar("Constructor", bound=Callable[..., Any])
-
-PULSES: Final[list[str]] = []
-"""Names of the constructors, in the order in which they stand here."""
+__all__ = ["PULSES", "AnalyticMotion"]
 
 _AT_LEAST_ONE: Final = Condition("at least 1", lambda value: value >= 1.0)
-_RAISES: Final = """\
-UnitsError
-    A wrong unit, or none.
-ComponentError
-    Not finite, or a frequency, period or length that is not positive."""
-
-
-def _pulse(
-    title: str, formula: Callable[..., Motion], cycles: Condition = POSITIVE
-) -> Callable[[Constructor], Constructor]:
-    """Make a constructor of a formula: its arguments are read by their names, in SI units."""
-
-    def decorate(declared: Constructor) -> Constructor:
-        own = signature(declared)
-        declared.__qualname__ = declared.__name__  # as messages name it
-        PULSES.append(declared.__name__)
-        checked = hinted()(declared)
-
-        @wraps(checked)
-        def construct(kind: type[Any], *given: Any, **named: Any) -> Any:
-            checked(kind, *given, **named)  # says what is missing, or too much
-            values = own.bind(kind, *given, **named)
-            values.apply_defaults()
-            reader = ArgumentReader(f"{kind.__name__}.{declared.__name__}", cycles)
-            for name in list(own.parameters)[1:]:
-                reader.read(name, values.arguments[name])
-            return kind(
-                formula(reader.owner, **reader.numbers),
-                name=", ".join([title, *reader.short]),
-                history=(f"{title}: {', '.join(reader.exact)}",),
-                recipe={"constructor": declared.__name__, **reader.recipe},
-            )
-
-        construct.__doc__ = with_raises(declared.__doc__ or "", _RAISES)
-        return cast("Constructor", construct)
-
-    return decorate
 
 
 class AnalyticMotion(MotionValue):
@@ -84,7 +29,7 @@ class AnalyticMotion(MotionValue):
     __slots__ = ()
 
     @classmethod
-    @_pulse("sine pulse", sine)
+    @pulse("sine pulse", sine)
     def sine_pulse(
         cls,
         amplitude: QuantityLike = "-9.81 m/s^2",
@@ -116,7 +61,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse("cosine pulse", partial(sine, phase=QUARTER_TURN))
+    @pulse("cosine pulse", partial(sine, phase=QUARTER_TURN))
     def cosine_pulse(
         cls, amplitude: QuantityLike, frequency: QuantityLike, cycles: RatioLike = 1
     ) -> Self:
@@ -149,7 +94,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse(
+    @pulse(
         "half-sine pulse",
         lambda owner, amplitude, duration: sine(owner, amplitude, 0.5 / duration, 0.5),
     )
@@ -178,7 +123,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse(
+    @pulse(
         "harmonic motion",
         lambda owner, amplitude, frequency, duration, phase=0.0: sine(
             owner, amplitude, frequency, duration * frequency, phase
@@ -218,7 +163,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse(
+    @pulse(
         "type A pulse",
         lambda owner, velocity, period: sine(owner, math.pi * velocity / period, 1.0 / period, 1.0),
     )
@@ -250,7 +195,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse(
+    @pulse(
         "type B pulse",
         lambda owner, velocity, period: sine(
             owner, 2.0 * math.pi * velocity / period, 1.0 / period, 1.0, QUARTER_TURN
@@ -284,7 +229,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse("type C pulse", type_c)
+    @pulse("type C pulse", type_c)
     def type_c_pulse(cls, velocity: QuantityLike, period: QuantityLike, order: int = 1) -> Self:
         """Build a pulse of `order` cycles in the displacement of the ground.
 
@@ -325,7 +270,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse("Ricker wavelet", ricker)
+    @pulse("Ricker wavelet", ricker)
     def ricker_wavelet(
         cls, amplitude: QuantityLike, period: QuantityLike, *, antisymmetric: bool = False
     ) -> Self:
@@ -369,7 +314,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse("pulse of Mavroeidis and Papageorgiou", mavroeidis_papageorgiou, cycles=_AT_LEAST_ONE)
+    @pulse("pulse of Mavroeidis and Papageorgiou", mavroeidis_papageorgiou, cycles=_AT_LEAST_ONE)
     def mavroeidis_papageorgiou_pulse(
         cls,
         velocity: QuantityLike,
@@ -419,7 +364,7 @@ class AnalyticMotion(MotionValue):
         ...
 
     @classmethod
-    @_pulse("double impulse", opposite_impulses)
+    @pulse("double impulse", opposite_impulses)
     def double_impulse(
         cls,
         velocity: QuantityLike,
