@@ -52,7 +52,7 @@ RUN: Final = DatasetKind(
     ),
 )
 KINDS: Final[dict[str, DatasetKind]] = {}
-"""What is known by its variables, by the function that draws it: the first that fits draws."""
+"""What is known by its variables, by the function that draws it; the first of them that fits."""
 _NEEDED: Final[dict[str, str]] = {}
 """What each function draws, in words."""
 _NOT_BY_KIND: Final = (
@@ -89,19 +89,13 @@ _UNITS: Final = (
 
 
 def draws(
-    what: str | DatasetKind,
-    call: str = "",
-    known: tuple[str, ...] = (),
-    needed: tuple[str, ...] = (),
-    *,
-    ax: str = "Axes",
-    title: str = "",
-) -> Callable[[Drawing], Drawing]:
-    """Say what a figure is drawn from, and in its docstring what it shares with others.
+    what: str | DatasetKind, call: str = "", known: tuple[str, ...] = (),
+    needed: tuple[str, ...] = (), *, ax: str = "Axes", title: str = "",
+) -> Callable[[Drawing], Drawing]:  # fmt: skip
+    """Say what a figure is drawn from, a dataset as a `DatasetKind` does.
 
-    That are `units`, `ax`, `title`, and what is refused. A dataset has the call that gives it, and
-    variables as a `DatasetKind`. Parameters by the words of the manual: what `ax` may be, and the
-    title unless one is given.
+    And in the docstring what figures share: `units`, `ax`, `title`, and what is refused. Words of
+    the manual are given for what `ax` may be, and for the title unless one is given.
     """
     kind = what if isinstance(what, DatasetKind) else DatasetKind(what, call, known, needed)
     usual = f"; {title} unless given" if title else ""

@@ -6,7 +6,8 @@ import math
 from functools import partial
 from typing import Final, Self
 
-from rockframe.motion.constructors.analytic_arguments import PULSES, pulse
+from rockframe.motion.constructors.analytic_arguments import PULSES as PULSES
+from rockframe.motion.constructors.analytic_arguments import pulse
 from rockframe.motion.pulses import (
     QUARTER_TURN,
     mavroeidis_papageorgiou,
@@ -17,8 +18,6 @@ from rockframe.motion.pulses import (
 )
 from rockframe.motion.value import MotionValue
 from rockframe.units import Condition, QuantityLike, RatioLike
-
-__all__ = ["PULSES", "AnalyticMotion"]
 
 _AT_LEAST_ONE: Final = Condition("at least 1", lambda value: value >= 1.0)
 
