@@ -1,6 +1,7 @@
 """Numbers that pages of the manual state, read from the pages."""
 
 import re
+from importlib import import_module
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
@@ -39,3 +40,12 @@ def table(page: str, head: str) -> list[list[str]]:
     """Give the cells of the only table of a page with the given head."""
     (rows,) = tables(page, head)
     return rows
+
+
+def listed() -> list[str]:
+    """Give the names that the reference lists, also those of packages that it lists whole."""
+    text = read("reference/index.md")
+    names = re.findall(r"^   ([A-Za-z][\w.]+)$", text, re.MULTILINE)
+    for package in re.findall(r"^   :every: (\w+)$", text, re.MULTILINE):
+        names += [f"{package}.{one}" for one in import_module(f"rockframe.{package}").__all__]
+    return names

@@ -1,17 +1,22 @@
 """Tables and texts that are read from the code when the manual is built.
 
-``{code-table} <name>`` and ``{code-text} <name>``.
+``{code-table} <name>`` and ``{code-text} <name>``; ``.. module-map::`` of all modules.
 """
 
-from collections.abc import Callable, Iterable
+import ast
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 
 from docutils import nodes
+from docutils.statemachine import StringList
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 import rockframe as rf
 from rockframe.command.files.templates import every_key
 from rockframe.dynamics.events import ContactState, EventKind
+from rockframe.motion import formats
+from rockframe.plot._checks import KINDS
 from rockframe.results.variables.analyses import (
     CLOUD,
     DYNAMIC_ANALYSIS,
@@ -119,6 +124,16 @@ def _units() -> Rows:
     yield from zip(map(str, Unit), words, strict=True)
 
 
+def _figures() -> Rows:
+    yield "of rf.plot", "draws", "which is given by"
+    yield from ((name, kind.what, kind.call) for name, kind in KINDS.items())
+
+
+def _formats() -> Rows:
+    yield "name", "files", "usual endings"
+    yield from ((one.name, one.title, " ".join(one.suffixes)) for one in formats())
+
+
 TABLES: dict[str, Callable[[], Rows]] = {
     "free-decay": lambda: _variables(FREE_DECAY),
     "fit-statuses": lambda: _flags(FitStatus),
@@ -159,6 +174,8 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "directions": lambda: _flags(Direction),
     "statuses": lambda: _flags(RunStatus),
     "scenes": _scenes,
+    "figures": _figures,
+    "formats": _formats,
     "restraints": lambda: _options(Restraint),
     "rotations": lambda: _options(Rotation),
     "accuracy": _accuracy,
@@ -202,8 +219,34 @@ class CodeText(SphinxDirective):
         return [nodes.literal_block(text, text, language="toml")]
 
 
+class ModuleMap(SphinxDirective):
+    """All modules, by their folders, with the first lines of their docstrings."""
+
+    def run(self) -> list[nodes.Node]:
+        """Build the lists."""
+        whole = nodes.container()
+        lines = list(self._lines(Path(rf.__file__).parent))
+        self.state.nested_parse(StringList(lines, "modules"), self.content_offset, whole)
+        return whole.children
+
+    def _lines(self, folder: Path, level: str = "") -> Iterator[str]:
+        for path in sorted(folder.iterdir(), key=lambda one: (one.is_dir(), one.name)):
+            inner = path / "__init__.py"
+            if path.suffix == ".py" and path.name != "__init__.py":
+                yield from (f"{level}* ``{path.name}``: {_duty(path)}", "")
+            elif inner.is_file():
+                yield from (f"{level}* ``{path.name}/``: {_duty(inner)}", "")
+                yield from self._lines(path, f"{level}  ")
+
+
+def _duty(path: Path) -> str:
+    text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    return text.splitlines()[0]
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register the directives."""
     app.add_directive("code-table", CodeTable)
     app.add_directive("code-text", CodeText)
+    app.add_directive("module-map", ModuleMap)
     return {"parallel_read_safe": True}

@@ -1,5 +1,7 @@
 """A page for each public object, which autosummary writes from the lists of ``reference/index.md``.
 
+Of a package all names are listed by the option ``:every:``, so that they are written there alone.
+
 Docstrings and signatures are shown as people read and write them: defaults by their words, units
 with raised exponents, and no member that is Python's own. The pages stand in no table of contents:
 these some hundred names in the navigation of every page would take most of the time of a build.
@@ -8,38 +10,58 @@ these some hundred names in the navigation of every page would take most of the 
 import re
 from collections import Counter, namedtuple
 from collections.abc import Callable
+from importlib import import_module
+from itertools import chain
 from pathlib import Path
 from types import BuiltinFunctionType, FunctionType, MethodDescriptorType
 from typing import Any
 
 from docutils import nodes
+from docutils.parsers.rst import directives
+from docutils.statemachine import StringList
 from sphinx.application import Sphinx
 from sphinx.ext.autosummary import Autosummary, autosummary_toc
-from sphinx.ext.autosummary.generate import find_autosummary_in_files
+from sphinx.ext.autosummary.generate import find_autosummary_in_files, generate_autosummary_docs
 
 _FIELD = type(namedtuple("Pair", "field").field)
 _INNER = {"assembly", "scene", "setting"}  # of a System, for the package
+_EVERY = re.compile(r"^ +:every: (\w+)$", re.MULTILINE)
 _UNIT = re.compile(r"\[[^\[\]`'\"]*\^-?\d[^\[\]`'\"]*\]")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def remove_old_pages(app: Sphinx) -> None:
-    """Remove pages of objects that are listed no more, of which Sphinx would warn."""
+def renew_pages(app: Sphinx) -> None:
+    """Write pages of packages, and remove those of what is listed no more: Sphinx would warn."""
     _navigation.clear()
-    folder = Path(app.srcdir) / "reference"
+    index = Path(app.srcdir) / "reference" / "index.md"
+    generated = index.parent / "generated"
+    generated.mkdir(exist_ok=True)
+    every = generated / "every.txt"
+    names = map(_names_of, _EVERY.findall(index.read_text(encoding="utf-8")))
+    lines = [f"   rockframe.{name}" for name in chain.from_iterable(names)]
+    every.write_text("\n".join([".. autosummary::", "   :toctree: .", "", *lines]))
+    generate_autosummary_docs([str(every)], app=app)
     renamed = app.config.autosummary_filename_map
-    listed = {one.name for one in find_autosummary_in_files([str(folder / "index.md")])}
+    listed = {one.name for one in find_autosummary_in_files([str(index), str(every)])}
     files = {f"{renamed.get(name, name)}.rst" for name in listed}
-    for path in (folder / "generated").glob("*.rst"):
+    for path in generated.glob("*.rst"):
         if path.name not in files:
             path.unlink()
+
+
+def _names_of(package: str) -> list[str]:
+    return [f"{package}.{name}" for name in import_module(f"rockframe.{package}").__all__]
 
 
 class ObjectList(Autosummary):
     """A list of objects, whose pages it leaves out of the table of contents."""
 
+    option_spec = Autosummary.option_spec | {"every": directives.unchanged}
+
     def run(self) -> list[nodes.Node]:
         """Build the table."""
+        if "every" in self.options:
+            self.content = StringList(_names_of(self.options["every"]), "")
         return [one for one in super().run() if not isinstance(one, autosummary_toc)]
 
 
@@ -144,8 +166,8 @@ def skip_foreign(
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Register the hooks; pages are removed before autosummary writes any."""
-    app.connect("builder-inited", remove_old_pages, priority=50)
+    """Register the hooks; pages are renewed before autosummary writes the others."""
+    app.connect("builder-inited", renew_pages, priority=50)
     app.add_directive("autosummary", ObjectList, override=True)
     app.connect("html-page-context", share_navigation, priority=400)
     app.connect("builder-inited", find_uses)

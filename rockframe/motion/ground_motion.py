@@ -7,12 +7,8 @@ from typing import TYPE_CHECKING
 
 from rockframe.errors import ArgumentError, ComponentError, shown
 from rockframe.motion import dataset, description, value
-from rockframe.motion.constructors import (
-    analytic,
-    records,
-    synthetic,
-    tables,
-)
+from rockframe.motion.constructors import records, synthetic, tables
+from rockframe.motion.constructors.analytic import AnalyticMotion
 from rockframe.motion.operations import (
     combining,
     correcting,
@@ -29,7 +25,7 @@ from rockframe.signals import Motion
 
 
 @proposing
-class GroundMotion(MotionValue):
+class GroundMotion(AnalyticMotion):
     """Acceleration of the ground over time; immutable.
 
     Build one with :meth:`read`, :meth:`example`, :meth:`from_arrays`,
@@ -81,7 +77,7 @@ class GroundMotion(MotionValue):
                 raise ComponentError(msg)
             return super().__new__(cls)
 
-    # Constructors and operations are functions, each with its documentation, whose first
+    # Other constructors and operations are functions, each with its documentation, whose first
     # argument is the class, or the motion.
 
     read = classmethod(records.read)
@@ -90,17 +86,6 @@ class GroundMotion(MotionValue):
     from_times = classmethod(tables.from_times)
     from_frame = classmethod(tables.from_frame)
     from_trace = classmethod(tables.from_trace)
-
-    sine_pulse = classmethod(analytic.sine_pulse)
-    cosine_pulse = classmethod(analytic.cosine_pulse)
-    half_sine_pulse = classmethod(analytic.half_sine_pulse)
-    harmonic = classmethod(analytic.harmonic)
-    type_a_pulse = classmethod(analytic.type_a_pulse)
-    type_b_pulse = classmethod(analytic.type_b_pulse)
-    type_c_pulse = classmethod(analytic.type_c_pulse)
-    ricker_wavelet = classmethod(analytic.ricker_wavelet)
-    mavroeidis_papageorgiou_pulse = classmethod(analytic.mavroeidis_papageorgiou_pulse)
-    double_impulse = classmethod(analytic.double_impulse)
     stochastic = classmethod(synthetic.stochastic)
 
     to_dataset = dataset.to_dataset

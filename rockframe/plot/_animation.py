@@ -11,7 +11,7 @@ import xarray as xr
 from rockframe.errors import FileError
 from rockframe.plot._artists import CONTACT, SceneArtist
 from rockframe.plot._axes import BLUE, GREY, units_of
-from rockframe.plot._checks import above_zero, check_run, draws
+from rockframe.plot._checks import RUN, above_zero, check_run, draws
 from rockframe.plot._panels import AxesLike, Figure, Panels, sheet
 from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
@@ -181,6 +181,7 @@ class Animation:
 
 
 @draws(
+    RUN,
     ax="sequence of Axes, for the scene, the rotation and each strip of contact",
     title="the verdict",
 )

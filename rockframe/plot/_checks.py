@@ -33,86 +33,13 @@ class DatasetKind:
     known: tuple[str, ...]  # variables by which it is known
     needed: tuple[str, ...] = ()  # variables that are drawn beside these
 
+    @property
+    def words(self) -> str:
+        """What it is, and where it is from."""
+        return f"{self.what}, as {self.call} gives it" if self.call else self.what
 
-KINDS: Final = {
-    "cloud": DatasetKind(
-        "a cloud", "rf.cloud_analysis(runs)", ("cloud_response", "residual_dispersion")
-    ),
-    "annual_rate": DatasetKind(
-        "annual rates", "rf.annual_rate(fragility, hazard)", ("annual_rate", "rate_share")
-    ),
-    "fragility": DatasetKind(
-        "a fragility", "rf.fragility(runs)", ("exceedance_probability", "fragility_status")
-    ),
-    "fractile_curves": DatasetKind(
-        "fractile curves",
-        "rf.fractile_curves(runs)",
-        ("response_fractile", "intensity_fractile", "motion_response"),
-    ),
-    "dynamic_analysis": DatasetKind(
-        "a dynamic analysis",
-        "rf.incremental_dynamic_analysis(system, motions)",
-        ("capacity_scale", "flip_count", "peak_relative_rotation", "scale"),
-    ),
-    "overturning_map": DatasetKind(
-        "a map",
-        "rf.overturning_map(system, pulse, ...)",
-        ("impacts_before_overturning", "amplitude_above", "amplitude"),
-    ),
-    "rocking_spectrum": DatasetKind(
-        "a spectrum",
-        "rf.rocking_spectrum(system, motions, ...)",
-        ("peak_relative_rotation", "rocking_period"),
-    ),
-    "overturning_spectrum": DatasetKind(
-        "a spectrum",
-        "rf.overturning_spectrum(system, ...)",
-        ("capacity_intensity", "rocking_period"),
-    ),
-    "probability": DatasetKind(
-        "a sample",
-        "rf.probability_of_overturning(system, motions, ...)",
-        ("overturning_probability", "first_order_index"),
-    ),
-    "subset_simulation": DatasetKind(
-        "a subset simulation",
-        "rf.subset_simulation(system, motions, ...)",
-        ("demand", "sample_weight", "demand_threshold"),
-    ),
-    "ensemble": DatasetKind(
-        "an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability")
-    ),
-    "critical_scale": DatasetKind(
-        "a critical scale",
-        "rf.critical_scale(system, motion)",
-        ("critical_scale", "scale_above", "outcome", "peak_rotation"),
-    ),
-    "free_decay": DatasetKind(
-        "a fit",
-        "rf.fit_free_decay(system, measured)",
-        ("fitted_value", "parameter", "initial_rotation"),
-    ),
-    "tradeoff": DatasetKind(
-        "a comparison of models",
-        "rf.tradeoff(system, motion)",
-        ("run_time", "verdict_agrees"),
-        ("numerical_history_error", "history_error", "model", "accuracy"),
-    ),
-    "selection": DatasetKind(
-        "a set of motions beside its target",
-        "suite.selection_for(target, 11)",
-        ("scaled_spectral_acceleration", "target_spectral_acceleration"),
-        (
-            "target_standard_deviation",
-            "set_median_acceleration",
-            "set_standard_deviation",
-            "scale_factor",
-            "spectral_misfit",
-        ),
-    ),
-}
-"""What is known by its variables, by the function that draws it."""
-_RUN: Final = DatasetKind(
+
+RUN: Final = DatasetKind(
     "the result of one run with histories",
     "system.simulate(motion)",
     ("rotation", "time", "overturned"),
@@ -124,23 +51,13 @@ _RUN: Final = DatasetKind(
         "uplift_angle",
     ),
 )
-_OF_RUNS: Final = (
-    "animation", "card", "energies", "moment_rotation", "phase", "player", "response", "state",
-)  # fmt: skip
-"""What is drawn from the result of one run; cards of notebooks are too."""
-_OTHERS: Final = {
-    "scene": "a System",
-    "motion": "a GroundMotion",
-    "spectra": "a GroundMotion",
-    "suite": "a set of GroundMotions",
-    "sweep": "the result of a sweep, as rf.sweep(system, motions, ...) gives it",
-    "velocity_pulse": "a VelocityPulse, as motion.velocity_pulse() gives it",
-}
-"""What is drawn that is no dataset, or no certain one."""
-_DRAWN_BY: Final = (
+KINDS: Final[dict[str, DatasetKind]] = {}
+"""What is known by its variables, by the function that draws it; the first of them that fits."""
+_NEEDED: Final[dict[str, str]] = {}
+"""What each function draws, in words."""
+_NOT_BY_KIND: Final = (
     # (variables, what they are, what draws them), the first that fits
-    *((one.known, one.what, f"rf.plot.{name} draws it") for name, one in KINDS.items()),
-    (_RUN.known, "the result of a run", "rf.plot.response draws it"),
+    (RUN.known, "the result of a run", "rf.plot.response draws it"),
     (
         ("overturned", "peak_rotation"),
         "the result of a run without histories",
@@ -171,11 +88,16 @@ _UNITS: Final = (
 )
 
 
-def draws(function: str = "", *, ax: str = "Axes", title: str = "") -> Callable[[Drawing], Drawing]:
-    """Say in a docstring what the figures share: `units`, `ax`, `title`, and what is refused.
+def draws(
+    what: str | DatasetKind, call: str = "", known: tuple[str, ...] = (),
+    needed: tuple[str, ...] = (), *, ax: str = "Axes", title: str = "",
+) -> Callable[[Drawing], Drawing]:  # fmt: skip
+    """Say what a figure is drawn from, a dataset as a `DatasetKind` does.
 
-    Parameters by the words of the manual: what `ax` may be, and the title unless one is given.
+    And in the docstring what figures share: `units`, `ax`, `title`, and what is refused. Words of
+    the manual are given for what `ax` may be, and for the title unless one is given.
     """
+    kind = what if isinstance(what, DatasetKind) else DatasetKind(what, call, known, needed)
     usual = f"; {title} unless given" if title else ""
     within = "" if ax == "Axes" else " Or a figure or subfigure, for panels in it."
     shared = {
@@ -185,33 +107,36 @@ def draws(function: str = "", *, ax: str = "Axes", title: str = "") -> Callable[
         ),
         "title": Argument(None, "str, optional", f"Title of the figure{usual}."),
     }
-    what = KINDS[function].what if function else ""
     refused = (
-        f"SchemaError\n    The dataset is not {what}; the message names the function that draws\n"
-        "    what was given."
+        f"SchemaError\n    The dataset is not {kind.what}; the message names the function that "
+        "draws\n    what was given."
     )
 
     def decorate(drawing: Drawing) -> Drawing:
-        text = completed(drawing.__doc__ or "", signature(drawing).parameters, shared)
-        drawing.__doc__ = with_raises(text, refused) if function else text
+        name, text = drawing.__name__, drawing.__doc__ or ""
+        drawing.__doc__ = completed(text, signature(drawing).parameters, shared)
+        _NEEDED[name] = kind.words
+        if known:
+            KINDS[name] = kind
+            drawing.__doc__ = with_raises(drawing.__doc__, refused)
         return hinted()(drawing)
 
     return decorate
 
 
-_OF_KINDS: Final = tuple(one.known for one in KINDS.values())
+def _known_by(given: xr.Dataset) -> str | None:
+    return next((name for name, kind in KINDS.items() if _holds(given, kind.known)), None)
 
 
 def drawn_by(given: xr.Dataset) -> str:
     """Give the function that draws a dataset."""
-    for function, kind in KINDS.items():
-        if _holds(given, kind.known):
-            return function
+    if (known := _known_by(given)) is not None:
+        return known
     if _holds(given, ("relative_rotation", "time", "contact_state")):
         return "response"
     if "peak_relative_rotation" in given and given["peak_relative_rotation"].ndim > 0:
         return "sweep"
-    for names, what, way in _DRAWN_BY:
+    for names, what, way in _NOT_BY_KIND:
         if _holds(given, names):
             msg = f"no function of rf.plot draws a Dataset with {what}; {way}"
             raise SchemaError(msg)
@@ -224,8 +149,8 @@ def drawn_by(given: xr.Dataset) -> str:
 
 def check_run(given: object, function: str) -> None:
     """Refuse what is not the result of one run with histories."""
-    given = _checked(given, function, _RUN)
-    for name in (*_RUN.known, *_RUN.needed):
+    given = _checked(given, function, RUN)
+    for name in (*RUN.known, *RUN.needed):
         if given[name].dtype.kind not in "fiub":
             msg = (
                 f"rf.plot.{function} needs {_needed(function)}, got one whose {name!r} holds no "
@@ -328,10 +253,11 @@ def _words(function: str, given: object) -> tuple[str, str]:
         return f"a DataArray, {given.name!r}", "a figure is drawn from the whole Dataset"
     if not isinstance(given, xr.Dataset):
         return f"{given!r}" if given is None else f"a value of type {type(given).__name__}", ""
-    for names, what, way in _DRAWN_BY:
+    if (known := _known_by(given)) is not None:
+        return f"a Dataset with {KINDS[known].what}", f"rf.plot.{known} draws it"
+    for names, what, way in _NOT_BY_KIND:
         if _holds(given, names):
-            several = "overturned" in given and given["overturned"].ndim > 0
-            if several and names not in _OF_KINDS:
+            if "overturned" in given and given["overturned"].ndim > 0:
                 return "a Dataset with many runs", "rf.plot.sweep draws it"
             return f"a Dataset with {what}", way
     title = given.attrs.get("title")
@@ -339,11 +265,8 @@ def _words(function: str, given: object) -> tuple[str, str]:
 
 
 def _needed(function: str) -> str:
-    """Say what a function draws."""
-    if function in _OTHERS:
-        return _OTHERS[function]
-    kind = _RUN if function in _OF_RUNS else KINDS[function]
-    return f"{kind.what}, as {kind.call} gives it"
+    """Say what a function draws; cards of notebooks are of runs."""
+    return _NEEDED.get(function, RUN.words)
 
 
 def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:

@@ -18,7 +18,12 @@ from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.units.shown import UnitsLike
 
 
-@draws("cloud", title="the verdict")
+@draws(
+    "a cloud",
+    "rf.cloud_analysis(runs)",
+    ("cloud_response", "residual_dispersion"),
+    title="the verdict",
+)
 def cloud(
     dataset: xr.Dataset,
     *,
@@ -90,7 +95,12 @@ def cloud(
     return axes
 
 
-@draws("annual_rate", title="the verdict")
+@draws(
+    "annual rates",
+    "rf.annual_rate(fragility, hazard)",
+    ("annual_rate", "rate_share"),
+    title="the verdict",
+)
 def annual_rate(
     dataset: xr.Dataset,
     *,

@@ -18,7 +18,7 @@ from rockframe.plot._axes import (
     units_of,
     zero_line,
 )
-from rockframe.plot._checks import above_zero, draws, overturning_angles, refuse, system_of_run
+from rockframe.plot._checks import RUN, above_zero, draws, overturning_angles, refuse, system_of_run
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.plot._response import of_rotation, relative
 from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
@@ -33,7 +33,7 @@ _ANGLES: Final = 401
 """At which a body is held for a curve of moments."""
 
 
-@draws(title="the verdict")
+@draws(RUN, title="the verdict")
 def phase(
     runs: RunsLike,
     *,
@@ -106,7 +106,7 @@ def phase(
     return on.axes
 
 
-@draws(title="the verdict of a run")
+@draws(RUN, title="the verdict of a run")
 def moment_rotation(
     given: System | RunsLike,
     *,
@@ -189,7 +189,7 @@ def moment_rotation(
     return on.axes
 
 
-@draws(title="the verdict")
+@draws(RUN, title="the verdict")
 def energies(
     run: xr.Dataset,
     *,

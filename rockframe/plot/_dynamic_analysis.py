@@ -48,7 +48,13 @@ def of_one_structure(given: xr.Dataset) -> xr.Dataset:
     return given.squeeze(beside)
 
 
-@draws("dynamic_analysis", ax="Axes, one for each panel", title="the verdict")
+@draws(
+    "a dynamic analysis",
+    "rf.incremental_dynamic_analysis(system, motions)",
+    ("capacity_scale", "flip_count", "peak_relative_rotation", "scale"),
+    ax="Axes, one for each panel",
+    title="the verdict",
+)
 def dynamic_analysis(
     dataset: xr.Dataset,
     *,
@@ -198,7 +204,12 @@ def _at(scales: np.ndarray, known: np.ndarray, along: np.ndarray) -> np.ndarray:
     return along[0] * (scales / known[0]) ** power
 
 
-@draws("fractile_curves", title="the verdict")
+@draws(
+    "fractile curves",
+    "rf.fractile_curves(runs)",
+    ("response_fractile", "intensity_fractile", "motion_response"),
+    title="the verdict",
+)
 def fractile_curves(
     dataset: xr.Dataset,
     *,

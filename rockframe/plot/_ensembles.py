@@ -25,7 +25,7 @@ from rockframe.studies.sweeps.words import cases_verdict
 from rockframe.units.shown import UnitsLike
 
 
-@draws("ensemble")
+@draws("an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability"))
 def ensemble(
     dataset: xr.Dataset,
     *,
@@ -75,7 +75,13 @@ def ensemble(
     return axes
 
 
-@draws("probability", ax="two Axes", title="the verdict")
+@draws(
+    "a sample",
+    "rf.probability_of_overturning(system, motions, ...)",
+    ("overturning_probability", "first_order_index"),
+    ax="two Axes",
+    title="the verdict",
+)
 def probability(
     dataset: xr.Dataset,
     *,
@@ -140,7 +146,12 @@ def probability(
     return on.panels
 
 
-@draws("subset_simulation", title="the verdict")
+@draws(
+    "a subset simulation",
+    "rf.subset_simulation(system, motions, ...)",
+    ("demand", "sample_weight", "demand_threshold"),
+    title="the verdict",
+)
 def subset_simulation(
     dataset: xr.Dataset,
     *,
@@ -216,7 +227,13 @@ _MOST_STRUCTURES: Final = 12
 _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
-@draws("fragility", ax="Axes, or one for each limit state", title="the verdict")
+@draws(
+    "a fragility",
+    "rf.fragility(runs)",
+    ("exceedance_probability", "fragility_status"),
+    ax="Axes, or one for each limit state",
+    title="the verdict",
+)
 def fragility(
     dataset: xr.Dataset,
     *,

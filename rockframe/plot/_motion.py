@@ -86,7 +86,7 @@ def drawn_motions(given: object, function: str) -> list[Drawn]:
 _ROWS: Final = ("acceleration", "velocity", "displacement")
 
 
-@draws(ax="three Axes", title="the motion's name")
+@draws("a GroundMotion", ax="three Axes", title="the motion's name")
 def motion(
     motion: MotionsLike,
     *,
@@ -205,7 +205,11 @@ def _mark_peak(axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, colour
     )
 
 
-@draws(ax="two Axes", title="name of the motion, period and verdict")
+@draws(
+    "a VelocityPulse, as motion.velocity_pulse() gives it",
+    ax="two Axes",
+    title="name of the motion, period and verdict",
+)
 def velocity_pulse(
     pulse: VelocityPulse[GroundMotion],
     *,

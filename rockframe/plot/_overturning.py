@@ -33,7 +33,11 @@ _CAPPED: Final = 1.0
 """Peaks over the overturning angle that are drawn alike."""
 
 
-@draws("overturning_map")
+@draws(
+    "a map",
+    "rf.overturning_map(system, pulse, ...)",
+    ("impacts_before_overturning", "amplitude_above", "amplitude"),
+)
 def overturning_map(
     dataset: xr.Dataset,
     *,
@@ -106,7 +110,12 @@ def overturning_map(
     return axes
 
 
-@draws("rocking_spectrum", ax="Axes, one for each slenderness")
+@draws(
+    "a spectrum",
+    "rf.rocking_spectrum(system, motions, ...)",
+    ("peak_relative_rotation", "rocking_period"),
+    ax="Axes, one for each slenderness",
+)
 def rocking_spectrum(
     dataset: xr.Dataset,
     *,
@@ -149,7 +158,12 @@ def rocking_spectrum(
     return on.panels
 
 
-@draws("overturning_spectrum", ax="Axes, one for each slenderness")
+@draws(
+    "a spectrum",
+    "rf.overturning_spectrum(system, ...)",
+    ("capacity_intensity", "rocking_period"),
+    ax="Axes, one for each slenderness",
+)
 def overturning_spectrum(
     dataset: xr.Dataset,
     *,

@@ -15,7 +15,7 @@ import xarray as xr
 from rockframe.arguments import text
 from rockframe.plot._artists import CONTACT, SOIL, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_of
-from rockframe.plot._checks import check_run, draws
+from rockframe.plot._checks import RUN, check_run, draws
 from rockframe.plot._response import (
     CONTACT_COLOURS,
     SLIP,
@@ -125,7 +125,7 @@ class Player:
         return f"<player of {self._length:.1f} s, {len(self._html) / 1e3:.0f} kB; save('run.html')>"
 
 
-@draws(title="the verdict")
+@draws(RUN, title="the verdict")
 def player(
     run: xr.Dataset,
     *,

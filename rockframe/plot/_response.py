@@ -27,7 +27,7 @@ from rockframe.plot._axes import (
     units_of,
     zero_line,
 )
-from rockframe.plot._checks import draws, overturning_angles
+from rockframe.plot._checks import RUN, draws, overturning_angles
 from rockframe.plot._panels import AxesLike, Panels, sheet
 from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.results.outcome import LEAST_SLIP
@@ -170,7 +170,7 @@ SLIP: Final = "slip"
 _STACKED: Final = "rotation_on_cap"
 
 
-@draws(ax="sequence of Axes, one for each panel", title="the verdict")
+@draws(RUN, ax="sequence of Axes, one for each panel", title="the verdict")
 def response(
     runs: RunsLike,
     *,

@@ -10,7 +10,7 @@ from rockframe.arguments import truth
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
-from rockframe.plot._checks import above_zero, check_run, draws, require_system, system_of_run
+from rockframe.plot._checks import RUN, above_zero, check_run, draws, require_system, system_of_run
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.signals.arrays import Array
@@ -37,7 +37,7 @@ _OF_BODIES: Final = (
 """The same of all bodies of a stack."""
 
 
-@draws()
+@draws("a System")
 def scene(
     system: System,
     *,
@@ -102,7 +102,7 @@ def scene(
     return on.axes
 
 
-@draws(title="time and rotation")
+@draws(RUN, title="time and rotation")
 def state(
     run: xr.Dataset,
     time: QuantityLike | None = None,

@@ -16,7 +16,20 @@ _MOST_NAMED: Final = 50
 _LETTERS: Final = 34
 
 
-@draws("selection", ax="two Axes", title="the target and the number of motions")
+@draws(
+    "a set of motions beside its target",
+    "suite.selection_for(target, 11)",
+    ("scaled_spectral_acceleration", "target_spectral_acceleration"),
+    (
+        "target_standard_deviation",
+        "set_median_acceleration",
+        "set_standard_deviation",
+        "scale_factor",
+        "spectral_misfit",
+    ),
+    ax="two Axes",
+    title="the target and the number of motions",
+)
 def selection(
     dataset: xr.Dataset,
     *,

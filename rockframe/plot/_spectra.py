@@ -39,7 +39,7 @@ _PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}
 _PANELS: Final = ("history", "response", "fourier")
 
 
-@draws(ax="three Axes", title="the motion's name")
+@draws("a GroundMotion", ax="three Axes", title="the motion's name")
 def spectra(
     motion: MotionsLike,
     periods: ArrayLike | Iterable[QuantityLike] | None = None,
@@ -193,7 +193,7 @@ _MOST_NAMED: Final = 6
 _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), "s")
 
 
-@draws()
+@draws("a set of GroundMotions")
 def suite(
     motions: MotionsLike,
     periods: ArrayLike | Iterable[QuantityLike] = _PERIODS,

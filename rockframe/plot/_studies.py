@@ -35,7 +35,12 @@ _MOST_LINES: Final = 12
 _PANELS: Final = ("histories", "residual")
 
 
-@draws("critical_scale", title="the verdict")
+@draws(
+    "a critical scale",
+    "rf.critical_scale(system, motion)",
+    ("critical_scale", "scale_above", "outcome", "peak_rotation"),
+    title="the verdict",
+)
 def critical_scale(
     dataset: xr.Dataset,
     *,
@@ -93,7 +98,7 @@ def critical_scale(
     return on.axes
 
 
-@draws()
+@draws("the result of a sweep, as rf.sweep(system, motions, ...) gives it")
 def sweep(
     runs: xr.Dataset,
     variable: str = "peak_relative_rotation",
@@ -156,7 +161,13 @@ def sweep(
     return on.axes
 
 
-@draws("free_decay", ax="two Axes", title="the verdict")
+@draws(
+    "a fit",
+    "rf.fit_free_decay(system, measured)",
+    ("fitted_value", "parameter", "initial_rotation"),
+    ax="two Axes",
+    title="the verdict",
+)
 def free_decay(
     dataset: xr.Dataset,
     *,

@@ -27,7 +27,14 @@ _SMALL: Final = "small rotations"
 _ERROR: Final = "largest error of the rotation{}over its peak [-]"
 
 
-@draws("tradeoff", ax="two Axes", title="scene and motion")
+@draws(
+    "a comparison of models",
+    "rf.tradeoff(system, motion)",
+    ("run_time", "verdict_agrees"),
+    ("numerical_history_error", "history_error", "model", "accuracy"),
+    ax="two Axes",
+    title="scene and motion",
+)
 def tradeoff(
     dataset: xr.Dataset,
     *,

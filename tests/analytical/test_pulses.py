@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 
 from rockframe.motion import GroundMotion
+from rockframe.motion.constructors.analytic import PULSES
 from rockframe.motion.pulses import ANTISYMMETRIC, type_c_phase
 
 pytestmark = pytest.mark.analytical
@@ -124,6 +125,12 @@ def path(motion):
 @pytest.fixture(params=CASES)
 def case(request):
     return CASES[request.param]
+
+
+def test_every_pulse_is_here():
+    tested = {case.motion.recipe["constructor"] for case in CASES.values()}
+    missing = set(PULSES) - tested - {"double_impulse"}  # which is below
+    assert not missing, f"add the paths of {missing} to CASES"
 
 
 def test_acceleration_between_samples(case):

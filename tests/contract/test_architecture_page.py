@@ -1,4 +1,4 @@
-"""The files and names that the page "Architecture" sends an heir to are there."""
+"""The page "Architecture" names all folders, and the files and names that it names are there."""
 
 import re
 from pathlib import Path
@@ -37,3 +37,14 @@ def test_names_of_its_tables_stand_in_the_example(kind):
     for first in rows:
         name = first.strip("`").split("(")[0]
         assert f"class {name}(" in text or f"{name}(" in text, name
+
+
+def test_the_layers_name_all_folders():
+    layers = section("Layers")
+    package = ROOT / "rockframe"
+    folders = {path.parent.name for path in package.glob("*/__init__.py")}
+    modules = {path.stem for path in package.glob("*.py") if not path.name.startswith("__")}
+    for name in folders | modules:
+        assert re.search(rf"\b{name}\b", layers), (
+            f"{name} is in no line under Layers of docs/development/architecture.md"
+        )

@@ -5,12 +5,12 @@ import importlib
 import inspect
 import pkgutil
 import re
-from pathlib import Path
 from unittest import mock
 
 import matplotlib.pyplot as plt
 import pint
 import pytest
+from pages import listed
 
 import rockframe
 from rockframe.results.diagnostics import DIAGNOSTICS
@@ -25,8 +25,6 @@ MODULES = [
     for found in pkgutil.walk_packages(rockframe.__path__, "rockframe.")
     if not found.name.endswith("__main__")
 ]
-REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "index.md"
-LISTED = re.compile(r"^   ([A-Za-z][\w.]+)$", re.MULTILINE)
 LEFT_OUT = {
     "errors": "exceptions are raised by rockframe, not called by users",
     "extension.OwnScene": "its equations fill a page, docs/guide/own_scene.md, whose code runs",
@@ -103,9 +101,7 @@ def is_shown(kind, method):
 
 
 def test_no_public_callable_lacks_an_example():
-    values = {
-        name: found_by(name) for name in LISTED.findall(REFERENCE.read_text(encoding="utf-8"))
-    }
+    values = {name: found_by(name) for name in listed()}
     lacking = [name for name, value in values.items() if not run_in(value)]
     named, shown = {}, set()
     for name, value in values.items():

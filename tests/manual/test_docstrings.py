@@ -1,10 +1,9 @@
 """Every public name says what it takes, what it gives and what it raises."""
 
 import inspect
-import re
-from pathlib import Path
 
 import pytest
+from pages import listed
 
 import rockframe as rf
 
@@ -15,8 +14,6 @@ FUNCTIONS = [name for name in rf.__all__ if inspect.isfunction(getattr(rf, name)
 PLOTS = [name for name in rf.plot.__all__ if inspect.isfunction(getattr(rf.plot, name))]
 
 
-LISTED = re.compile(r"^   ([A-Za-z][\w.]+)$", re.MULTILINE)
-INDEX = Path(__file__).resolve().parents[2] / "docs" / "reference" / "index.md"
 PACKAGES = [name for name in rf.__all__ if inspect.ismodule(getattr(rf, name))]
 
 
@@ -52,8 +49,8 @@ def test_every_public_name_is_documented(name):
 
 def test_every_public_name_has_a_page():
     """The lists of the reference are what pages are made of, each name once."""
-    listed = LISTED.findall(INDEX.read_text(encoding="utf-8"))
-    assert len(listed) == len(set(listed)) > 100
+    shown = listed()
+    assert len(shown) == len(set(shown)) > 100
     public = {name for name in rf.__all__ if name not in (*PACKAGES, "__version__")}
     for package in ("plot", "export", "codes", "errors", "measures"):
         module = getattr(rf, package)
@@ -67,7 +64,7 @@ def test_every_public_name_has_a_page():
             if not name.isupper()
             and not (name in rf.__all__ and getattr(rf, name) is getattr(module, name))
         }
-    assert public - set(listed) == set()
+    assert public - set(shown) == set()
 
 
 def test_parameters_are_described():

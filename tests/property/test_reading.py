@@ -19,8 +19,7 @@ from hypothesis import strategies as st
 from processor_time import processor_time
 from property.damaged_files import DAMAGE, damaged
 from records import record_path
-from unit.motion.binary_samples import asdf, miniseed, netcdf, station_xml
-from unit.motion.dialect_samples import sac
+from unit.motion.binary_samples import BINARY, miniseed, netcdf, station_xml
 from unit.motion.format_samples import SAMPLES, cosmos, knet
 
 from rockframe.errors import RecordError
@@ -142,14 +141,9 @@ def undamaged(folder):
     held = Files(
         {key: (one.name, one.data, {"component": one.component}) for key, one in SAMPLES.items()}
     )
-    held["netcdf"] = ("d.nc", netcdf(folder), {})
-    held["miniseed"] = ("s.mseed", miniseed(), {})
-    held["sac"] = ("s.sac", sac(), {"unit": "gal"})
-    held["asdf"] = ("w.h5", asdf(folder), {"component": ("N", "Z")})
+    for key, (name, make, asked) in BINARY.items():
+        held[key] = (name, make(folder), asked)
     return held
-
-
-BINARY = [entry.name for entry in formats() if entry.binary]
 
 
 @pytest.mark.long

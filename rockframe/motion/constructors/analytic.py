@@ -1,17 +1,13 @@
-"""Analytic motions: each constructor a row of title, formula, parameters, units and source.
-
-What is read of the arguments is told in the name, the history and the recipe of the motion.
-"""
+"""Analytic motions: each constructor a row of title, formula, parameters, units and source."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial, wraps
-from inspect import signature
-from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+from functools import partial
+from typing import Final, Self
 
-from rockframe.motion.constructors.analytic_arguments import ArgumentReader
+from rockframe.motion.constructors.analytic_arguments import PULSES as PULSES
+from rockframe.motion.constructors.analytic_arguments import pulse
 from rockframe.motion.pulses import (
     QUARTER_TURN,
     mavroeidis_papageorgiou,
@@ -20,445 +16,398 @@ from rockframe.motion.pulses import (
     sine,
     type_c,
 )
-from rockframe.motion.value import Made
-from rockframe.proposals import hinted
-from rockframe.shared_arguments import with_raises
-from rockframe.units import (
-    POSITIVE,
-    Condition,
-    QuantityLike,
-    RatioLike,
-)  # fmt: skip
-
-if TYPE_CHECKING:
-    from rockframe.signals import Motion
-
-Constructor = TypeVar("Constructor", bound=Callable[..., Any])
-
-PULSES: Final[list[str]] = []
-"""Names of the constructors, in the order in which they stand here."""
+from rockframe.motion.value import MotionValue
+from rockframe.units import Condition, QuantityLike, RatioLike
 
 _AT_LEAST_ONE: Final = Condition("at least 1", lambda value: value >= 1.0)
-_RAISES: Final = """\
-UnitsError
-    A wrong unit, or none.
-ComponentError
-    Not finite, or a frequency, period or length that is not positive."""
-
-
-def _pulse(
-    title: str, formula: Callable[..., Motion], cycles: Condition = POSITIVE
-) -> Callable[[Constructor], Constructor]:
-    """Make a constructor of a formula: its arguments are read by their names, in SI units."""
-
-    def decorate(declared: Constructor) -> Constructor:
-        own = signature(declared)
-        PULSES.append(declared.__name__)
-        checked = hinted()(declared)
-
-        @wraps(checked)
-        def construct(kind: type[Any], *given: Any, **named: Any) -> Any:
-            checked(kind, *given, **named)  # says what is missing, or too much
-            values = own.bind(kind, *given, **named)
-            values.apply_defaults()
-            reader = ArgumentReader(f"{kind.__name__}.{declared.__name__}", cycles)
-            for name in list(own.parameters)[1:]:
-                reader.read(name, values.arguments[name])
-            return kind(
-                formula(reader.owner, **reader.numbers),
-                name=", ".join([title, *reader.short]),
-                history=(f"{title}: {', '.join(reader.exact)}",),
-                recipe={"constructor": declared.__name__, **reader.recipe},
-            )
-
-        construct.__doc__ = with_raises(declared.__doc__ or "", _RAISES)
-        return cast("Constructor", construct)
-
-    return decorate
-
-
-@_pulse("sine pulse", sine)
-def sine_pulse(
-    kind: type[Made],
-    amplitude: QuantityLike = "-9.81 m/s^2",
-    frequency: QuantityLike = "1 Hz",
-    cycles: RatioLike = 1,
-) -> Made:
-    """Build ``amplitude sin(2 pi frequency t)`` over some cycles, then nothing.
-
-    Parameters
-    ----------
-    amplitude : str or Quantity, optional
-        Amplitude; the defaults are those of Eq. (17) [m s^-2].
-    frequency : str or Quantity, optional
-        Cyclic frequency [Hz].
-    cycles : float, optional
-        Length over the period [1].
-
-    Returns
-    -------
-    GroundMotion
-        With polynomial pieces between samples: exact to 3e-13 of the amplitude.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz", cycles=3).duration
-    <Quantity(1.5, 'second')>
-    """
-    ...
-
-
-@_pulse("cosine pulse", partial(sine, phase=QUARTER_TURN))
-def cosine_pulse(
-    kind: type[Made], amplitude: QuantityLike, frequency: QuantityLike, cycles: RatioLike = 1
-) -> Made:
-    """Build ``amplitude cos(2 pi frequency t)`` over some cycles, then nothing.
-
-    Parameters
-    ----------
-    amplitude : str or Quantity
-        Amplitude, with which the pulse begins at once [m s^-2].
-    frequency : str or Quantity
-        Cyclic frequency [Hz].
-    cycles : float, optional
-        Length over the period [1].
-
-    Returns
-    -------
-    GroundMotion
-        It jumps where it begins and, unless its last value is zero, where it ends.
-
-    See Also
-    --------
-    type_b_pulse : One cycle, given by its velocity.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.cosine_pulse("3 m/s^2", "2 Hz").acceleration[0]
-    <Quantity(3.0, 'meter / second ** 2')>
-    """
-    ...
-
-
-@_pulse(
-    "half-sine pulse",
-    lambda owner, amplitude, duration: sine(owner, amplitude, 0.5 / duration, 0.5),
-)
-def half_sine_pulse(kind: type[Made], amplitude: QuantityLike, duration: QuantityLike) -> Made:
-    """Build ``amplitude sin(pi t/duration)``, half a cycle, then nothing.
-
-    Parameters
-    ----------
-    amplitude : str or Quantity
-        Peak [m s^-2].
-    duration : str or Quantity
-        Length, half the period [s].
-
-    Returns
-    -------
-    GroundMotion
-        Its ground does not stop: the velocity at the end is
-        ``2 amplitude duration/pi``.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").velocity[-1].round(4)
-    <Quantity(0.9549, 'meter / second')>
-    """
-    ...
-
-
-@_pulse(
-    "harmonic motion",
-    lambda owner, amplitude, frequency, duration, phase=0.0: sine(
-        owner, amplitude, frequency, duration * frequency, phase
-    ),
-)
-def harmonic(
-    kind: type[Made],
-    amplitude: QuantityLike,
-    frequency: QuantityLike,
-    duration: QuantityLike,
-    phase: QuantityLike | None = None,
-) -> Made:
-    """Build ``amplitude sin(2 pi frequency t + phase)`` for some time.
-
-    Parameters
-    ----------
-    amplitude : str or Quantity
-        Amplitude [m s^-2].
-    frequency : str or Quantity
-        Cyclic frequency [Hz].
-    duration : str or Quantity
-        Length [s].
-    phase : str or Quantity, optional
-        Phase at the start; zero unless given [rad].
-
-    Returns
-    -------
-    GroundMotion
-        With polynomial pieces between samples: exact to 3e-13 of the amplitude.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.harmonic("3 m/s^2", "2 Hz", "10 s", phase="90 deg").name
-    'harmonic motion, 3 m/s^2, 2 Hz, 10 s, phase 1.5708 rad'
-    """
-    ...
-
-
-@_pulse(
-    "type A pulse",
-    lambda owner, velocity, period: sine(owner, math.pi * velocity / period, 1.0 / period, 1.0),
-)
-def type_a_pulse(kind: type[Made], velocity: QuantityLike, period: QuantityLike) -> Made:
-    """Build the forward pulse, one sine: ``pi velocity/period sin(2 pi t/period)``.
-
-    Parameters
-    ----------
-    velocity : str or Quantity
-        Peak velocity v_p of the ground, at half the period [m s^-1].
-    period : str or Quantity
-        Period T_p, the length of the pulse [s].
-
-    Returns
-    -------
-    GroundMotion
-        The ground comes to rest ``velocity period/2`` ahead of where it was.
-
-    Notes
-    -----
-    Type A of Makris and Chang (2000), :eq:`eq-type-a`.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.type_a_pulse("0.5 m/s", "0.8 s").displacement[-1].round(4)
-    <Quantity(0.2, 'meter')>
-    """
-    ...
-
-
-@_pulse(
-    "type B pulse",
-    lambda owner, velocity, period: sine(
-        owner, 2.0 * math.pi * velocity / period, 1.0 / period, 1.0, QUARTER_TURN
-    ),
-)
-def type_b_pulse(kind: type[Made], velocity: QuantityLike, period: QuantityLike) -> Made:
-    """Build the forward-and-back pulse: ``2 pi velocity/period cos(2 pi t/period)``.
-
-    Parameters
-    ----------
-    velocity : str or Quantity
-        Peak velocity v_p of the ground, at a quarter of the period [m s^-1].
-    period : str or Quantity
-        Period T_p, the length of the pulse [s].
-
-    Returns
-    -------
-    GroundMotion
-        The ground comes to rest where it was. The acceleration jumps at both ends.
-
-    Notes
-    -----
-    Type B of Makris and Chang (2000), :eq:`eq-type-b`.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.type_b_pulse("0.5 m/s", "0.8 s").velocity.max().round(4)
-    <Quantity(0.5, 'meter / second')>
-    """
-    ...
-
-
-@_pulse("type C pulse", type_c)
-def type_c_pulse(
-    kind: type[Made], velocity: QuantityLike, period: QuantityLike, order: int = 1
-) -> Made:
-    """Build a pulse of `order` cycles in the displacement of the ground.
-
-    Parameters
-    ----------
-    velocity : str or Quantity
-        v_p, the amplitude with which the velocity swings; its greatest value, backwards,
-        is ``1 + sin(phi)`` times as much: 1.217 for order 1, 1.128 for order 2 [m s^-1].
-    period : str or Quantity
-        Period T_p; the pulse is 1.430 T_p long for order 1, 2.459 T_p for order 2 [s].
-    order : int, optional
-        n of the type C_n [1].
-
-    Returns
-    -------
-    GroundMotion
-        The ground comes to rest where it was. The acceleration jumps at both ends.
-
-    Raises
-    ------
-    UnitsError
-        A wrong unit, or none.
-    ComponentError
-        Not finite, a period that is not positive, or an order that is not a whole
-        number from 1 to 1000.
-
-    Notes
-    -----
-    Type C_n of Makris and Chang (2000), :eq:`eq-type-c`, with the phase phi of
-    :eq:`eq-type-c-phase`.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.type_c_pulse("0.5 m/s", "0.8 s", order=2).duration.round(4)
-    <Quantity(1.9672, 'second')>
-    """
-    ...
-
-
-@_pulse("Ricker wavelet", ricker)
-def ricker_wavelet(
-    kind: type[Made], amplitude: QuantityLike, period: QuantityLike, *, antisymmetric: bool = False
-) -> Made:
-    """Build a Ricker wavelet: the second or third derivative of a Gaussian.
-
-    Parameters
-    ----------
-    amplitude : str or Quantity
-        Peak a_p: of the symmetric wavelet in its middle, of the antisymmetric one
-        0.205 periods before it, followed by the opposite peak [m s^-2].
-    period : str or Quantity
-        T_p, one over the frequency at which its Fourier amplitude is greatest [s].
-    antisymmetric : bool, optional
-        The third derivative. Otherwise the second, the "Mexican hat".
-
-    Returns
-    -------
-    GroundMotion
-        Five periods long; at both ends 7e-16 of the amplitude is left. Exact to
-        2e-13 of the amplitude. The ground comes to rest where it was.
-
-    Raises
-    ------
-    UnitsError
-        A wrong unit, or none.
-    ComponentError
-        Not finite, a period that is not positive, or `antisymmetric` is not a bool.
-
-    Notes
-    -----
-    Wavelets of Ricker (1943) with the parameters of Vassiliou and Makris (2011),
-    :eq:`eq-ricker-symmetric` and :eq:`eq-ricker-antisymmetric`; its velocity and
-    displacement are :eq:`eq-ricker-path`.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.8 s").peak_acceleration
-    <Quantity(3.0, 'meter / second ** 2')>
-    """
-    ...
-
-
-@_pulse("pulse of Mavroeidis and Papageorgiou", mavroeidis_papageorgiou, cycles=_AT_LEAST_ONE)
-def mavroeidis_papageorgiou_pulse(
-    kind: type[Made],
-    velocity: QuantityLike,
-    frequency: QuantityLike,
-    cycles: RatioLike,
-    phase: QuantityLike | None = None,
-) -> Made:
-    """Build a harmonic velocity under an envelope of one cosine.
-
-    Parameters
-    ----------
-    velocity : str or Quantity
-        Amplitude A of the velocity, reached in the middle if `phase` is
-        zero [m s^-1].
-    frequency : str or Quantity
-        Prevailing frequency f_p [Hz].
-    cycles : float
-        gamma, the length over the prevailing period; at least 1 [1].
-    phase : str or Quantity, optional
-        Phase nu of the velocity in the middle; zero unless given [rad].
-
-    Returns
-    -------
-    GroundMotion
-        Exact to 1e-12 of its peak. The ground comes to rest: where it was for a
-        phase of 90 degrees, or if `cycles` is a whole number beyond 1.
-
-    Raises
-    ------
-    UnitsError
-        A wrong unit, or none.
-    ComponentError
-        Not finite, a frequency that is not positive, or fewer cycles than one.
-
-    Notes
-    -----
-    Pulse of Mavroeidis and Papageorgiou (2003), :eq:`eq-mp-velocity` and
-    :eq:`eq-mp-acceleration`. It leaves the ground at :eq:`eq-mp-offset`.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> pulse = rf.GroundMotion.mavroeidis_papageorgiou_pulse("0.5 m/s", "1 Hz", 2)
-    >>> pulse.velocity.max().round(4)
-    <Quantity(0.5, 'meter / second')>
-    """
-    ...
-
-
-@_pulse("double impulse", opposite_impulses)
-def double_impulse(
-    kind: type[Made],
-    velocity: QuantityLike,
-    interval: QuantityLike,
-    pulse_duration: QuantityLike | None = None,
-) -> Made:
-    """Build two impulses: the ground starts at a velocity, and stops again.
-
-    Parameters
-    ----------
-    velocity : str or Quantity
-        V, exactly the change of velocity by the first impulse; the second takes it
-        back [m s^-1].
-    interval : str or Quantity
-        Time t_0 from impulse to impulse [s].
-    pulse_duration : str or Quantity, optional
-        Longest length of an impulse; shortened until `interval` is a whole multiple
-        of it. A hundredth of `interval` unless given [s].
-
-    Returns
-    -------
-    GroundMotion
-        It ends with the second impulse. The ground comes to rest
-        ``velocity interval`` ahead of where it was.
-
-    Raises
-    ------
-    UnitsError
-        A wrong unit, or none.
-    ComponentError
-        Not finite, times that are not positive, impulses that overlap, or impulses
-        too short to be sampled.
-
-    Notes
-    -----
-    Double impulse of Kojima and Takewaki (2015), :eq:`eq-double-impulse`. Each has
-    the shape :eq:`eq-impulse`, with a peak of 1.875 V over its length. An oscillator
-    of the angular frequency omega takes the impulses for weaker by
-    ``(omega pulse_duration)^2/56``, as long as that is small.
-
-    Examples
-    --------
-    >>> import rockframe as rf
-    >>> rf.GroundMotion.double_impulse("0.5 m/s", "0.8 s").displacement[-1].round(3)
-    <Quantity(0.4, 'meter')>
-    """
-    ...
+
+
+class AnalyticMotion(MotionValue):
+    """Motions in closed form, each by its constructor."""
+
+    __slots__ = ()
+
+    @classmethod
+    @pulse("sine pulse", sine)
+    def sine_pulse(
+        cls,
+        amplitude: QuantityLike = "-9.81 m/s^2",
+        frequency: QuantityLike = "1 Hz",
+        cycles: RatioLike = 1,
+    ) -> Self:
+        """Build ``amplitude sin(2 pi frequency t)`` over some cycles, then nothing.
+
+        Parameters
+        ----------
+        amplitude : str or Quantity, optional
+            Amplitude; the defaults are those of Eq. (17) [m s^-2].
+        frequency : str or Quantity, optional
+            Cyclic frequency [Hz].
+        cycles : float, optional
+            Length over the period [1].
+
+        Returns
+        -------
+        GroundMotion
+            With polynomial pieces between samples: exact to 3e-13 of the amplitude.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz", cycles=3).duration
+        <Quantity(1.5, 'second')>
+        """
+        ...
+
+    @classmethod
+    @pulse("cosine pulse", partial(sine, phase=QUARTER_TURN))
+    def cosine_pulse(
+        cls, amplitude: QuantityLike, frequency: QuantityLike, cycles: RatioLike = 1
+    ) -> Self:
+        """Build ``amplitude cos(2 pi frequency t)`` over some cycles, then nothing.
+
+        Parameters
+        ----------
+        amplitude : str or Quantity
+            Amplitude, with which the pulse begins at once [m s^-2].
+        frequency : str or Quantity
+            Cyclic frequency [Hz].
+        cycles : float, optional
+            Length over the period [1].
+
+        Returns
+        -------
+        GroundMotion
+            It jumps where it begins and, unless its last value is zero, where it ends.
+
+        See Also
+        --------
+        type_b_pulse : One cycle, given by its velocity.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.cosine_pulse("3 m/s^2", "2 Hz").acceleration[0]
+        <Quantity(3.0, 'meter / second ** 2')>
+        """
+        ...
+
+    @classmethod
+    @pulse(
+        "half-sine pulse",
+        lambda owner, amplitude, duration: sine(owner, amplitude, 0.5 / duration, 0.5),
+    )
+    def half_sine_pulse(cls, amplitude: QuantityLike, duration: QuantityLike) -> Self:
+        """Build ``amplitude sin(pi t/duration)``, half a cycle, then nothing.
+
+        Parameters
+        ----------
+        amplitude : str or Quantity
+            Peak [m s^-2].
+        duration : str or Quantity
+            Length, half the period [s].
+
+        Returns
+        -------
+        GroundMotion
+            Its ground does not stop: the velocity at the end is
+            ``2 amplitude duration/pi``.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.half_sine_pulse("3 m/s^2", "0.5 s").velocity[-1].round(4)
+        <Quantity(0.9549, 'meter / second')>
+        """
+        ...
+
+    @classmethod
+    @pulse(
+        "harmonic motion",
+        lambda owner, amplitude, frequency, duration, phase=0.0: sine(
+            owner, amplitude, frequency, duration * frequency, phase
+        ),
+    )
+    def harmonic(
+        cls,
+        amplitude: QuantityLike,
+        frequency: QuantityLike,
+        duration: QuantityLike,
+        phase: QuantityLike | None = None,
+    ) -> Self:
+        """Build ``amplitude sin(2 pi frequency t + phase)`` for some time.
+
+        Parameters
+        ----------
+        amplitude : str or Quantity
+            Amplitude [m s^-2].
+        frequency : str or Quantity
+            Cyclic frequency [Hz].
+        duration : str or Quantity
+            Length [s].
+        phase : str or Quantity, optional
+            Phase at the start; zero unless given [rad].
+
+        Returns
+        -------
+        GroundMotion
+            With polynomial pieces between samples: exact to 3e-13 of the amplitude.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.harmonic("3 m/s^2", "2 Hz", "10 s", phase="90 deg").name
+        'harmonic motion, 3 m/s^2, 2 Hz, 10 s, phase 1.5708 rad'
+        """
+        ...
+
+    @classmethod
+    @pulse(
+        "type A pulse",
+        lambda owner, velocity, period: sine(owner, math.pi * velocity / period, 1.0 / period, 1.0),
+    )
+    def type_a_pulse(cls, velocity: QuantityLike, period: QuantityLike) -> Self:
+        """Build the forward pulse, one sine: ``pi velocity/period sin(2 pi t/period)``.
+
+        Parameters
+        ----------
+        velocity : str or Quantity
+            Peak velocity v_p of the ground, at half the period [m s^-1].
+        period : str or Quantity
+            Period T_p, the length of the pulse [s].
+
+        Returns
+        -------
+        GroundMotion
+            The ground comes to rest ``velocity period/2`` ahead of where it was.
+
+        Notes
+        -----
+        Type A of Makris and Chang (2000), :eq:`eq-type-a`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.type_a_pulse("0.5 m/s", "0.8 s").displacement[-1].round(4)
+        <Quantity(0.2, 'meter')>
+        """
+        ...
+
+    @classmethod
+    @pulse(
+        "type B pulse",
+        lambda owner, velocity, period: sine(
+            owner, 2.0 * math.pi * velocity / period, 1.0 / period, 1.0, QUARTER_TURN
+        ),
+    )
+    def type_b_pulse(cls, velocity: QuantityLike, period: QuantityLike) -> Self:
+        """Build the forward-and-back pulse: ``2 pi velocity/period cos(2 pi t/period)``.
+
+        Parameters
+        ----------
+        velocity : str or Quantity
+            Peak velocity v_p of the ground, at a quarter of the period [m s^-1].
+        period : str or Quantity
+            Period T_p, the length of the pulse [s].
+
+        Returns
+        -------
+        GroundMotion
+            The ground comes to rest where it was. The acceleration jumps at both ends.
+
+        Notes
+        -----
+        Type B of Makris and Chang (2000), :eq:`eq-type-b`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.type_b_pulse("0.5 m/s", "0.8 s").velocity.max().round(4)
+        <Quantity(0.5, 'meter / second')>
+        """
+        ...
+
+    @classmethod
+    @pulse("type C pulse", type_c)
+    def type_c_pulse(cls, velocity: QuantityLike, period: QuantityLike, order: int = 1) -> Self:
+        """Build a pulse of `order` cycles in the displacement of the ground.
+
+        Parameters
+        ----------
+        velocity : str or Quantity
+            v_p, the amplitude with which the velocity swings; its greatest value, backwards,
+            is ``1 + sin(phi)`` times as much: 1.217 for order 1, 1.128 for order 2 [m s^-1].
+        period : str or Quantity
+            Period T_p; the pulse is 1.430 T_p long for order 1, 2.459 T_p for order 2 [s].
+        order : int, optional
+            n of the type C_n [1].
+
+        Returns
+        -------
+        GroundMotion
+            The ground comes to rest where it was. The acceleration jumps at both ends.
+
+        Raises
+        ------
+        UnitsError
+            A wrong unit, or none.
+        ComponentError
+            Not finite, a period that is not positive, or an order that is not a whole
+            number from 1 to 1000.
+
+        Notes
+        -----
+        Type C_n of Makris and Chang (2000), :eq:`eq-type-c`, with the phase phi of
+        :eq:`eq-type-c-phase`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.type_c_pulse("0.5 m/s", "0.8 s", order=2).duration.round(4)
+        <Quantity(1.9672, 'second')>
+        """
+        ...
+
+    @classmethod
+    @pulse("Ricker wavelet", ricker)
+    def ricker_wavelet(
+        cls, amplitude: QuantityLike, period: QuantityLike, *, antisymmetric: bool = False
+    ) -> Self:
+        """Build a Ricker wavelet: the second or third derivative of a Gaussian.
+
+        Parameters
+        ----------
+        amplitude : str or Quantity
+            Peak a_p: of the symmetric wavelet in its middle, of the antisymmetric one
+            0.205 periods before it, followed by the opposite peak [m s^-2].
+        period : str or Quantity
+            T_p, one over the frequency at which its Fourier amplitude is greatest [s].
+        antisymmetric : bool, optional
+            The third derivative. Otherwise the second, the "Mexican hat".
+
+        Returns
+        -------
+        GroundMotion
+            Five periods long; at both ends 7e-16 of the amplitude is left. Exact to
+            2e-13 of the amplitude. The ground comes to rest where it was.
+
+        Raises
+        ------
+        UnitsError
+            A wrong unit, or none.
+        ComponentError
+            Not finite, a period that is not positive, or `antisymmetric` is not a bool.
+
+        Notes
+        -----
+        Wavelets of Ricker (1943) with the parameters of Vassiliou and Makris (2011),
+        :eq:`eq-ricker-symmetric` and :eq:`eq-ricker-antisymmetric`; its velocity and
+        displacement are :eq:`eq-ricker-path`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.ricker_wavelet("3 m/s^2", "0.8 s").peak_acceleration
+        <Quantity(3.0, 'meter / second ** 2')>
+        """
+        ...
+
+    @classmethod
+    @pulse("pulse of Mavroeidis and Papageorgiou", mavroeidis_papageorgiou, cycles=_AT_LEAST_ONE)
+    def mavroeidis_papageorgiou_pulse(
+        cls,
+        velocity: QuantityLike,
+        frequency: QuantityLike,
+        cycles: RatioLike,
+        phase: QuantityLike | None = None,
+    ) -> Self:
+        """Build a harmonic velocity under an envelope of one cosine.
+
+        Parameters
+        ----------
+        velocity : str or Quantity
+            Amplitude A of the velocity, reached in the middle if `phase` is
+            zero [m s^-1].
+        frequency : str or Quantity
+            Prevailing frequency f_p [Hz].
+        cycles : float
+            gamma, the length over the prevailing period; at least 1 [1].
+        phase : str or Quantity, optional
+            Phase nu of the velocity in the middle; zero unless given [rad].
+
+        Returns
+        -------
+        GroundMotion
+            Exact to 1e-12 of its peak. The ground comes to rest: where it was for a
+            phase of 90 degrees, or if `cycles` is a whole number beyond 1.
+
+        Raises
+        ------
+        UnitsError
+            A wrong unit, or none.
+        ComponentError
+            Not finite, a frequency that is not positive, or fewer cycles than one.
+
+        Notes
+        -----
+        Pulse of Mavroeidis and Papageorgiou (2003), :eq:`eq-mp-velocity` and
+        :eq:`eq-mp-acceleration`. It leaves the ground at :eq:`eq-mp-offset`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> pulse = rf.GroundMotion.mavroeidis_papageorgiou_pulse("0.5 m/s", "1 Hz", 2)
+        >>> pulse.velocity.max().round(4)
+        <Quantity(0.5, 'meter / second')>
+        """
+        ...
+
+    @classmethod
+    @pulse("double impulse", opposite_impulses)
+    def double_impulse(
+        cls,
+        velocity: QuantityLike,
+        interval: QuantityLike,
+        pulse_duration: QuantityLike | None = None,
+    ) -> Self:
+        """Build two impulses: the ground starts at a velocity, and stops again.
+
+        Parameters
+        ----------
+        velocity : str or Quantity
+            V, exactly the change of velocity by the first impulse; the second takes it
+            back [m s^-1].
+        interval : str or Quantity
+            Time t_0 from impulse to impulse [s].
+        pulse_duration : str or Quantity, optional
+            Longest length of an impulse; shortened until `interval` is a whole multiple
+            of it. A hundredth of `interval` unless given [s].
+
+        Returns
+        -------
+        GroundMotion
+            It ends with the second impulse. The ground comes to rest
+            ``velocity interval`` ahead of where it was.
+
+        Raises
+        ------
+        UnitsError
+            A wrong unit, or none.
+        ComponentError
+            Not finite, times that are not positive, impulses that overlap, or impulses
+            too short to be sampled.
+
+        Notes
+        -----
+        Double impulse of Kojima and Takewaki (2015), :eq:`eq-double-impulse`. Each has
+        the shape :eq:`eq-impulse`, with a peak of 1.875 V over its length. An oscillator
+        of the angular frequency omega takes the impulses for weaker by
+        ``(omega pulse_duration)^2/56``, as long as that is small.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> rf.GroundMotion.double_impulse("0.5 m/s", "0.8 s").displacement[-1].round(3)
+        <Quantity(0.4, 'meter')>
+        """
+        ...

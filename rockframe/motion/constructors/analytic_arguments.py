@@ -1,12 +1,17 @@
-"""Arguments of analytic motions, read by their names, in SI units."""
+"""Constructors of analytic motions made of formulas: arguments read by their names, in SI units."""
 
 from __future__ import annotations
 
-from typing import Any, Final
+from collections.abc import Callable
+from functools import wraps
+from inspect import signature
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError, shown
 from rockframe.motion.pulses import impulse_duration
+from rockframe.proposals import hinted
+from rockframe.shared_arguments import with_raises
 from rockframe.units import (
     ACCELERATION,
     ANGLE,
@@ -21,6 +26,19 @@ from rockframe.units import (
     to_si,
 )  # fmt: skip
 
+if TYPE_CHECKING:
+    from rockframe.signals import Motion
+
+Constructor = TypeVar("Constructor", bound=Callable[..., Any])
+
+PULSES: Final[list[str]] = []
+"""Names of the constructors, in the order in which they are declared."""
+
+_RAISES: Final = """\
+UnitsError
+    A wrong unit, or none.
+ComponentError
+    Not finite, or a frequency, period or length that is not positive."""
 _MEASURES: Final[dict[str, tuple[Measure, Condition | None, str]]] = {
     # of each parameter that is a quantity; and the word before it, where its unit leaves a doubt
     "amplitude": (ACCELERATION, None, ""),
@@ -86,3 +104,38 @@ class ArgumentReader:
         self.recipe[name] = kept
         self.short.append(short)
         self.exact.append(exact)
+
+
+def pulse(
+    title: str, formula: Callable[..., Motion], cycles: Condition = POSITIVE
+) -> Callable[[Constructor], Constructor]:
+    """Make a constructor of a formula: its arguments are read by their names, in SI units.
+
+    What was read is told in the name, the history and the recipe of the motion.
+    """
+
+    def decorate(declared: Constructor) -> Constructor:
+        own = signature(declared)
+        declared.__qualname__ = declared.__name__  # as messages name it
+        PULSES.append(declared.__name__)
+        checked = hinted()(declared)
+
+        @wraps(checked)
+        def construct(kind: type[Any], *given: Any, **named: Any) -> Any:
+            checked(kind, *given, **named)  # says what is missing, or too much
+            values = own.bind(kind, *given, **named)
+            values.apply_defaults()
+            reader = ArgumentReader(f"{kind.__name__}.{declared.__name__}", cycles)
+            for name in list(own.parameters)[1:]:
+                reader.read(name, values.arguments[name])
+            return kind(
+                formula(reader.owner, **reader.numbers),
+                name=", ".join([title, *reader.short]),
+                history=(f"{title}: {', '.join(reader.exact)}",),
+                recipe={"constructor": declared.__name__, **reader.recipe},
+            )
+
+        construct.__doc__ = with_raises(declared.__doc__ or "", _RAISES)
+        return cast("Constructor", construct)
+
+    return decorate

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import netCDF4
 import numpy as np
+from unit.motion.dialect_samples import sac
 from unit.motion.format_samples import COUNTS, VALUES
 
 from rockframe.motion import GroundMotion
@@ -95,3 +96,12 @@ def _array(group, name: str, values):
     variable = group.createVariable(name, values.dtype, (dimension,))
     variable[:] = values
     return variable
+
+
+BINARY = {
+    "netcdf": ("d.nc", netcdf, {}),
+    "miniseed": ("s.mseed", lambda _: miniseed(), {}),
+    "sac": ("s.sac", lambda _: sac(), {"unit": "gal"}),
+    "asdf": ("w.h5", asdf, {"component": ("N", "Z")}),
+}
+"""Of each format the name of a file, what makes its bytes in a folder, and what to ask for."""
