@@ -214,6 +214,13 @@ class RigidCorners(Chain):
         return attempt(self, mode, some, closed, False, impulsive, noise, state)
 
     @inlined
+    def try_all_slips(
+        self, mode: int, some: int, closed: int, noise: float, state: Vector
+    ) -> Attempt:
+        """Let a set of the closed corners bear in any other way to slip: there is none."""
+        return Attempt(0, math.inf)
+
+    @inlined
     def stand_still(self, room: Vector, out: Vector) -> None:
         """Take rounding from the accelerations of bodies in full contact with a rigid base."""
         for k in range(self.body_count):
@@ -291,16 +298,22 @@ class RigidCorners(Chain):
     def free_rises(self, k: int, mode: int, state: Vector, ground: Ground) -> tuple[float, float]:
         """Give the accelerations of the ends of a body that is held, as if it were let go."""
         free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
-        if k + 1 < self.body_count or self.part_mode(mode, k).slides:
-            return self.end_accelerations(k, free, state, ground)
-        # while the lowest body is held, its state tells where that is
-        x = self.horizontal_of(k)
+        lowest = self.body_count - 1
+        standing, x = self.part_mode(mode, lowest), self.horizontal_of(lowest)
         held, still = state[x], state[self.coordinates() + x]
-        place, rate = self.sway_at(k, self.part_mode(mode, k), held, state)
-        self.set_sway(k, place, rate, state)
+        if not self.on_base(lowest).is_free(standing):
+            # while the lowest body is held, its state tells where that is
+            place, rate = self.sway_at(lowest, standing, held, state)
+            self.set_sway(lowest, place, rate, state)
+        free = self.let_slip(free, state, ground)
         found = self.end_accelerations(k, free, state, ground)
-        self.set_sway(k, held, still, state)
+        self.set_sway(lowest, held, still, state)
         return found
+
+    @inlined
+    def let_slip(self, mode: int, state: Vector, ground: Ground) -> int:
+        """Give the mode in which what friction cannot hold slips: it holds all."""
+        return mode
 
     @inlined
     def sway_at(self, k: int, standing: Mode, held: float, state: Vector) -> tuple[float, float]:
@@ -318,7 +331,7 @@ class RigidCorners(Chain):
         """Write the guards of both corners: the force of one that bears, the gap of another."""
         part, body = self.on_base(k), self.standing_state(k, standing, state)
         line, force_size = part.body.base_line_at(body), self.number(k, at.FORCE_SIZE)
-        flies = part.flies(standing.contact)
+        flies, resting = part.flies(standing.contact), self.level_corners(k, body)
         self.write_idle(k, values, changes)
         for side in range(2):
             i = GUARDS * k + CORNER_GUARDS * side
@@ -331,6 +344,8 @@ class RigidCorners(Chain):
             else:
                 scale = (1.0 if side == 0 else -1.0) / part.body.angle
                 values[i], changes[i] = scale * body.rotation, scale * body.angular_velocity
+            if resting >> side & 1 != 0:  # a rate that is rounding does not close a corner
+                changes[i] = 0.0
 
     @inlined
     def write_idle(self, k: int, values: Vector, changes: Vector) -> None:
@@ -344,15 +359,20 @@ class RigidCorners(Chain):
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
-                part, standing = self.on_base(k), self.part_mode(mode, k)
-                body = self.standing_state(k, standing, state)
-                line, size = part.body.base_line_at(body), part.body.size()
-                level = LEVEL * size
-                speed = LEVEL * math.sqrt(part.body.gravity * size)
-                if abs(line.left) <= level and abs(line.left_speed) <= speed:
-                    found |= LEFT_ONLY << 2 * k
-                if abs(line.right) <= level and abs(line.right_speed) <= speed:
-                    found |= RIGHT_ONLY << 2 * k
+                body = self.standing_state(k, self.part_mode(mode, k), state)
+                found |= self.level_corners(k, body) << 2 * k
+        return found
+
+    @kernel
+    def level_corners(self, k: int, body: BodyState) -> int:
+        """Give the corners of a body that are at its base, and at rest."""
+        law, found = self.on_base(k).body, 0
+        line, size = law.base_line_at(body), law.size()
+        level, speed = LEVEL * size, LEVEL * math.sqrt(law.gravity * size)
+        if abs(line.left) <= level and abs(line.left_speed) <= speed:
+            found |= LEFT_ONLY
+        if abs(line.right) <= level and abs(line.right_speed) <= speed:
+            found |= RIGHT_ONLY
         return found
 
     @kernel
