@@ -297,21 +297,28 @@ class RigidCorners(Chain):
     @kernel
     def free_rises(self, k: int, mode: int, state: Vector, ground: Ground) -> tuple[float, float]:
         """Give the accelerations of the ends of a body that is held, as if it were let go."""
-        free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
         lowest = self.body_count - 1
-        standing, x = self.part_mode(mode, lowest), self.horizontal_of(lowest)
+        x = self.horizontal_of(lowest)
         held, still = state[x], state[self.coordinates() + x]
-        if not self.on_base(lowest).is_free(standing):
-            # while the lowest body is held, its state tells where that is
-            place, rate = self.sway_at(lowest, standing, held, state)
-            self.set_sway(lowest, place, rate, state)
-        free = self.let_slip(free, state, ground)
+        if k == lowest:
+            self.free_lowest(mode, state)
+        free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
+        free = self.let_slip_if_amiss(free, state, ground)
         found = self.end_accelerations(k, free, state, ground)
         self.set_sway(lowest, held, still, state)
         return found
 
     @inlined
-    def let_slip(self, mode: int, state: Vector, ground: Ground) -> int:
+    def free_lowest(self, mode: int, state: Vector) -> None:
+        """Write where the lowest body is: while it is held, its state tells where that is."""
+        k, x = self.body_count - 1, self.horizontal_of(self.body_count - 1)
+        standing = self.part_mode(mode, k)
+        if not self.on_base(k).is_free(standing):
+            place, rate = self.sway_at(k, standing, state[x], state)
+            self.set_sway(k, place, rate, state)
+
+    @inlined
+    def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
         """Give the mode in which what friction cannot hold slips: it holds all."""
         return mode
 

@@ -183,13 +183,15 @@ class SlippingRigidChain(TriedSlips):
         return True
 
     @kernel
-    def let_slip(self, mode: int, state: Vector, ground: Ground) -> int:
+    def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
         """Give the mode in which what friction cannot hold slips."""
         room = self.places()
         for _ in range(self.body_count):
             self.accelerate(mode, state, ground)
             for k in range(self.body_count):
                 if not self.part_mode(mode, k).slides and self.is_amiss(k, mode, state):
+                    if k == self.body_count - 1:
+                        self.free_lowest(mode, state)
                     mode = self.slipping(mode, k, float(room[k * PLACES + at.STARTS]))
         return mode
 
