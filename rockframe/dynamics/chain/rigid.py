@@ -144,6 +144,7 @@ class RigidChain(RigidCorners):
             opens = which % CORNER_GUARDS == OPENING
             corners = self.bearing(mode) & ~(BOTH << 2 * k) if opens else self.bearing(mode)
             new = self.with_bearing(mode, corners, self.pulled(mode) & ~(BOTH << 2 * k))
+            self.keep_hold(new, state, memory)
             memory[LAST_EVENT] = SEPARATION if opens else SILENT
         elif self.is_rigid(k):
             new = self.switch_corner(k, left, mode, state, ground, memory)
