@@ -21,6 +21,7 @@ from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, Ground, Slope
+from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 
 NONE: Final = -1.0
 """In place of the number of a constraint."""
@@ -270,10 +271,9 @@ class RigidCorners(Chain):
                 left = self.on_base(k).base.is_held(standing.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
                 values[i] = -values[i]
-                rises = self.free_rises(k, mode, state, ground)
-                comes_back = -rises[0 if left else 1] / self.number(k, at.GRAVITY)
-                # one that leaves another to pull in its place stays held
-                values[i + OPENING] = max(comes_back, self.most_pull(mode))
+                # one that comes back itself, or leaves another to pull or close, stays held
+                falls = self.fall_if_let_go(k, left, mode, state, ground)
+                values[i + OPENING] = max(falls, self.most_pull(mode))
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
             if not self.is_rigid(k):
@@ -295,18 +295,49 @@ class RigidCorners(Chain):
         return most
 
     @kernel
-    def free_rises(self, k: int, mode: int, state: Vector, ground: Ground) -> tuple[float, float]:
-        """Give the accelerations of the ends of a body that is held, as if it were let go."""
-        lowest = self.body_count - 1
+    def fall_if_let_go(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> float:
+        """Give how fast a held corner would fall if it were let go, over gravity.
+
+        Or another one that does not bear, and is as near to its base as one at rest.
+        """
+        lowest, most = self.body_count - 1, -math.inf
         x = self.horizontal_of(lowest)
         held, still = state[x], state[self.coordinates() + x]
         if k == lowest:
             self.free_lowest(mode, state)
         free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
         free = self.let_slip_if_amiss(free, state, ground)
-        found = self.end_accelerations(k, free, state, ground)
+        for other in range(self.body_count):
+            if self.is_rigid(other):
+                rises = self.end_accelerations(other, free, state, ground)
+                for side in range(2):
+                    let_go = other == k and left == (side == 0)
+                    if let_go or self.is_near(other, side == 0, -rises[side], free, state):
+                        most = max(most, -rises[side] / self.number(other, at.GRAVITY))
         self.set_sway(lowest, held, still, state)
-        return found
+        return most
+
+    @kernel
+    def is_near(self, k: int, left: bool, fall: float, mode: int, state: Vector) -> bool:
+        """Whether a corner that does not bear is no farther from its base than one at rest."""
+        part, standing = self.on_base(k), self.part_mode(mode, k)
+        line = part.body.base_line_at(self.standing_state(k, standing, state))
+        level, speed = line.left, line.left_speed
+        if not left:
+            level, speed = line.right, line.right_speed
+        near = level < self.least_rise(k) and self.returns_at_once(k, speed, fall)
+        return near and not part.base.is_held(standing.contact, left)
+
+    @inlined
+    def least_rise(self, k: int) -> float:
+        """Give the height to which a corner must rise to count as one that has left."""
+        law = self.on_base(k).body
+        return REST_AMPLITUDE * law.angle * law.size()
+
+    @inlined
+    def returns_at_once(self, k: int, speed: float, fall: float) -> bool:
+        """Whether a corner that rises so fast comes back before it counts as one that has left."""
+        return fall > 0.0 and speed * speed < 2.0 * fall * self.least_rise(k)
 
     @inlined
     def free_lowest(self, mode: int, state: Vector) -> None:

@@ -294,7 +294,7 @@ def with_one_held(
             found = system.try_corners(mode, bears, closed & ~one, False, noise, state)
             pulls = system.corner_force(corner // 2, corner % 2 == 0) < 0.0
             if found.fault < 0 and pulls and all_press(system, bears & ~before & ~one):
-                free = system.try_corners(mode, bears & ~one, some, False, noise, state)
+                free = system.try_corners(mode, bears & ~one, closed, False, noise, state)
                 if free.fault >= 0:
                     taken, held, least = bears, one, distance
         some = next_set(follower, near)

@@ -181,6 +181,8 @@ class RigidChain(RigidCorners):
         if bore:
             leaving = (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
             new = self.let_bear(mode, closed, before, leaving, state, ground, memory)
+            if self.bearing(new) == before & ~leaving and self.bears_alone(before, leaving):
+                new = self.hold_if_jammed(k, left, mode, new, state, ground, memory)
             flies = part.flies(self.part_mode(new, k).contact)
             both = part.shown_contact(standing) == FULL
             memory[LAST_EVENT] = UPLIFT if both and not flies else SEPARATION
@@ -250,9 +252,7 @@ class RigidChain(RigidCorners):
         line = part.body.base_line_at(self.state_of(k, state))
         speed = line.left_speed if left else line.right_speed
         rises = self.end_accelerations(k, mode, state, ground)
-        falls = -(rises[0] if left else rises[1])
-        least = REST_AMPLITUDE * part.body.angle * part.body.size()
-        return speed, falls > 0.0 and speed * speed < 2.0 * falls * least
+        return speed, self.returns_at_once(k, speed, -(rises[0] if left else rises[1]))
 
     @kernel
     def stay_if_small(
@@ -288,6 +288,29 @@ class RigidChain(RigidCorners):
         if self.corner_force(k, left) < 0.0:
             held = self.with_bearing(mode, closed, pulled | corner)
         return held
+
+    @kernel
+    def hold_if_jammed(
+        self, k: int, left: bool, mode: int, new: int, state: Vector, ground: Ground,
+        memory: Vector,
+    ) -> int:  # fmt: skip
+        """Hold a corner that has left since it would have to pull, but that falls where it is free.
+
+        What holds bodies along their bases makes both impossible.
+        """
+        rises = self.end_accelerations(k, new, state, ground)
+        if rises[0 if left else 1] >= 0.0:
+            return new
+        corners, pulled = self.bearing(mode), self.pulled(new)
+        held = self.with_bearing(new, corners, pulled | corners & ~self.bearing(new))
+        self.write_contacts(new, state, memory)
+        self.hold_contacts(held, state, memory)
+        self.accelerate(held, state, ground)
+        if self.corner_force(k, left) < 0.0:
+            return held
+        self.write_contacts(held, state, memory)
+        self.hold_contacts(new, state, memory)
+        return new
 
     @kernel
     def let_stand(self, corners: int, mode: int, new: int, state: Vector, memory: Vector) -> None:
