@@ -31,6 +31,8 @@ NEIGHBOURS: Final = 3
 """Of more, corners in which the subsets differ from the one with sticking assumed."""
 NOISE: Final = 1e-11
 """Share of all impulses, or of all speeds, that is rounding."""
+ROUNDING: Final = 1e-12
+"""Acceleration over gravity that is rounding."""
 NEARLY_ZERO: Final = 1e-5
 """Acceleration of a corner as its force comes to zero, over gravity."""
 MOST_PIVOTS: Final = 1000
@@ -180,7 +182,6 @@ def first_fault(
 ) -> int:
     """Give the first corner that is at fault by :eq:`eq-admissible`; -1 if none is."""
     room, rows = system.places(), system.constraints()
-    spare = MOST_CONSTRAINTS * system.body_count - 1  # a corner is left free, so there is room
     for corner in range(2 * system.body_count):
         if closed >> corner & 1 == 0:
             continue
@@ -190,15 +191,20 @@ def first_fault(
             if rows[which * CONSTRAINT + at.FORCE] < -least:
                 return corner
             continue
-        i = k * PLACES + side
-        lever, rests = room[i + at.LEVERS], room[i + at.RESTS]
-        keeps = spare * CONSTRAINT + at.KEEPS
-        write_direction(system, k, 0.0, 1.0, lever, keeps, room, rows)
         # under new forces a corner parts as its force is zero, and so is its acceleration
         least_rise = noise if impulsive else -noise
-        if of_both(system, k, keeps, room, rows) - rests <= least_rise:
+        if free_rise(system, k, side) <= least_rise:
             return corner
     return -1
+
+
+@kernel
+def free_rise(system: Any, k: int, side: int) -> float:
+    """Give how fast a corner that is left free rises, as solved for last."""
+    room, rows, i = system.places(), system.constraints(), k * PLACES + side
+    keeps = (MOST_CONSTRAINTS * system.body_count - 1) * CONSTRAINT + at.KEEPS  # there is room
+    write_direction(system, k, 0.0, 1.0, room[i + at.LEVERS], keeps, room, rows)
+    return float(of_both(system, k, keeps, room, rows) - room[i + at.RESTS])
 
 
 @kernel
@@ -235,23 +241,24 @@ def bearing_corners(
         reference = with_sticking(system, mode, closed, impulsive, noise, state)
         near = Near(closed, reference, NEIGHBOURS)
     taken, other, admissible, held = -1, -1, 0, 0
-    least = second = math.inf
-    for ways in range(1 if impulsive else 2):
-        thorough, some = ways == 1, next_set(closed, near)
+    lowest = second = math.inf
+    for ways in range(1 if impulsive else 3):  # first what is admissible but for rounding
+        thorough, some = ways == 2, next_set(closed, near)
+        least = noise if impulsive or ways > 0 else ROUNDING * system.number(0, at.GRAVITY)
         while some >= 0:
             bears = some | pulled
             if leaving <= 0 or bears != before:
-                found = try_set(system, thorough, mode, bears, closed, impulsive, noise, state)
+                found = try_set(system, thorough, mode, bears, closed, impulsive, least, state)
                 if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
                     loss = found.loss if impulsive else float(size_of(bears ^ before))
                     admissible += 1
-                    if loss < least:
-                        other, second, taken, least = taken, least, bears, loss
+                    if loss < lowest:
+                        other, second, taken, lowest = taken, lowest, bears, loss
                     elif loss < second:
                         other, second = bears, loss
             some = next_set(some - 1, near)
         if admissible > 0:  # what it does stays in the rooms
-            try_set(system, thorough, mode, taken, closed, impulsive, noise, state)
+            try_set(system, thorough, mode, taken, closed, impulsive, least, state)
             return Found(taken, admissible, other, 0)
     if impulsive:
         taken = with_sticking(system, mode, closed, impulsive, noise, state)

@@ -18,7 +18,6 @@ from rockframe.dynamics.chain.corners import NONE
 from rockframe.dynamics.chain.impact import (
     BOTH,
     LEFT_ONLY,
-    NEARLY_ZERO,
     NOISE,
     Attempt,
     attempt,
@@ -217,7 +216,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         for tries in range(2 * most):
             holding = IMPULSIVE if impulsive else STATIC if tries < most else KINETIC
             found = attempt(self, mode, some, closed, False, impulsive, noise, state)
-            k = self.otherwise(mode, some, closed, impulsive, holding, state)
+            k = self.otherwise(mode, some, closed, impulsive, holding, noise, state)
             if k < 0:
                 return found
         return Attempt(max(found.fault, 0), math.inf)
@@ -256,7 +255,8 @@ class TriedSlips(SlipperyBases, RigidChain):
                     self.places()[k * PLACES + at.SLIPS] = float((rest + 1) % 3 - 1)
                     rest //= 3
             found = attempt(self, mode, some, closed, False, False, noise, state)
-            if found.fault < 0 and self.otherwise(mode, some, closed, False, STATIC, state) < 0:
+            k = self.otherwise(mode, some, closed, False, STATIC, noise, state)
+            if found.fault < 0 and k < 0:
                 return found
         return Attempt(0, math.inf)
 
@@ -281,11 +281,13 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def otherwise(
-        self, mode: int, some: int, closed: int, impulsive: bool, holding: int, state: Vector
-    ) -> int:
+        self, mode: int, some: int, closed: int, impulsive: bool, holding: int, noise: float,
+        state: Vector,
+    ) -> int:  # fmt: skip
         """Change how a body is tried that friction cannot hold, or that does not slip; else -1.
 
-        With the coefficient `holding` friction holds.
+        With the coefficient `holding` friction holds. Under forces accelerations up to `noise`
+        are none.
         """
         room, rows = self.places(), self.constraints()
         for k in range(self.body_count):
@@ -312,7 +314,7 @@ class TriedSlips(SlipperyBases, RigidChain):
                     if impulsive:
                         after, least = after + rate, least + NOISE_OF_SLIP * abs(after)
                     else:  # as it starts to slip, friction is what holds it
-                        least = NEARLY_ZERO * self.number(k, at.GRAVITY)
+                        least = noise
                     if sense * after < -least:
                         room[i + at.SLIPS] = 0.0
                         return k
