@@ -193,7 +193,7 @@ LOWER: Final = 0
 UPPER: Final = 1
 """That of its end by lengthening."""
 CLEAR: Final = 16.0
-"""Roundings of the elongation by which a tie that unloads stands below its strength."""
+"""Roundings of the elongation by which a state lasts beyond its end, so that it is left once."""
 TAUT_NOISE: Final = 1e3
 """Roundings of the elongation within which a tie is taut where a run starts."""
 
@@ -235,7 +235,7 @@ class Bumper(NamedTuple):
         if state == SLACK and which == UPPER:
             return -x, -stretch.rate
         if state == TAUT and which == LOWER:
-            return x, stretch.rate
+            return x + CLEAR * stretch.noise, stretch.rate
         return 1.0, 0.0
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
@@ -358,7 +358,8 @@ class Tie(NamedTuple):
             value = x + self.most
         elif state == TAUT:
             # one that has no length where it is unstretched never hangs slack
-            value = x if stretch.given + self.free + own[0] > stretch.noise else math.inf
+            has_length = stretch.given + self.free + own[0] > stretch.noise
+            value = x + CLEAR * stretch.noise if has_length else math.inf
         elif state == YIELDS and which == LOWER:
             return stretch.rate, stretch.acceleration
         elif state == SLACK and which == UPPER:

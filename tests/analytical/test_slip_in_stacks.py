@@ -5,6 +5,7 @@ import pytest
 from plainly import plainly
 
 import rockframe as rf
+from rockframe.dynamics.chain.impact import write_corners
 from rockframe.dynamics.chain.motion import load_bodies
 from rockframe.dynamics.events import EventKind
 from rockframe.errors import AssemblyError, ModelWarning
@@ -194,6 +195,7 @@ def test_the_energy_that_chooses_among_impacts_is_what_they_lose(corners, slip):
     state[6:] = 0.7, -0.4, 0.0, 0.0, slip, -0.5 * slip
     had = system.energies(flying, state).kinetic
     load_bodies(system, 0.0, 0.0, system.places())
+    write_corners(system, True, state)
     found = system.try_corners(flying, corners, 0b1111, True, 0.0, state)
     assert [system.slip_sense(k) for k in range(2)] == [np.sign(slip), -np.sign(slip)]
     system.change_velocities(state)

@@ -9,6 +9,7 @@ from benchmarks.random_parts import drawn
 from plainly import plainly
 
 import rockframe as rf
+from rockframe.dynamics.chain.impact import Near, next_set
 from rockframe.dynamics.events import ContactState, EventKind
 from rockframe.errors import AssemblyError, ModelWarning
 from rockframe.solve.workspace import Status
@@ -212,6 +213,14 @@ def test_more_links_than_can_be_numbered_are_refused():
         (5678, "0.6 s"),  # two slips that start at once, one against the other
         (5699, "1.1 s"),  # a corner that bears again as the one let go would not press
         (6897, "0.89 s"),  # two corners of which either pulls, and comes back, without the other
+        (7278, "0.302 s"),  # a pad's end that waits on as a corner elsewhere parts
+        (1234, "1.845 s"),  # a hold that parts a corner below, instead of lifting its own end
+        (6946, "0.73 s"),  # a base that slips on, the more it is held back
+        (9364, "1.188 s"),  # a slip that ends, by which a corner is held without pressing
+        (3184, "0.24 s"),  # a corner held without pressing, which is not the one that lets go
+        (2972, "2.4 s"),  # bounces on a pad, by rounding
+        (5525, "0.22 s"),  # corners of one base, closed by rates that are rounding
+        (4018, "0.08 s"),  # a corner that comes back from below its base
     ],
 )
 def test_changes_of_contact_come_to_an_end(number, ends):
@@ -234,6 +243,48 @@ def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
     assert float(found.energy_residual) < most
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+def test_what_has_lost_its_hold_is_not_held_at_the_bound():
+    """It cannot slip with the corners that bear; two of them part."""
+    system, motion = drawn("stack of mixed bases", np.random.default_rng(4852))
+    found = system.simulate(motion, duration="1.31 s", accuracy="fast", outputs=None)
+    assert int(found.status) == Status.COMPLETED
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+def test_a_pad_that_catches_up_creates_no_energy():
+    """The end that it meets does not slide by a force that has a corner below pull."""
+    system, motion = drawn("stack of mixed bases", np.random.default_rng(1835))
+    with plainly():
+        found = system.simulate(
+            motion, duration="0.66 s", accuracy="fast", outputs=None, second_look=False
+        )
+    assert float(found.energy_residual) < 1e-4
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+def test_a_stack_that_falls_as_one_lands_as_one():
+    """Its ground falls faster four times; rates of 1e-29 had the upper block bounce once."""
+    system, motion = drawn("stack of mixed bases", np.random.default_rng(326))
+    with plainly():
+        found = system.simulate(
+            motion, duration="1.15 s", accuracy="fast", outputs=None, second_look=False
+        )
+    assert float(found.peak_rotation) < 1e-15
+
+
+@pytest.mark.parametrize("most", [0, 1, 3, 8])
+def test_sets_near_one_are_found_from_the_highest_down(most):
+    near = Near(0b110110111, 0b010010101, most)
+    found, some = [], next_set(near.closed, near)
+    while some >= 0:
+        found.append(some)
+        some = next_set(some - 1, near)
+    subsets = [one for one in range(near.closed, -1, -1) if one & ~near.closed == 0]
+    assert found == [one for one in subsets if (one ^ near.reference).bit_count() <= most]
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")

@@ -21,6 +21,7 @@ from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, Ground, Slope
+from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 
 NONE: Final = -1.0
 """In place of the number of a constraint."""
@@ -214,6 +215,13 @@ class RigidCorners(Chain):
         return attempt(self, mode, some, closed, False, impulsive, noise, state)
 
     @inlined
+    def try_all_slips(
+        self, mode: int, some: int, closed: int, noise: float, state: Vector
+    ) -> Attempt:
+        """Let a set of the closed corners bear in any other way to slip: there is none."""
+        return Attempt(0, math.inf)
+
+    @inlined
     def stand_still(self, room: Vector, out: Vector) -> None:
         """Take rounding from the accelerations of bodies in full contact with a rigid base."""
         for k in range(self.body_count):
@@ -263,10 +271,9 @@ class RigidCorners(Chain):
                 left = self.on_base(k).base.is_held(standing.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
                 values[i] = -values[i]
-                rises = self.free_rises(k, mode, state, ground)
-                comes_back = -rises[0 if left else 1] / self.number(k, at.GRAVITY)
-                # one that leaves another to pull in its place stays held
-                values[i + OPENING] = max(comes_back, self.most_pull(mode))
+                # one that comes back itself, or leaves another to pull or close, stays held
+                falls = self.fall_if_let_go(k, left, mode, state, ground)
+                values[i + OPENING] = max(falls, self.most_pull(mode))
         slides = self.some_end_slides(mode)
         for k in range(self.body_count):
             if not self.is_rigid(k):
@@ -288,19 +295,63 @@ class RigidCorners(Chain):
         return most
 
     @kernel
-    def free_rises(self, k: int, mode: int, state: Vector, ground: Ground) -> tuple[float, float]:
-        """Give the accelerations of the ends of a body that is held, as if it were let go."""
-        free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
-        if k + 1 < self.body_count or self.part_mode(mode, k).slides:
-            return self.end_accelerations(k, free, state, ground)
-        # while the lowest body is held, its state tells where that is
-        x = self.horizontal_of(k)
+    def fall_if_let_go(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> float:
+        """Give how fast a held corner would fall if it were let go, over gravity.
+
+        Or another one that does not bear, and is as near to its base as one at rest.
+        """
+        lowest, most = self.body_count - 1, -math.inf
+        x = self.horizontal_of(lowest)
         held, still = state[x], state[self.coordinates() + x]
-        place, rate = self.sway_at(k, self.part_mode(mode, k), held, state)
-        self.set_sway(k, place, rate, state)
-        found = self.end_accelerations(k, free, state, ground)
-        self.set_sway(k, held, still, state)
-        return found
+        if k == lowest:
+            self.free_lowest(mode, state)
+        free = self.with_part(mode, k, Mode(both_contacts(RAISED, RAISED), 0, False))
+        free = self.let_slip_if_amiss(free, state, ground)
+        for other in range(self.body_count):
+            if self.is_rigid(other):
+                rises = self.end_accelerations(other, free, state, ground)
+                for side in range(2):
+                    let_go = other == k and left == (side == 0)
+                    if let_go or self.is_near(other, side == 0, -rises[side], free, state):
+                        most = max(most, -rises[side] / self.number(other, at.GRAVITY))
+        self.set_sway(lowest, held, still, state)
+        return most
+
+    @kernel
+    def is_near(self, k: int, left: bool, fall: float, mode: int, state: Vector) -> bool:
+        """Whether a corner that does not bear is no farther from its base than one at rest."""
+        part, standing = self.on_base(k), self.part_mode(mode, k)
+        line = part.body.base_line_at(self.standing_state(k, standing, state))
+        level, speed = line.left, line.left_speed
+        if not left:
+            level, speed = line.right, line.right_speed
+        near = level < self.least_rise(k) and self.returns_at_once(k, speed, fall)
+        return near and not part.base.is_held(standing.contact, left)
+
+    @inlined
+    def least_rise(self, k: int) -> float:
+        """Give the height to which a corner must rise to count as one that has left."""
+        law = self.on_base(k).body
+        return REST_AMPLITUDE * law.angle * law.size()
+
+    @inlined
+    def returns_at_once(self, k: int, speed: float, fall: float) -> bool:
+        """Whether a corner that rises so fast comes back before it counts as one that has left."""
+        return fall > 0.0 and speed * speed < 2.0 * fall * self.least_rise(k)
+
+    @inlined
+    def free_lowest(self, mode: int, state: Vector) -> None:
+        """Write where the lowest body is: while it is held, its state tells where that is."""
+        k, x = self.body_count - 1, self.horizontal_of(self.body_count - 1)
+        standing = self.part_mode(mode, k)
+        if not self.on_base(k).is_free(standing):
+            place, rate = self.sway_at(k, standing, state[x], state)
+            self.set_sway(k, place, rate, state)
+
+    @inlined
+    def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
+        """Give the mode in which what friction cannot hold slips: it holds all."""
+        return mode
 
     @inlined
     def sway_at(self, k: int, standing: Mode, held: float, state: Vector) -> tuple[float, float]:
@@ -318,7 +369,7 @@ class RigidCorners(Chain):
         """Write the guards of both corners: the force of one that bears, the gap of another."""
         part, body = self.on_base(k), self.standing_state(k, standing, state)
         line, force_size = part.body.base_line_at(body), self.number(k, at.FORCE_SIZE)
-        flies = part.flies(standing.contact)
+        flies, resting = part.flies(standing.contact), self.level_corners(k, body)
         self.write_idle(k, values, changes)
         for side in range(2):
             i = GUARDS * k + CORNER_GUARDS * side
@@ -331,6 +382,8 @@ class RigidCorners(Chain):
             else:
                 scale = (1.0 if side == 0 else -1.0) / part.body.angle
                 values[i], changes[i] = scale * body.rotation, scale * body.angular_velocity
+            if resting >> side & 1 != 0:  # a rate that is rounding does not close a corner
+                changes[i] = 0.0
 
     @inlined
     def write_idle(self, k: int, values: Vector, changes: Vector) -> None:
@@ -344,15 +397,20 @@ class RigidCorners(Chain):
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
-                part, standing = self.on_base(k), self.part_mode(mode, k)
-                body = self.standing_state(k, standing, state)
-                line, size = part.body.base_line_at(body), part.body.size()
-                level = LEVEL * size
-                speed = LEVEL * math.sqrt(part.body.gravity * size)
-                if abs(line.left) <= level and abs(line.left_speed) <= speed:
-                    found |= LEFT_ONLY << 2 * k
-                if abs(line.right) <= level and abs(line.right_speed) <= speed:
-                    found |= RIGHT_ONLY << 2 * k
+                body = self.standing_state(k, self.part_mode(mode, k), state)
+                found |= self.level_corners(k, body) << 2 * k
+        return found
+
+    @kernel
+    def level_corners(self, k: int, body: BodyState) -> int:
+        """Give the corners of a body that are at its base, and at rest."""
+        law, found = self.on_base(k).body, 0
+        line, size = law.base_line_at(body), law.size()
+        level, speed = LEVEL * size, LEVEL * math.sqrt(law.gravity * size)
+        if abs(line.left) <= level and abs(line.left_speed) <= speed:
+            found |= LEFT_ONLY
+        if abs(line.right) <= level and abs(line.right_speed) <= speed:
+            found |= RIGHT_ONLY
         return found
 
     @kernel

@@ -31,6 +31,8 @@ NEIGHBOURS: Final = 3
 """Of more, corners in which the subsets differ from the one with sticking assumed."""
 NOISE: Final = 1e-11
 """Share of all impulses, or of all speeds, that is rounding."""
+ROUNDING: Final = 1e-12
+"""Acceleration over gravity that is rounding."""
 NEARLY_ZERO: Final = 1e-5
 """Acceleration of a corner as its force comes to zero, over gravity."""
 MOST_PIVOTS: Final = 1000
@@ -45,11 +47,15 @@ class Attempt(NamedTuple):
 
 
 class Found(NamedTuple):
-    """The set that bears, how many others would do, and the next best of them, or -1."""
+    """The set that bears, how many others would do, and the next best of them, or -1.
+
+    Where none would do, the corner that is held though it does not press, or 0.
+    """
 
     taken: int
     admissible: int
     other: int
+    held: int
 
 
 @kernel
@@ -60,6 +66,36 @@ def size_of(corners: int) -> int:
         count += rest & 1
         rest >>= 1
     return count
+
+
+class Near(NamedTuple):
+    """Sets of closed corners that differ from one of them in at most so many."""
+
+    closed: int
+    reference: int
+    most: int
+
+
+@kernel
+def next_set(start: int, near: Near) -> int:
+    """Give the highest of the sets up to a number, all closed corners or one less than a set; -1.
+
+    Those between, that differ in too many corners, are passed by at once.
+    """
+    some = start & near.closed if start >= 0 else -1
+    while some >= 0:
+        rest = some ^ near.reference
+        for _ in range(size_of(rest) - near.most - 1):
+            rest &= rest - 1
+        corner = rest & -rest  # the highest one in which a set differs that may not
+        if size_of(rest) <= near.most:
+            break
+        above = some & ~(2 * corner - 1)
+        if some & corner != 0:
+            some = above | near.reference & (corner - 1)
+            break
+        some = (above - 1) & near.closed if above > 0 else -1
+    return some
 
 
 @kernel
@@ -89,25 +125,20 @@ def attempt(
         holds = touches | bears if sticks else bears
         if holds == 0:
             continue
-        body, part = system.state_of(k, state), system.on_base(k)
         # where both corners are closed all points of the base move alike
-        pivot = PIVOT_LEFT if holds == LEFT_ONLY else PIVOT_RIGHT
-        reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
+        pivot = 0 if holds == LEFT_ONLY else 1
+        reach, stays = room[i + at.REACHES + pivot], room[i + at.STAYS + pivot]
         sense = 0.0 if sticks else system.slip_sense(k)
         for side in range(2):
             if bears >> side & 1 != 0:
-                lever, wanted = corner_row(system, k, side == 0, impulsive, state, room)
-                add_constraint(system, count, k, 0.0, 1.0, lever, wanted, room, rows)
+                lever, rests = room[i + at.LEVERS + side], room[i + at.RESTS + side]
+                add_constraint(system, count, k, 0.0, 1.0, lever, rests, room, rows)
                 room[i + at.LEFT_CORNER + side] = count
-                system.rub(k, count, sense, reach.rate, impulsive, room, rows)
+                system.rub(k, count, sense, reach, impulsive, room, rows)
                 count += 1
         if sense == 0.0:
-            rate = body.angular_velocity
-            wanted = coriolis_along(i, room) + reach.bend * rate * rate
-            if impulsive:
-                wanted = reach.rate * rate - body.horizontal_velocity
             room[i + at.HOLDS_ALONG] = count
-            add_constraint(system, count, k, 1.0, 0.0, -reach.rate, wanted, room, rows)
+            add_constraint(system, count, k, 1.0, 0.0, -reach, stays, room, rows)
             count += 1
     solve_motion(system, count, system.band(), room, rows, system.matrix())
     loss = pressing = 0.0
@@ -118,32 +149,39 @@ def attempt(
         if system.is_rigid(k):
             loss += system.lost_by_friction(k, which, state, room, rows)
         pressing += abs(force)
-    fault = first_fault(system, some, closed, impulsive, NOISE * pressing, noise, state)
+    fault = first_fault(system, some, closed, impulsive, NOISE * pressing, noise)
     return Attempt(fault, loss)
 
 
 @kernel
-def corner_row(
-    system: Any, k: int, left: bool, impulsive: bool, state: Vector, room: Vector
-) -> tuple[float, float]:
-    """Give the lever of a corner, and the change of its speed that makes it rest on its base."""
-    i, part, body = k * PLACES, system.on_base(k), system.state_of(k, state)
-    attitude = part.body.attitude(body.rotation)
-    line = part.body.base_line(body, attitude)
-    lever = line.left_lever if left else line.right_lever
-    if impulsive:
-        return lever, -(line.left_speed if left else line.right_speed)
-    bends = part.body.end_accelerations(attitude, body.angular_velocity, 0.0, 0.0)
-    return lever, -coriolis_normal(i, room) - (bends[0] if left else bends[1])
+def write_corners(system: Any, impulsive: bool, state: Vector) -> None:
+    """Write what all trials of corners have in common: their levers, and what makes them rest."""
+    room = system.places()
+    for k in range(system.body_count):
+        if system.is_rigid(k):
+            i, part, body = k * PLACES, system.on_base(k), system.state_of(k, state)
+            attitude, rate = part.body.attitude(body.rotation), body.angular_velocity
+            line = part.body.base_line(body, attitude)
+            bends = part.body.end_accelerations(attitude, rate, 0.0, 0.0)
+            room[i + at.LEVERS], room[i + at.LEVERS + 1] = line.left_lever, line.right_lever
+            room[i + at.RESTS], room[i + at.RESTS + 1] = -line.left_speed, -line.right_speed
+            for side in range(2):
+                pin = part.body.pin(PIVOT_LEFT if side == 0 else PIVOT_RIGHT)
+                reach = part.body.reach(pin, attitude)
+                room[i + at.REACHES + side] = reach.rate
+                room[i + at.STAYS + side] = reach.rate * rate - body.horizontal_velocity
+                if not impulsive:
+                    along = coriolis_along(i, room) + reach.bend * rate * rate
+                    room[i + at.STAYS + side] = along
+                    room[i + at.RESTS + side] = -coriolis_normal(i, room) - bends[side]
 
 
 @kernel
 def first_fault(
-    system: Any, some: int, closed: int, impulsive: bool, least: float, noise: float, state: Vector
+    system: Any, some: int, closed: int, impulsive: bool, least: float, noise: float
 ) -> int:
     """Give the first corner that is at fault by :eq:`eq-admissible`; -1 if none is."""
     room, rows = system.places(), system.constraints()
-    spare = MOST_CONSTRAINTS * system.body_count - 1  # a corner is left free, so there is room
     for corner in range(2 * system.body_count):
         if closed >> corner & 1 == 0:
             continue
@@ -153,14 +191,20 @@ def first_fault(
             if rows[which * CONSTRAINT + at.FORCE] < -least:
                 return corner
             continue
-        lever, wanted = corner_row(system, k, side == 0, impulsive, state, room)
-        keeps = spare * CONSTRAINT + at.KEEPS
-        write_direction(system, k, 0.0, 1.0, lever, keeps, room, rows)
         # under new forces a corner parts as its force is zero, and so is its acceleration
         least_rise = noise if impulsive else -noise
-        if of_both(system, k, keeps, room, rows) - wanted <= least_rise:
+        if free_rise(system, k, side) <= least_rise:
             return corner
     return -1
+
+
+@kernel
+def free_rise(system: Any, k: int, side: int) -> float:
+    """Give how fast a corner that is left free rises, as solved for last."""
+    room, rows, i = system.places(), system.constraints(), k * PLACES + side
+    keeps = (MOST_CONSTRAINTS * system.body_count - 1) * CONSTRAINT + at.KEEPS  # there is room
+    write_direction(system, k, 0.0, 1.0, room[i + at.LEVERS], keeps, room, rows)
+    return float(of_both(system, k, keeps, room, rows) - room[i + at.RESTS])
 
 
 @kernel
@@ -172,9 +216,8 @@ def noise_of(system: Any, closed: int, impulsive: bool, state: Vector) -> float:
     for corner in range(2 * system.body_count):
         if closed >> corner & 1 != 0:
             k = corner // 2
-            body = system.state_of(k, state)
-            lever, wanted = corner_row(system, k, corner % 2 == 0, True, state, room)
-            scale += abs(wanted) + abs(lever * body.angular_velocity)
+            i, body = k * PLACES + corner % 2, system.state_of(k, state)
+            scale += abs(room[i + at.RESTS]) + abs(room[i + at.LEVERS] * body.angular_velocity)
             scale += abs(body.horizontal_velocity)
     return NOISE * scale
 
@@ -187,36 +230,85 @@ def bearing_corners(
 
     After an impact the admissible set that loses the least energy. Where one of those that bore
     before is `leaving`, since its force has come to zero, the admissible one nearest to those.
-    Where no set is admissible, that of the problem with sticking assumed, which has one solution.
-    Where friction alone has changed, `leaving` is negative.
+    Where friction alone has changed, `leaving` is negative. Where no set is admissible, after an
+    impact that of the problem with sticking assumed, which has one solution; under new forces first
+    all ways to slip are tried, then sets of which one corner is held though it does not press.
     """
     impulsive = leaving == 0
-    reference, noise = closed, noise_of(system, closed, impulsive, state)
-    many = size_of(closed) > ALL_TRIED
-    if many:
+    write_corners(system, impulsive, state)
+    noise, near = noise_of(system, closed, impulsive, state), Near(closed, closed, ALL_TRIED)
+    if size_of(closed) > ALL_TRIED:
         reference = with_sticking(system, mode, closed, impulsive, noise, state)
-    taken, other, admissible = -1, -1, 0
-    least = second = math.inf
-    some = closed
-    while some >= 0:
-        near, bears = not many or size_of(some ^ reference) <= NEIGHBOURS, some | pulled
-        if near and (leaving <= 0 or bears != before):
-            found = system.try_corners(mode, bears, closed, impulsive, noise, state)
-            if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
-                loss = found.loss if impulsive else float(size_of(bears ^ before))
-                admissible += 1
-                if loss < least:
-                    other, second, taken, least = taken, least, bears, loss
-                elif loss < second:
-                    other, second = bears, loss
-        some = (some - 1) & closed if some > 0 else -1
-    if admissible > 0:
-        system.try_corners(mode, taken, closed, impulsive, noise, state)
-    elif impulsive:
+        near = Near(closed, reference, NEIGHBOURS)
+    taken, other, admissible, held = -1, -1, 0, 0
+    lowest = second = math.inf
+    for ways in range(1 if impulsive else 3):  # first what is admissible but for rounding
+        thorough, some = ways == 2, next_set(closed, near)
+        least = noise if impulsive or ways > 0 else ROUNDING * system.number(0, at.GRAVITY)
+        while some >= 0:
+            bears = some | pulled
+            if leaving <= 0 or bears != before:
+                found = try_set(system, thorough, mode, bears, closed, impulsive, least, state)
+                if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
+                    loss = found.loss if impulsive else float(size_of(bears ^ before))
+                    admissible += 1
+                    if loss < lowest:
+                        other, second, taken, lowest = taken, lowest, bears, loss
+                    elif loss < second:
+                        other, second = bears, loss
+            some = next_set(some - 1, near)
+        if admissible > 0:  # what it does stays in the rooms
+            try_set(system, thorough, mode, taken, closed, impulsive, least, state)
+            return Found(taken, admissible, other, 0)
+    if impulsive:
         taken = with_sticking(system, mode, closed, impulsive, noise, state)
     else:
-        taken = before if leaving < 0 else before & ~leaving
-    return Found(taken, admissible, other)
+        taken, held = with_one_held(system, mode, near, pulled, before, leaving, noise, state)
+        if held == 0:
+            taken = before if leaving < 0 else before & ~leaving
+    return Found(taken, admissible, other, held)
+
+
+@kernel
+def try_set(
+    system: Any, thorough: bool, mode: int, some: int, closed: int, impulsive: bool, noise: float,
+    state: Vector,
+) -> Attempt:  # fmt: skip
+    """Let a set of the closed corners bear, by slips found base by base or by trying all."""
+    if thorough:
+        return system.try_all_slips(mode, some, closed, noise, state)
+    return system.try_corners(mode, some, closed, impulsive, noise, state)
+
+
+@kernel
+def with_one_held(
+    system: Any, mode: int, near: Near, pulled: int, before: int, leaving: int, noise: float,
+    state: Vector,
+) -> tuple[int, int]:  # fmt: skip
+    """Find a set of which one corner, alone on its body, is held though it does not press.
+
+    Let go, it would come back at once, or another one would have to pull. Of several sets the
+    nearest to that before, by the corner that is leaving; gives the set and the corner, or 0.
+    """
+    taken, held, least, closed = before, 0, math.inf, near.closed
+    some, follower = before & closed, closed  # that before comes first, and rules most others out
+    while some >= 0:
+        for corner in range(2 * system.body_count):
+            one, bears = 1 << corner, some | pulled
+            distance = 2 * size_of(bears ^ before) + (0 if one == leaving else 1)
+            if some & one == 0 or not system.bears_alone(some, one) or distance >= least:
+                continue
+            found = system.try_corners(mode, bears, closed & ~one, False, noise, state)
+            pulls = system.corner_force(corner // 2, corner % 2 == 0) < 0.0
+            if found.fault < 0 and pulls and all_press(system, bears & ~before & ~one):
+                free = system.try_corners(mode, bears & ~one, closed, False, noise, state)
+                if free.fault >= 0:
+                    taken, held, least = bears, one, distance
+        some = next_set(follower, near)
+        follower = some - 1
+    if held != 0:
+        system.try_corners(mode, taken, closed & ~held, False, noise, state)
+    return taken, held
 
 
 @kernel

@@ -7,15 +7,18 @@ from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
+from rockframe.dynamics.body import accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import OPENING, PULLED, RigidCorners
 from rockframe.dynamics.chain.impact import (
     BOTH,
     LEFT_ONLY,
+    NEARLY_ZERO,
     NOISE,
     RIGHT_ONLY,
     attempt,
     bearing_corners,
+    write_corners,
 )
 from rockframe.dynamics.chain.motion import (
     load_bodies,
@@ -24,10 +27,12 @@ from rockframe.dynamics.chain.motion import (
 )
 from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
-from rockframe.dynamics.pads import CORNER_GUARDS
+from rockframe.dynamics.on_base import Mode
+from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING, REENGAGE, corner_contact
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
 from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 from rockframe.dynamics.sliding import blend
+from rockframe.dynamics.switching import lift_by_slip
 
 # memory, behind the held places and the body of the last event
 ADMISSIBLE: Final = 1  # sets of corners that might have borne after the last event
@@ -139,18 +144,25 @@ class RigidChain(RigidCorners):
             opens = which % CORNER_GUARDS == OPENING
             corners = self.bearing(mode) & ~(BOTH << 2 * k) if opens else self.bearing(mode)
             new = self.with_bearing(mode, corners, self.pulled(mode) & ~(BOTH << 2 * k))
+            self.keep_hold(new, state, memory)
             memory[LAST_EVENT] = SEPARATION if opens else SILENT
         elif self.is_rigid(k):
             new = self.switch_corner(k, left, mode, state, ground, memory)
         else:
             self.scale_impulses(0.0)
-            new = self.switch_on_base(mode, guard, state, ground, memory)
+            new = mode
+            if which in (REENGAGE, CORNER_GUARDS + REENGAGE):
+                new = self.part_where_pulled(k, left, mode, state, ground, memory)
+            new = self.switch_on_base(new, guard, state, ground, memory)
             # a change of a held point is the rule's, and no blow: contacts stay as they are
             if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew():
                 return new
             new = self.meet_anew(new, state, ground, memory)
+            self.stay_if_small(k, left, new, state, ground, memory)
+        struck = memory[LAST_EVENT] in (IMPACT, REST)
         for other in range(count):
-            new = self.disturb(other, new, state)
+            if struck or not self.waits_on(other, new, state, ground):
+                new = self.disturb(other, new, state)
         memory[HELD_PLACE + count] = k + 1.0
         return new
 
@@ -162,18 +174,21 @@ class RigidChain(RigidCorners):
         part, standing = self.on_base(k), self.part_mode(mode, k)
         bore = part.base.is_held(standing.contact, left)
         self.write_contacts(mode, state, memory)
-        before = self.bearing(mode)
-        closed = before | self.resting_corners(mode, state)
+        before, landed = self.bearing(mode), 0
+        if not bore:  # one that has come too far is put on its base, and its body with it
+            landed = self.land(k, left, standing, state)
+        closed = before | landed | self.resting_corners(mode, state)
         if bore:
             leaving = (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
             new = self.let_bear(mode, closed, before, leaving, state, ground, memory)
+            if self.bearing(new) == before & ~leaving and self.bears_alone(before, leaving):
+                new = self.hold_if_jammed(k, left, mode, new, state, ground, memory)
             flies = part.flies(self.part_mode(new, k).contact)
             both = part.shown_contact(standing) == FULL
             memory[LAST_EVENT] = UPLIFT if both and not flies else SEPARATION
             if self.pulled(new) & leaving != 0:
                 memory[LAST_EVENT] = SILENT
             return new
-        closed |= self.land(k, left, standing, state)
         memory[LAST_EVENT] = IMPACT
         new = self.let_bear(mode, closed, before, 0, state, ground, memory)
         for corner in range(2 * self.body_count):
@@ -183,6 +198,79 @@ class RigidChain(RigidCorners):
         return self.rest_where_small(new, state, ground, memory)
 
     @kernel
+    def waits_on(self, k: int, mode: int, state: Vector, ground: Ground) -> bool:
+        """Whether an end that has left goes on waiting for its pad, as a corner elsewhere parts.
+
+        Speeds do not change then: it does as long as its pad presses less and less.
+        """
+        part, contact = self.on_base(k), self.part_mode(mode, k).contact
+        for side in range(2):
+            if not self.is_rigid(k) and corner_contact(contact, side == 0) == LEAVING:
+                rises = self.end_accelerations(k, mode, state, ground)
+                line = part.body.base_line_at(self.state_of(k, state))
+                line = accelerated(line, rises[0], rises[1])
+                return not part.base.will_press(side == 0, line, ())
+        return False
+
+    @kernel
+    def part_where_pulled(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Let corners part that a pad's end would pull off if it slid as its pad catches up.
+
+        Those that bear answer the hold's impulse as if they could pull. Where without them it
+        presses the end on its pad, instead of lifting it, that is what happens.
+        """
+        part, was, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
+        if not part.flies(was.contact):
+            return mode
+        now = part.standing(part.base.held(was.contact, left), body)
+        now = Mode(now.contact, now.pivot, True)
+        self.accelerate(self.with_part(mode, k, now), state, ground)
+        corners = self.bearing(mode)
+        for corner in range(2 * self.body_count):
+            least = NEARLY_ZERO * self.number(corner // 2, at.FORCE_SIZE)
+            if self.corner_force(corner // 2, corner % 2 == 0) < -least:
+                corners &= ~(1 << corner)
+        if corners == self.bearing(mode):
+            return mode
+        parted = self.with_bearing(mode, corners, self.pulled(mode) & corners)
+        reach = part.body.reach(part.body.pin(now.pivot), part.body.attitude(body.rotation))
+        slip = body.horizontal_velocity - reach.rate * body.angular_velocity
+        if slip * lift_by_slip(self, part, k, self.with_part(parted, k, now), state) <= 0.0:
+            return mode
+        self.write_contacts(mode, state, memory)
+        self.hold_contacts(parted, state, memory)
+        return parted
+
+    @kernel
+    def comes_back(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
+    ) -> tuple[float, bool]:
+        """Give the speed of an end, and whether it leaves only to come back at once."""
+        part = self.on_base(k)
+        line = part.body.base_line_at(self.state_of(k, state))
+        speed = line.left_speed if left else line.right_speed
+        rises = self.end_accelerations(k, mode, state, ground)
+        return speed, self.returns_at_once(k, speed, -(rises[0] if left else rises[1]))
+
+    @kernel
+    def stay_if_small(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> None:
+        """Stop an end that has landed, and that leaves only to come back at once."""
+        speed, small = self.comes_back(k, left, mode, state, ground)
+        if speed <= 0.0 or not small:
+            return
+        line = self.on_base(k).body.base_line_at(self.state_of(k, state))
+        lever = line.left_lever if left else line.right_lever
+        answer = self.response(k, mode, 1.0, lever, 0.0, state)
+        impulse = -speed / (answer.vertical + lever * answer.rotation)
+        answer = self.response(k, mode, impulse, impulse * lever, 0.0, state)
+        self.respond(k, mode, answer, state)
+        memory[IMPACT_LOSS] -= 0.5 * impulse * speed
+
+    @kernel
     def hold_if_small(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
@@ -190,12 +278,8 @@ class RigidChain(RigidCorners):
         part, corner = self.on_base(k), (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
         if not part.flies(self.part_mode(mode, k).contact):
             return mode
-        line = part.body.base_line_at(self.state_of(k, state))
-        speed = line.left_speed if left else line.right_speed
-        rises = self.end_accelerations(k, mode, state, ground)
-        falls = -(rises[0] if left else rises[1])
-        least = REST_AMPLITUDE * part.body.angle * part.body.size()
-        if falls <= 0.0 or speed * speed >= 2.0 * falls * least:
+        _, small = self.comes_back(k, left, mode, state, ground)
+        if not small:
             return mode
         closed, pulled = self.bearing(mode) | corner, self.pulled(mode)
         held = self.with_bearing(mode, closed, pulled)
@@ -206,12 +290,36 @@ class RigidChain(RigidCorners):
         return held
 
     @kernel
+    def hold_if_jammed(
+        self, k: int, left: bool, mode: int, new: int, state: Vector, ground: Ground,
+        memory: Vector,
+    ) -> int:  # fmt: skip
+        """Hold a corner that has left since it would have to pull, but that falls where it is free.
+
+        What holds bodies along their bases makes both impossible.
+        """
+        rises = self.end_accelerations(k, new, state, ground)
+        if rises[0 if left else 1] >= 0.0:
+            return new
+        corners, pulled = self.bearing(mode), self.pulled(new)
+        held = self.with_bearing(new, corners, pulled | corners & ~self.bearing(new))
+        self.write_contacts(new, state, memory)
+        self.hold_contacts(held, state, memory)
+        self.accelerate(held, state, ground)
+        if self.corner_force(k, left) < 0.0:
+            return held
+        self.write_contacts(held, state, memory)
+        self.hold_contacts(new, state, memory)
+        return new
+
+    @kernel
     def let_stand(self, corners: int, mode: int, new: int, state: Vector, memory: Vector) -> None:
         """Let bodies stand on corners in a new mode, by impulses that may pull."""
         self.write_contacts(mode, state, memory)
         flying = self.with_bearing(mode, 0, 0)
         had = self.energies(flying, state).kinetic  # places the bodies, too
         load_bodies(self, 0.0, 0.0, self.places())
+        write_corners(self, True, state)
         attempt(self, flying, corners, corners, False, True, 0.0, state)
         self.change_velocities(state)
         self.hold_contacts(new, state, memory)
@@ -257,13 +365,13 @@ class RigidChain(RigidCorners):
             self.accelerate(flying, state, ground)
         pulled = 0 if leaving == 0 else self.pulled(mode)
         found = bearing_corners(self, flying, closed & ~pulled, pulled, before, leaving, state)
-        taken = found.taken
+        taken, pulled = found.taken, pulled | found.held
+        if found.admissible == 0 and found.held == 0:
+            self.forget_slips(mode, leaving == 0)
+            if leaving != 0 and self.bears_alone(before, leaving):
+                taken, pulled = before, pulled | leaving
         if leaving == 0:
             self.change_velocities(state)
-        elif found.admissible == 0 and self.bears_alone(before, leaving):
-            taken, pulled = before, pulled | leaving
-        if found.admissible == 0:
-            self.forget_slips(mode, leaving == 0)
         new = self.with_bearing(free, taken, pulled)
         self.hold_contacts(new, state, memory)
         self.note_free_slips(new, state)

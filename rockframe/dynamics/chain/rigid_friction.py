@@ -1,321 +1,34 @@
 """A chain in which bodies slip on some of their bases, and others hold.
 
-Whether a base has friction, and how it presses, are matters of its row. A body is held along its
-rigid base as long as friction can, :eq:`eq-stack-friction`, and slips otherwise: then the force at
-each corner that bears has friction in it, :eq:`eq-stack-slip`. On a base that gives way what
-presses is known, :eq:`eq-mixed-slips`. Which corners bear and which bases slip is found together,
-under new forces, :eq:`eq-mixed-conditions`, as after an impact, :eq:`eq-stack-impact`.
+What bears and what slips is found anew where friction has come to its bound, a slip to its end, or
+a contact changes.
 """
 
 import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
-from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.corners import NONE, PULLED
-from rockframe.dynamics.chain.impact import (
-    BOTH,
-    LEFT_ONLY,
-    NEARLY_ZERO,
-    NOISE,
-    Attempt,
-    attempt,
-    bearing_corners,
-)
-from rockframe.dynamics.chain.motion import (
-    FREE,
-    add_constraint,
-    coriolis_along,
-    of_both,
-    write_direction,
-)
-from rockframe.dynamics.chain.rigid import ADMISSIBLE, OTHER, TAKEN, RigidChain
-from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, MODES, MOST_CONSTRAINTS, PLACES
-from rockframe.dynamics.chain.slippery import SlipperyBases
-from rockframe.dynamics.chain.slips import (
-    IMPULSIVE,
-    KINETIC,
-    OFFSET,
-    ROUNDING,
-    STATIC,
-    TRIES,
-)
+from rockframe.dynamics.chain.corners import PULLED
+from rockframe.dynamics.chain.impact import bearing_corners
+from rockframe.dynamics.chain.rigid import ADMISSIBLE, OTHER, TAKEN
+from rockframe.dynamics.chain.rows import GUARDS, PLACES
+from rockframe.dynamics.chain.slips import OFFSET, ROUNDING, STATIC
+from rockframe.dynamics.chain.tried_slips import TriedSlips
 from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
-from rockframe.dynamics.on_base import HOLD, SLIP, Mode
+from rockframe.dynamics.on_base import HOLD, SLIP
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
 from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
-from rockframe.dynamics.sliding import NOISE as NOISE_OF_SLIP
 
 FRICTION_ALONE: Final = -1
 """In place of the corner that leaves: what friction does has changed."""
-NOWHERE: Final = -1
-"""In place of a pivot, where a body neither slips nor is held by friction."""
 
 
-class SlippingRigidChain(SlipperyBases, RigidChain):
+class SlippingRigidChain(TriedSlips):
     """Bodies upon one another of which some slip on their bases: a system."""
 
     __slots__ = ()
-
-    @inlined
-    def slip_sense(self, k: int) -> float:
-        """Give the sense in which a body slips on its base as corners are tried: 0, held."""
-        return float(self.places()[k * PLACES + at.SLIPS])
-
-    @inlined
-    def sense_in(self, mode: int, k: int) -> float:
-        """Give the sense in which a body slips on its base in a mode; 0 if it does not."""
-        if (self.is_rigid(k) or self.is_slippery(k)) and self.part_mode(mode, k).slides:
-            return self.sense(mode, k)
-        return 0.0
-
-    @kernel
-    def note_slips(self, mode: int) -> None:
-        """Note which bodies slip in a mode."""
-        room = self.places()
-        for k in range(self.body_count):
-            room[k * PLACES + at.SLIPS] = self.sense_in(mode, k)
-
-    @inlined
-    def forget_slips(self, mode: int, impulsive: bool) -> None:
-        """Go back to what slipped in a mode; nothing does where all is held in an impact."""
-        self.note_slips(mode)
-        if impulsive:
-            for k in range(self.body_count):
-                self.places()[k * PLACES + at.SLIPS] = 0.0
-
-    @kernel
-    def standing_on(self, k: int, bears: int, mode: int) -> int:
-        """Give the mode in which a body slips on its base, if it does."""
-        sense = self.slip_sense(k)
-        if bears != 0 and sense != 0.0:
-            return self.slipping(mode, k, sense)
-        value = MODES**self.body_count * 2**k
-        return mode - mode // value % 2 * value
-
-    @kernel
-    def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Give the mode in which bodies slip on bases that give way as was tried."""
-        for k in range(self.body_count):
-            if self.is_slippery(k) and not self.on_base(k).flies(self.part_mode(mode, k).contact):
-                mode = self.with_slip(k, self.slip_sense(k), mode, state, memory)
-        return mode
-
-    @kernel
-    def hold_as_tried(
-        self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
-    ) -> int:
-        """Hold a body on a base that gives way, or load it by friction, as corners are tried."""
-        if not self.is_slippery(k) or self.on_base(k).flies(standing.contact):
-            return self.hold_or_slide(k, count, standing, state, room, rows)
-        i, sense = k * PLACES, self.slip_sense(k)
-        self.drag(k, sense, room)
-        if sense == 0.0:
-            wanted = coriolis_along(i, room) + room[i + at.DRIFT]
-            add_constraint(self, count, k, 1.0, 0.0, -room[i + at.REACH], wanted, room, rows)
-            room[i + at.HOLDS_ALONG] = count
-            count += 1
-        return count
-
-    @inlined
-    def pin_on(self, bears: int) -> int:
-        """Give the pivot of corners that bear; both move alike."""
-        return PIVOT_LEFT if bears == LEFT_ONLY else PIVOT_RIGHT
-
-    @inlined
-    def pressed(self, k: int) -> float:
-        """Give what presses a body on its base."""
-        if self.is_rigid(k):
-            return self.corner_force(k, True) + self.corner_force(k, False)
-        return float(self.places()[k * PLACES + at.PRESS])
-
-    @kernel
-    def slip_on(self, k: int, pivot: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity of slip of a point of a base, and its rounding noise."""
-        part, body = self.on_base(k), self.state_of(k, state)
-        pin = part.body.pin(pivot)
-        about = part.body.reach(pin, part.body.attitude(body.rotation)).rate * body.angular_velocity
-        sway = body.horizontal_velocity
-        return sway - about, NOISE_OF_SLIP * (abs(sway) + abs(about))
-
-    @kernel
-    def note_free_slips(self, mode: int, state: Vector) -> None:
-        """Note in which sense bodies that no corner bears would slip on landing."""
-        bearing, room = self.bearing(mode), self.places()
-        for k in range(self.body_count):
-            if self.is_rigid(k) and bearing >> 2 * k & BOTH == 0:
-                rate, noise = self.slip_on(k, self.pin_on(BOTH), state)
-                slips = abs(rate) > noise and self.friction_of(k, IMPULSIVE) < math.inf
-                room[k * PLACES + at.SLIPS] = math.copysign(1.0, rate) if slips else 0.0
-
-    @kernel
-    def rub(
-        self, k: int, which: int, sense: float, reach: float, impulsive: bool, room: Vector,
-        rows: Vector,
-    ) -> None:  # fmt: skip
-        """Let the force of a corner that slips have friction, :eq:`eq-stack-slip`."""
-        holds, i, ratio = which * CONSTRAINT + at.HOLDS, k * PLACES, 0.0
-        if sense != 0.0:
-            ratio = -sense * self.friction_of(k, IMPULSIVE if impulsive else KINETIC)
-            x, y = ratio * room[i + at.COSINE], -ratio * room[i + at.SINE]
-            rows[holds] += x
-            rows[holds + 1] += y
-            rows[holds + 2] -= ratio * reach
-            if k + 1 < self.body_count:
-                rows[holds + 3] -= x
-                rows[holds + 4] -= y
-                rows[holds + 5] += ratio * (reach - room[i + at.ARM])
-        room[i + at.RUBS] = ratio
-
-    @kernel
-    def stand_still(self, room: Vector, out: Vector) -> None:
-        """Write the friction of bodies that slip; of others take rounding from accelerations."""
-        for k in range(self.body_count):
-            i = k * PLACES
-            left, right = room[i + at.LEFT_CORNER], room[i + at.RIGHT_CORNER]
-            if not self.is_rigid(k) or (left == NONE and right == NONE):
-                continue
-            if room[i + at.HELD] == FREE:
-                press = self.corner_force(k, True) + self.corner_force(k, False)
-                room[i + at.THRUST] = room[i + at.RUBS] * press
-            if left != NONE and right != NONE:
-                first = BEFORE_HORIZONTAL * k
-                out[first + ROTATION] = out[first + VERTICAL] = 0.0
-                if room[i + at.HELD] != FREE:
-                    out[self.horizontal_of(k)] = 0.0
-
-    @kernel
-    def lost_by_friction(
-        self, k: int, which: int, state: Vector, room: Vector, rows: Vector
-    ) -> float:
-        """Give the energy that friction takes in an impact at a corner that slips."""
-        first, ratio = which * CONSTRAINT, room[k * PLACES + at.RUBS]
-        if ratio == 0.0:
-            return 0.0
-        # the same at both corners, where both bear
-        left = room[k * PLACES + at.LEFT_CORNER] != NONE
-        slip, _ = self.slip_on(k, PIVOT_LEFT if left else PIVOT_RIGHT, state)
-        leaned = of_both(self, k, first + at.HOLDS, room, rows) - rows[first + at.VALUE]
-        return float(-rows[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
-
-    @kernel
-    def must_meet_anew(self) -> bool:
-        """Whether rigid bases that have friction, or would have to pull, did something."""
-        room = self.places()
-        for k in range(self.body_count):
-            i = k * PLACES
-            acts = room[i + at.LEFT_IMPULSE] != 0.0 or room[i + at.RIGHT_IMPULSE] != 0.0
-            if acts and self.friction_of(k, IMPULSIVE) < math.inf:
-                return True
-        return self.some_pull()
-
-    # which corners bear, and what slips ------------------------------------------------------
-
-    @kernel
-    def try_corners(
-        self, mode: int, some: int, closed: int, impulsive: bool, noise: float, state: Vector
-    ) -> Attempt:
-        """Let a set of the closed corners bear, and find which of their bodies slip.
-
-        In an impact by the velocities after it; under new forces what slips goes on, and what is
-        held slips where friction cannot hold it.
-        """
-        room = self.places()
-        for k in range(self.body_count):
-            i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
-            room[i + at.SLIPS] = 0.0
-            slips = pivot != NOWHERE and self.friction_of(k, STATIC) < math.inf
-            if slips and not impulsive:
-                room[i + at.SLIPS] = room[i + at.STARTS]
-                rate, least = self.slip_before(k, pivot, mode, state)
-                if abs(rate) > least:
-                    room[i + at.SLIPS] = math.copysign(1.0, rate)
-        found = Attempt(0, math.inf)
-        most = TRIES * self.body_count
-        # what kinetic friction holds is held, too, if static friction leaves no other set
-        for tries in range(2 * most):
-            holding = IMPULSIVE if impulsive else STATIC if tries < most else KINETIC
-            found = attempt(self, mode, some, closed, False, impulsive, noise, state)
-            k = self.otherwise(mode, some, closed, impulsive, holding, state)
-            if k < 0:
-                return found
-        return Attempt(max(found.fault, 0), math.inf)
-
-    @inlined
-    def tried_at(self, k: int, mode: int, some: int, impulsive: bool) -> int:
-        """Give the pivot at which a body is held or slips as corners are tried, or `NOWHERE`.
-
-        On a base that gives way friction takes no part in impacts.
-        """
-        bears, standing = some >> 2 * k & BOTH, self.part_mode(mode, k)
-        if self.is_rigid(k):
-            return NOWHERE if bears == 0 else self.pin_on(bears)
-        idle = impulsive or self.on_base(k).flies(standing.contact)
-        return NOWHERE if idle or not self.is_slippery(k) else standing.pivot
-
-    @inlined
-    def slip_before(self, k: int, pivot: int, mode: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity of slip before corners are tried, and its rounding noise."""
-        if not self.is_rigid(k) and not self.part_mode(mode, k).slides:
-            return 0.0, 0.0  # held: the state need not tell
-        return self.slip_on(k, pivot, state)
-
-    @kernel
-    def otherwise(
-        self, mode: int, some: int, closed: int, impulsive: bool, holding: int, state: Vector
-    ) -> int:
-        """Change how a body is tried that friction cannot hold, or that does not slip; else -1.
-
-        With the coefficient `holding` friction holds.
-        """
-        room, rows = self.places(), self.constraints()
-        for k in range(self.body_count):
-            i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
-            friction = self.friction_of(k, holding)
-            pulled = self.is_rigid(k) and some & closed & BOTH << 2 * k == 0
-            if pivot == NOWHERE or friction == math.inf or pulled:
-                continue
-            sense = room[i + at.SLIPS]
-            if sense == 0.0:
-                press = self.pressed(k)
-                thrust = rows[int(room[i + at.HOLDS_ALONG]) * CONSTRAINT + at.FORCE]
-                least = NOISE * abs(press)
-                if not impulsive:
-                    least = ROUNDING * self.number(k, at.FORCE_SIZE)
-                if abs(thrust) > friction * max(press, 0.0) + least:
-                    room[i + at.SLIPS] = -math.copysign(1.0, thrust)
-                    return k
-            else:
-                rate, least = self.slip_before(k, pivot, mode, state)
-                if impulsive or abs(rate) <= least:
-                    after = self.slips_on(k, pivot, impulsive, state)
-                    if impulsive:
-                        after, least = after + rate, least + NOISE_OF_SLIP * abs(after)
-                    else:  # as it starts to slip, friction is what holds it
-                        least = NEARLY_ZERO * self.number(k, at.GRAVITY)
-                    if sense * after < -least:
-                        room[i + at.SLIPS] = 0.0
-                        return k
-        return -1
-
-    @kernel
-    def slips_on(self, k: int, pivot: int, impulsive: bool, state: Vector) -> float:
-        """Give the acceleration of the slip of a point, or its change in an impact."""
-        i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
-        room, rows, rate = self.places(), self.constraints(), body.angular_velocity
-        reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
-        spare = MOST_CONSTRAINTS * self.body_count - 1  # what slips is not held, so there is room
-        keeps = spare * CONSTRAINT + at.KEEPS
-        write_direction(self, k, 1.0, 0.0, -reach.rate, keeps, room, rows)
-        found = of_both(self, k, keeps, room, rows)
-        if impulsive:
-            return found
-        return found - coriolis_along(i, room) - reach.bend * rate * rate
-
-    # events ----------------------------------------------------------------------------------
 
     @kernel
     def write_slip_guards(
@@ -411,6 +124,7 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
         if memory[LAST_EVENT] == IMPACT:
             if self.must_meet_anew():
                 new = self.meet_anew(new, state, ground, memory)
+                self.stay_if_small(k, which < CORNER_GUARDS, new, state, ground, memory)
             for other in range(self.body_count):
                 if not self.is_slippery(other):
                     new = self.disturb(other, new, state)
@@ -469,6 +183,19 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
         return True
 
     @kernel
+    def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
+        """Give the mode in which what friction cannot hold slips."""
+        room = self.places()
+        for _ in range(self.body_count):
+            self.accelerate(mode, state, ground)
+            for k in range(self.body_count):
+                if not self.part_mode(mode, k).slides and self.is_amiss(k, mode, state):
+                    if k == self.body_count - 1:
+                        self.free_lowest(mode, state)
+                    mode = self.slipping(mode, k, float(room[k * PLACES + at.STARTS]))
+        return mode
+
+    @kernel
     def rearrange(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Give the mode in which the forces have what bears and what slips as it is then."""
         kept, before = HELD_PLACE + self.body_count, self.bearing(mode)
@@ -480,13 +207,13 @@ class SlippingRigidChain(SlipperyBases, RigidChain):
         found = bearing_corners(
             self, flying, closed & ~pulled, pulled, before, FRICTION_ALONE, state
         )
-        if found.admissible == 0:
+        if found.admissible == 0 and found.held == 0:
             self.note_slips(mode)
             for k in range(self.body_count):
                 starts = self.places()[k * PLACES + at.STARTS]
                 if starts != 0.0:
                     self.places()[k * PLACES + at.SLIPS] = starts
-        new = self.with_bearing(mode, found.taken, pulled)
+        new = self.with_bearing(mode, found.taken, pulled | found.held)
         self.hold_contacts(new, state, memory)
         new = self.as_tried(new, state, memory)
         memory[kept + ADMISSIBLE] = found.admissible

@@ -88,7 +88,13 @@ RUBS: Final = 30
 # constraint that holds a body along its base, as that is tried
 DRAG: Final = 31
 HOLDS_ALONG: Final = 32
-PLACES: Final = 33
+# of the left and the right corner on a rigid base, as sets of them are tried: the lever, the
+# acceleration at which it rests, or change of its speed, and both along the base, held there
+LEVERS: Final = 33
+RESTS: Final = 35
+REACHES: Final = 37
+STAYS: Final = 39
+PLACES: Final = 41
 
 # constraints, at most so many of each body; of each
 MOST_CONSTRAINTS: Final = 3
