@@ -130,8 +130,9 @@ def _figures() -> Rows:
 
 
 def _formats() -> Rows:
-    yield "name", "files", "usual endings"
-    yield from ((one.name, one.title, " ".join(one.suffixes)) for one in formats())
+    yield "name", "files", "usual endings", "components in a file", "unit of the samples"
+    for one in formats():
+        yield one.name, one.title, " ".join(one.suffixes), one.holds, one.unit
 
 
 TABLES: dict[str, Callable[[], Rows]] = {

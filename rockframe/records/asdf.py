@@ -230,5 +230,12 @@ def _response(
 
 
 ASDF: Final = Format(
-    "asdf", "ASDF file (HDF5), as of gmprocess", (".h5", ".asdf"), _recognises, _read, binary=True
+    "asdf",
+    "ASDF file (HDF5), as of gmprocess",
+    (".h5", ".asdf"),
+    _recognises,
+    _read,
+    binary=True,
+    holds="any number",
+    unit="stated by gmprocess, or counts",
 )

@@ -408,5 +408,11 @@ def _description(header: Header) -> Metadata:
 
 
 COSMOS: Final = Format(
-    "cosmos", "COSMOS v1.20 file (V1, V2)", (".v1c", ".v2c", ".v1", ".v2"), _recognises, _read
+    "cosmos",
+    "COSMOS v1.20 file (V1, V2)",
+    (".v1c", ".v2c", ".v1", ".v2"),
+    _recognises,
+    _read,
+    holds="any number",
+    unit="in the data line, name and code",
 )

@@ -467,4 +467,6 @@ CSMIP: Final = Format(
     (".v1", ".v2", ".raw"),
     _recognises,
     _read,
+    holds="any number",
+    unit="in the data line, or in the header",
 )

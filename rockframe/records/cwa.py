@@ -184,4 +184,6 @@ CWA: Final = Format(
     (".dat", ".txt"),
     _recognises,
     _read,
+    holds="three",
+    unit="in the header",
 )

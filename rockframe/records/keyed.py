@@ -108,7 +108,15 @@ def _esm_header(source: Source) -> tuple[Keys, int]:
     raise source.refuse(found=found, expected=expected, line=source.last_line)
 
 
-ESM: Final = Format("esm", "ESM or ITACA file (DYNA ASCII)", (".asc", ".dat"), _is_esm, _read_esm)
+ESM: Final = Format(
+    "esm",
+    "ESM or ITACA file (DYNA ASCII)",
+    (".asc", ".dat"),
+    _is_esm,
+    _read_esm,
+    holds="one",
+    unit="in the header",
+)
 
 
 # RESORCE and SIGMA: lines ``KEY : value``, then five numbers in a line, which fill their width, so
@@ -171,7 +179,15 @@ def _read_resorce(source: Source, request: Request) -> Record:
     return choose_component(source, request, [component])
 
 
-RESORCE: Final = Format("resorce", "RESORCE file (.cor.acc)", (".acc",), _is_resorce, _read_resorce)
+RESORCE: Final = Format(
+    "resorce",
+    "RESORCE file (.cor.acc)",
+    (".acc",),
+    _is_resorce,
+    _read_resorce,
+    holds="one",
+    unit="in the header",
+)
 
 
 # Turkey's Disaster and Emergency Management Presidency (AFAD), until 2018: lines ``KEY : value``,
@@ -261,7 +277,15 @@ def _afad_table(source: Source, first: int, columns: int) -> Array:
     return values.reshape(-1, columns)
 
 
-AFAD: Final = Format("afad", "AFAD file, Turkey, in three columns", (".txt",), _is_afad, _read_afad)
+AFAD: Final = Format(
+    "afad",
+    "AFAD file, Turkey, in three columns",
+    (".txt",),
+    _is_afad,
+    _read_afad,
+    holds="three",
+    unit="that of the peaks in the header",
+)
 
 
 # China Strong Motion Networks Centre: one component below sixteen lines such as
@@ -354,5 +378,11 @@ def _csmnc_description(top: list[str]) -> Metadata:
 
 
 CSMNC: Final = Format(
-    "csmnc", "file of the China Strong Motion Networks Centre", (".dat",), _is_csmnc, _read_csmnc
+    "csmnc",
+    "file of the China Strong Motion Networks Centre",
+    (".dat",),
+    _is_csmnc,
+    _read_csmnc,
+    holds="one",
+    unit="in the header",
 )

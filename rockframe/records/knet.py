@@ -199,4 +199,6 @@ KNET: Final = Format(
     ),
     _recognises,
     _read,
+    holds="one",
+    unit="gal per count, in the header",
 )

@@ -306,4 +306,6 @@ MINISEED: Final = Format(
     _recognises,
     _read,
     binary=True,
+    holds="any number",
+    unit="counts",
 )

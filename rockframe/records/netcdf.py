@@ -267,4 +267,6 @@ NETCDF: Final = Format(
     is_netcdf,
     _read,
     binary=True,
+    holds="one, or one and the vertical",
+    unit="m/s²",
 )

@@ -163,7 +163,15 @@ def _description(source: Source, index: int) -> Metadata:
     return metadata
 
 
-PEER_AT2: Final = Format("peer-at2", "PEER acceleration file (AT2)", (_SUFFIX,), _recognises, _read)
+PEER_AT2: Final = Format(
+    "peer-at2",
+    "PEER acceleration file (AT2)",
+    (_SUFFIX,),
+    _recognises,
+    _read,
+    holds="one",
+    unit="in the header",
+)
 
 Known: TypeAlias = dict[str, str | float | int]
 

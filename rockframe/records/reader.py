@@ -286,6 +286,8 @@ class Format:
         Whether it reads bytes (``source.data``) instead of lines.
     own : bool
         Whether it is part of this package.
+    holds, unit : str
+        In words: how many components a file has, and where the unit of its samples stands.
 
     Examples
     --------
@@ -302,6 +304,8 @@ class Format:
     read: Callable[[Source, Request], Record | StoredMotion] = field(repr=False)
     binary: bool = field(default=False, repr=False)
     own: bool = field(default=False, repr=False)
+    holds: str = field(default="", repr=False)
+    unit: str = field(default="", repr=False)
 
 
 def source_of(name: str, data: bytes) -> Source:

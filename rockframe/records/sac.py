@@ -228,4 +228,13 @@ def _description(header: _Header) -> tuple[Metadata, datetime | None]:
     return metadata, start
 
 
-SAC: Final = Format("sac", "SAC file (binary)", (".sac",), _recognises, _read, binary=True)
+SAC: Final = Format(
+    "sac",
+    "SAC file (binary)",
+    (".sac",),
+    _recognises,
+    _read,
+    binary=True,
+    holds="one",
+    unit="unit, or counts",
+)

@@ -191,4 +191,12 @@ def _description(source: Source) -> Metadata:
     return metadata
 
 
-SMC: Final = Format("smc", "USGS SMC file", (".smc",), _recognises, _read)
+SMC: Final = Format(
+    "smc",
+    "USGS SMC file",
+    (".smc",),
+    _recognises,
+    _read,
+    holds="one",
+    unit="cm/s², by the specification",
+)

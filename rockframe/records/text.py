@@ -258,4 +258,6 @@ TEXT: Final = Format(
     (".txt", ".csv", ".dat", ".tsv", ".asc"),
     _recognises,
     _read,
+    holds="one or several",
+    unit="in the header, or unit",
 )

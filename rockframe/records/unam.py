@@ -200,5 +200,11 @@ def _description(header: Keys) -> Metadata:
 
 
 UNAM: Final = Format(
-    "unam", "standard acceleration file (ASA), Mexico", (".asa",), _recognises, _read
+    "unam",
+    "standard acceleration file (ASA), Mexico",
+    (".asa",),
+    _recognises,
+    _read,
+    holds="up to twelve",
+    unit="in the header",
 )

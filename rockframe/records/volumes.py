@@ -218,7 +218,13 @@ def _geonet_description(source: Source, block: _Block) -> Metadata:
 
 
 GEONET: Final = Format(
-    "geonet", "GeoNet accelerogram (V1A, V2A)", (".v1a", ".v2a"), _is_geonet, _read_geonet
+    "geonet",
+    "GeoNet accelerogram (V1A, V2A)",
+    (".v1a", ".v2a"),
+    _is_geonet,
+    _read_geonet,
+    holds="three",
+    unit="mm/s², by the specification",
 )
 
 
@@ -338,4 +344,12 @@ def _missing(source: Source, first: int, such_as: str) -> RecordError:
     return source.refuse(found=found, expected=f"a line such as {such_as}", line=first + 1)
 
 
-BHRC: Final = Format("bhrc", "BHRC file, Iran (volume 1)", (".v1",), _is_bhrc, _read_bhrc)
+BHRC: Final = Format(
+    "bhrc",
+    "BHRC file, Iran (volume 1)",
+    (".v1",),
+    _is_bhrc,
+    _read_bhrc,
+    holds="three",
+    unit="in the header",
+)

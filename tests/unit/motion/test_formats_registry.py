@@ -59,6 +59,7 @@ def registered():
 
 def test_formats_are_listed_with_name_title_and_suffixes():
     listed = formats()
+    assert all(one.holds and one.unit for one in listed if one.own)  # as the manual lists them
     names = [entry.name for entry in listed]
     assert len(set(names)) == len(names)
     assert names[-1] == "text"  # it takes every column of numbers
