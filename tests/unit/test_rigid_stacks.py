@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from benchmarks.columns_of_drums import drawn as drawn_column
 from benchmarks.random_parts import drawn
 from plainly import plainly
 
@@ -230,6 +231,14 @@ def test_changes_of_contact_come_to_an_end(number, ends):
         found = system.simulate(
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
+    assert int(found.status) == Status.COMPLETED
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+def test_a_slip_does_not_begin_against_its_force():
+    """A drum, nearly weightless, would slip and stick in turn: it tilts as it begins to slip."""
+    system, motion = drawn_column(142)
+    found = system.simulate(motion, duration="0.12 s", outputs=None)
     assert int(found.status) == Status.COMPLETED
 
 
