@@ -52,6 +52,12 @@ def one(values: Vector) -> None:
         values[i] = left(values[i])
 
 
+@entry
+def many(values: Vector) -> None:
+    for i in range(len(values)):
+        values[i] *= values[i]
+
+
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
@@ -83,6 +89,20 @@ def test_only_entries_become_machine_code(made):
     assert values.tolist() == [13.0**0.5 + 1.0, 17.0**0.5 + 1.0]
     # and numba's own runtime, once in a process
     assert [name for name in made if name != "nrt"] == ["run", "run"]
+
+
+def test_an_entry_is_optimised_once(made, monkeypatch):
+    from numba.core.codegen import CPUCodegen
+
+    asked, passes = [], CPUCodegen._module_pass_manager
+    monkeypatch.setattr(
+        CPUCodegen, "_module_pass_manager",
+        lambda self, **words: (asked.append(words), passes(self, **words))[1],
+    )  # fmt: skip
+    values = np.array([-9.0, 16.0])
+    many(values)
+    assert values.tolist() == [81.0, 256.0]
+    assert asked == [{}] * len(made) != []
 
 
 def test_errors_of_what_waits_arrive():
