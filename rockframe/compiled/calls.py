@@ -6,11 +6,11 @@ address of each one in each call of an entry, which takes longer than a short ru
 """
 
 from collections.abc import Callable
-from dis import get_instructions
 from importlib import import_module
 from typing import Any, Final
 
 from rockframe.compiled.language import KERNELS, is_method
+from rockframe.compiled.passes import PlainPasses, is_plain
 
 # numba's own annotations are partial
 numba: Final[Any] = import_module("numba")
@@ -22,9 +22,6 @@ templates: Final[Any] = import_module("numba.core.typing.templates")
 OPTIONS: Final = {"error_model": "numpy"}
 HELPER: Final = OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Division by zero gives infinities and NaN, as numpy's, and is not checked for."""
-
-_MAKING: Final = {"RAISE_VARARGS", "BUILD_LIST", "BUILD_SET", "BUILD_MAP", "MAKE_FUNCTION"}
-"""Instructions that may make something whose references numba counts."""
 
 _known: Final[dict[Callable[..., Any], Any]] = {}
 """Functions and methods that numba knows, and its compiled ones, to which it refers weakly."""
@@ -72,20 +69,12 @@ def _register(function: Callable[..., Any], into_caller: bool) -> None:
 
     numba's ``register_jitable`` compiles it anew for callers with other options.
     """
-    options = HELPER | {"forceinline": into_caller, "_nrt": _counts_references(function)}
+    plain = is_plain(function)  # and has nothing whose references numba would count
+    options: dict[str, Any] = HELPER | {"forceinline": into_caller, "_nrt": not plain}
+    if plain:
+        options["pipeline_class"] = PlainPasses
     _known[function] = numba.njit(**options)(function)
     templates.infer_global(function, _Compiled(_known[function]))
-
-
-def _counts_references(function: Any) -> bool:
-    """Whether a function makes errors, lists or arrays; elsewhere numba need not look for any."""
-    code = function.__code__
-    named = (function.__globals__.get(name) for name in code.co_names)
-    return any(
-        str(getattr(value, name, "")).startswith("numpy")
-        for value in named
-        for name in ("__name__", "__module__")
-    ) or not _MAKING.isdisjoint(each.opname for each in get_instructions(code))
 
 
 def _register_method(function: Callable[..., Any]) -> None:

@@ -27,7 +27,7 @@ IS_KNOWN: Final[bool] = TRIED[0] <= tuple(numba.version_info[:2]) <= TRIED[1] an
     hasattr(_codegen.JITCodeLibrary, name)
     for name in (
         "add_linking_library", "finalize", "get_pointer_to_function", "codegen",
-        "_get_module_for_linking", "_optimize_functions",
+        "_get_module_for_linking", "_optimize_functions", "_optimize_final_module",
     )
 )  # fmt: skip
 """Whether numba's libraries can wait."""
@@ -78,6 +78,12 @@ class _Waiting(_codegen.JITCodeLibrary):
     def _optimize_functions(self, module: Any) -> None:
         """Leave functions as they are written: they are optimised with what calls them."""
         module.data_layout = self._codegen._data_layout
+
+    def _optimize_final_module(self) -> None:
+        """Optimise once: numba does so twice, first to find references that need no counting."""
+        made = self._codegen._module_pass_manager()
+        passes, *words = made if isinstance(made, tuple) else (made,)  # older numbas give one alone
+        passes.run(self._final_module, *words)
 
     def _get_module_for_linking(self) -> Any:
         if self._finalized:

@@ -1,5 +1,7 @@
 """Functions wait for their entries: what comes of it is what numba makes by itself."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,12 @@ def one(values: Vector) -> None:
         values[i] = left(values[i])
 
 
+@entry
+def many(values: Vector) -> None:
+    for i in range(len(values)):
+        values[i] *= values[i]
+
+
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path))
@@ -81,6 +89,20 @@ def test_only_entries_become_machine_code(made):
     assert values.tolist() == [13.0**0.5 + 1.0, 17.0**0.5 + 1.0]
     # and numba's own runtime, once in a process
     assert [name for name in made if name != "nrt"] == ["run", "run"]
+
+
+def test_an_entry_is_optimised_once(made, monkeypatch):
+    from numba.core.codegen import CPUCodegen
+
+    asked, passes = [], CPUCodegen._module_pass_manager
+    monkeypatch.setattr(
+        CPUCodegen, "_module_pass_manager",
+        lambda self, **words: (asked.append(words), passes(self, **words))[1],
+    )  # fmt: skip
+    values = np.array([-9.0, 16.0])
+    many(values)
+    assert values.tolist() == [81.0, 256.0]
+    assert asked == [{}] * len(made) != []
 
 
 def test_errors_of_what_waits_arrive():
@@ -132,9 +154,9 @@ def test_what_makes_lists_and_arrays_counts_their_references():
     """They are let go, and those that use them have nothing to count."""
     from numba.core.runtime import _nrt_python, rtsys
 
-    from rockframe.compiled.calls import _counts_references
+    from rockframe.compiled.passes import is_plain
 
-    counting = [each for each in (root_of, left, right, thrice, listed) if _counts_references(each)]
+    counting = [each for each in (root_of, left, right, thrice, listed) if not is_plain(each)]
     assert counting == [root_of, listed]
     values = np.array([9.0, 16.0])
     summed(values)
@@ -145,6 +167,32 @@ def test_what_makes_lists_and_arrays_counts_their_references():
     after = rtsys.get_allocation_stats()
     _nrt_python.memsys_disable_stats()
     assert after.alloc - before.alloc == after.free - before.free > 1000
+
+
+def of_all_kinds(pair, x):
+    total, (first, second) = 0.0, pair
+    for i in range(len(pair)):
+        total += pair[i] * x**2 if x > first else max(total, min(second, abs(x)))
+    return bool(total > 1.0) & (x == x), (total, int(x))
+
+
+def test_plain_functions_become_the_same_code_by_fewer_passes():
+    import numba
+
+    from rockframe.compiled.passes import _FOR_OTHERS, PlainPasses, is_plain
+
+    assert is_plain(of_all_kinds)
+    written = []
+    for words in ({}, {"pipeline_class": PlainPasses}):
+        code = numba.njit(error_model="numpy", _nrt=False, **words)(of_all_kinds)
+        assert code((2.0, 3.0), 4.0) == of_all_kinds((2.0, 3.0), 4.0)
+        (text,), ((_, done),) = code.inspect_asm().values(), code.get_metadata().items()
+        # names hold numbers that count functions and addresses of them
+        text = re.sub(r'"[^"]*"|\S*_ZN\S*', "", text)
+        written.append([line for line in text.splitlines() if re.match(r"\t[a-z]", line)])
+        done = {each.partition("_")[2] for each in done["pipeline_times"]["nopython"]}
+        assert done.isdisjoint(_FOR_OTHERS) if words else done >= _FOR_OTHERS
+    assert written[0] == written[1] != []
 
 
 def test_an_operator_is_looked_up_once_and_only_while_something_is_compiled():

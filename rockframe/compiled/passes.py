@@ -1,0 +1,43 @@
+"""numba's way from a plain function to machine code, without what only other functions need.
+
+A plain function makes no errors, lists, arrays or functions, and names nothing of numpy or numba.
+"""
+
+from dis import get_instructions
+from importlib import import_module
+from typing import Any, Final
+
+# numba's own annotations are partial
+_compiler: Final[Any] = import_module("numba.core.compiler")
+
+_MAKING: Final = {"RAISE_VARARGS", "BUILD_LIST", "BUILD_SET", "BUILD_MAP", "MAKE_FUNCTION"}
+"""Instructions of functions that are not plain."""
+
+_FOR_OTHERS: Final = {
+    "with_lifting", "inline_closure_likes", "make_function_op_code_to_jit_function",
+    "inline_inlinables", "Rewrite dynamic raises", "find_literally", "literal_unroll",
+    "LiteralPropagation", "nopython_rewrites", "dump_parfor_diagnostics",
+}  # fmt: skip
+"""numba's passes over what plain functions have none of."""
+
+
+def is_plain(function: Any) -> bool:
+    """Whether a function makes nothing but numbers and tuples."""
+    code = function.__code__
+    named = (function.__globals__.get(name) for name in code.co_names)
+    return _MAKING.isdisjoint(each.opname for each in get_instructions(code)) and not any(
+        str(getattr(value, name, "")).startswith(("numpy", "numba"))
+        for value in named
+        for name in ("__name__", "__module__")
+    )
+
+
+class PlainPasses(_compiler.CompilerBase):
+    """The passes over a plain function: numba's, and what they make of it is the same."""
+
+    def define_pipelines(self) -> list[Any]:
+        """Give them in numba's order."""
+        passes = _compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.passes = [one for one in passes.passes if one[0].name() not in _FOR_OTHERS]
+        passes.finalize()
+        return [passes]
