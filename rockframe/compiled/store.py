@@ -64,7 +64,8 @@ def _own_files(modules: set[str]) -> list[Path] | None:
         if module is None or file is None or not Path(file).is_file():
             return None
         files.add(Path(file))
-        modules.update(_imported(module, Path(file).read_bytes()))
+        if Path(file).suffix == ".py":  # a library of machine code names nothing that it imports
+            modules.update(_imported(module, Path(file).read_bytes()))
     return sorted(files)
 
 

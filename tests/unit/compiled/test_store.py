@@ -250,6 +250,21 @@ def test_a_module_counts_if_its_functions_are_named_by_it(own, monkeypatch):
     assert store.file_of(some_function, "pass", (module.Law,)).parent != before.parent
 
 
+def test_a_library_that_a_module_imports_counts_by_its_bytes(own, monkeypatch):
+    (own / "own_library.so").write_bytes(b"\x7fELF\0one")
+    library = SimpleNamespace(__file__=str(own / "own_library.so"))
+    monkeypatch.setitem(sys.modules, "own_library", library)
+    edit(
+        own / "own.py",
+        "from own_help import twice",
+        "import own_library\nfrom own_help import twice",
+    )
+    module = load(own, monkeypatch)
+    before = store.file_of(some_function, "pass", (module.Law,))
+    (own / "own_library.so").write_bytes(b"\x7fELF\0other")
+    assert store.file_of(some_function, "pass", (module.Law,)).parent != before.parent
+
+
 def test_every_source_of_the_package_that_is_compiled_counts():
     marks = re.compile(r"^\s*@(kernel|inlined|entry)\b", re.MULTILINE)
     counted = set(
