@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any, Final
 
 from rockframe.compiled.language import KERNELS, is_method
-from rockframe.compiled.passes import PlainPasses, is_plain
+from rockframe.compiled.passes import PlainPasses, makes_numbers_alone
 
 # numba's own annotations are partial
 numba: Final[Any] = import_module("numba")
@@ -69,7 +69,7 @@ def _register(function: Callable[..., Any], into_caller: bool) -> None:
 
     numba's ``register_jitable`` compiles it anew for callers with other options.
     """
-    plain = is_plain(function)  # and has nothing whose references numba would count
+    plain = makes_numbers_alone(function)  # and has nothing whose references numba would count
     options: dict[str, Any] = HELPER | {"forceinline": into_caller, "_nrt": not plain}
     if plain:
         options["pipeline_class"] = PlainPasses

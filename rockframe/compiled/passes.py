@@ -21,7 +21,7 @@ _FOR_OTHERS: Final = {
 """numba's passes over what plain functions have none of."""
 
 
-def is_plain(function: Any) -> bool:
+def makes_numbers_alone(function: Any) -> bool:
     """Whether a function makes nothing but numbers and tuples."""
     code = function.__code__
     named = (function.__globals__.get(name) for name in code.co_names)

@@ -154,9 +154,11 @@ def test_what_makes_lists_and_arrays_counts_their_references():
     """They are let go, and those that use them have nothing to count."""
     from numba.core.runtime import _nrt_python, rtsys
 
-    from rockframe.compiled.passes import is_plain
+    from rockframe.compiled.passes import makes_numbers_alone
 
-    counting = [each for each in (root_of, left, right, thrice, listed) if not is_plain(each)]
+    counting = [
+        each for each in (root_of, left, right, thrice, listed) if not makes_numbers_alone(each)
+    ]
     assert counting == [root_of, listed]
     values = np.array([9.0, 16.0])
     summed(values)
@@ -179,9 +181,9 @@ def of_all_kinds(pair, x):
 def test_plain_functions_become_the_same_code_by_fewer_passes():
     import numba
 
-    from rockframe.compiled.passes import _FOR_OTHERS, PlainPasses, is_plain
+    from rockframe.compiled.passes import _FOR_OTHERS, PlainPasses, makes_numbers_alone
 
-    assert is_plain(of_all_kinds)
+    assert makes_numbers_alone(of_all_kinds)
     written = []
     for words in ({}, {"pipeline_class": PlainPasses}):
         code = numba.njit(error_model="numpy", _nrt=False, **words)(of_all_kinds)
