@@ -248,9 +248,8 @@ def bearing_corners(
         near = Near(closed, reference, NEIGHBOURS)
     taken, other, admissible, held = -1, -1, 0, 0
     lowest = second = math.inf
-    for trial in range(
-        2 if impulsive else 1 + ALL_WAYS
-    ):  # first what is admissible but for rounding
+    # first what is admissible but for rounding, and of each trial first the near sets
+    for trial in range(2 if impulsive else 1 + ALL_WAYS):
         if trial % 2 == 1 and count <= ALL_TRIED:
             continue  # there are no sets farther off
         tried = near if trial % 2 == 0 else Near(closed, closed, count)
