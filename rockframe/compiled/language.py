@@ -32,7 +32,7 @@ KERNELS: Final[dict[Callable[..., Any], bool]] = {}
 NEEDED_BY: Final = ContextVar("needed_by", default="this")
 """What needs the machine code that is being compiled."""
 AS_PYTHON: Final[list[float]] = [0.0]
-"""Time that entries have spent in plain Python while they were compiled [s]."""
+"""Processor time that entries have spent in plain Python while they were compiled [s]."""
 STILL_TAKES: Final = ContextVar("still_takes", default=0.0)
 """Time that the caller will still take in plain Python, as far as it knows [s]."""
 

@@ -18,7 +18,7 @@ import sys
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
-from time import perf_counter
+from time import thread_time
 from typing import IO, Any, Final, cast
 
 from rockframe.compiled import store
@@ -254,10 +254,10 @@ class Meanwhile:
         self._alone = False  # no other process can compile it
 
     def __enter__(self) -> None:
-        self._begun = perf_counter()
+        self._begun = thread_time()
 
     def __exit__(self, *problem: object) -> None:
-        seconds = perf_counter() - self._begun
+        seconds = thread_time() - self._begun  # of the processor: others may be at work
         self._seconds += seconds
         AS_PYTHON[0] += seconds
 
