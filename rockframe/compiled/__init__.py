@@ -16,6 +16,7 @@ from rockframe.compiled.entries import compiling_for as compiling_for
 from rockframe.compiled.entries import entry as entry
 from rockframe.compiled.entries import entry_at_once as entry_at_once
 from rockframe.compiled.entries import say_slow as say_slow
+from rockframe.compiled.entries import seconds_as_python as seconds_as_python
 from rockframe.compiled.entries import still_taking as still_taking
 from rockframe.compiled.entries import table as table
 from rockframe.compiled.language import LANES as LANES
@@ -32,7 +33,6 @@ from rockframe.compiled.language import kernel as kernel
 from rockframe.compiled.language import lane_of as lane_of
 from rockframe.compiled.language import part_of as part_of
 from rockframe.compiled.language import put as put
-from rockframe.compiled.language import seldom_called as seldom_called
 from rockframe.compiled.language import stretch as stretch
 from rockframe.compiled.language import widest_registers as widest_registers
 from rockframe.compiled.language import with_numbers as with_numbers

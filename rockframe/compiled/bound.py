@@ -6,12 +6,15 @@ the elements of the last argument, a vector.
 
 from collections.abc import Callable, Iterator
 from functools import cache, cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rockframe.compiled.called_back import CalledBack
-from rockframe.compiled.language import SELDOM, Vector, tuple_from
+from rockframe.compiled.language import Vector, tuple_from
+
+if TYPE_CHECKING:
+    from rockframe.compiled.jobs import Job
 
 
 def numbers_in(bundle: Any) -> Vector:
@@ -56,19 +59,29 @@ _shared = cache(Signature)
 
 
 class Source:
-    """A function and the structure of a tuple that it can be bound to."""
+    """A function and the structure of a tuple that it can be bound to.
+
+    One that is called seldom may run as plain Python until it is worth compiling.
+    """
 
     def __init__(
-        self, function: Callable[..., Any], structure: tuple[Any, ...], in_lanes: bool
+        self, function: Callable[..., Any], structure: tuple[Any, ...], in_lanes: bool, seldom: bool
     ) -> None:
         self.function = function
         self.structure = structure
         self.in_lanes = in_lanes
+        self.is_seldom_called = seldom
         self.code: Any = None  # once it has been compiled
         self.address = 0  # of that
         self.failed = False  # to be compiled
-        self.is_seldom_called = function in SELDOM and not in_lanes
         self.seconds_called_back = 0.0
+
+    @cached_property
+    def job(self) -> "Job":
+        """What is compiled of it."""
+        from rockframe.compiled.jobs import Job
+
+        return Job(self.function, self.structure, True, self.in_lanes)
 
     @cached_property
     def called_back(self) -> CalledBack:
@@ -102,13 +115,15 @@ class Bound:
         return self.source.function(self._bundle, *arguments[:-1])
 
 
-def bound(functions: tuple[Callable[..., Any], ...], bundle: Any) -> tuple[Bound, ...]:
-    """Bind functions to the tuple that is their first argument."""
+def bound(
+    functions: tuple[Callable[..., Any], ...], bundle: Any, *, seldom: bool = False
+) -> tuple[Bound, ...]:
+    """Bind functions to the tuple that is their first argument; say if they are called seldom."""
     structure = structure_of(bundle)
-    return tuple(Bound(_source(function, structure, False), bundle) for function in functions)
+    return tuple(Bound(_source(one, structure, False, seldom), bundle) for one in functions)
 
 
 def bound_in_lanes(function: Callable[..., Any], bundle: Any) -> Bound:
     """Bind a function to the class of a tuple, of which each lane has its own."""
     structure = structure_of(bundle)
-    return Bound(_source(function, structure, True), tuple_from(structure))
+    return Bound(_source(function, structure, True, False), tuple_from(structure))

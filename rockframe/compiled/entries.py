@@ -11,13 +11,14 @@ from contextlib import contextmanager, nullcontext
 from functools import update_wrapper, wraps
 from importlib.util import find_spec
 from threading import RLock
+from time import perf_counter
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar, cast
 
 import numpy as np
 
 from rockframe.compiled.bound import Bound, Source
 from rockframe.compiled.called_back import raising
-from rockframe.compiled.language import NEEDED_BY, STILL_TAKES, Vector, inlined
+from rockframe.compiled.language import AS_PYTHON, NEEDED_BY, STILL_TAKES, Vector, inlined
 
 if TYPE_CHECKING:
     from rockframe.compiled.jobs import Job
@@ -102,6 +103,11 @@ def _could_not(function: Callable[..., Any], problem: Exception) -> None:
     _logger.debug("%s", function.__qualname__, exc_info=problem)
 
 
+def seconds_as_python() -> float:
+    """Give a clock that goes while entries run as plain Python, not while others compile [s]."""
+    return AS_PYTHON[0] if COMPILED else perf_counter()
+
+
 def say_slow(seconds: float) -> None:
     """Say once, after a long run in plain Python, why, and what machine code would do."""
     if seconds <= PATIENCE or _said_slow or (_HAS_NUMBA and not COMPILED):
@@ -130,7 +136,6 @@ class Entry:
         self._calls_back = calls_back
         self._routines: dict[tuple[Any, ...], Callable[..., Any] | None] = {}
         self._awaited: dict[Any, Meanwhile] = {}
-        self._seldom: dict[Source, Job] = {}
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Any) -> Any:
@@ -143,7 +148,7 @@ class Entry:
             return routine(*words)
         needed, seldom = self._needed(sources)
         with _lock:
-            meanwhile = None if self._waits else self._meanwhile(structure, needed)
+            meanwhile = None if self._waits else self._meanwhile(structure, needed, seldom)
             ready = meanwhile is None or meanwhile.is_over()
             routine = self._compiled(structure, needed) if ready else None
             if routine is not None:
@@ -170,11 +175,10 @@ class Entry:
         For a share of what compiling takes, where this waits, and else for a moment, as another
         process compiles it.
         """
-        from rockframe.compiled.jobs import Job
         from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, NotCompiledError, make_all
 
         for source in sources:
-            job = self._seldom.setdefault(source, Job(source.function, source.structure, True))
+            job = source.job
             try:
                 patience = CALLED_BACK * job.seconds if WAITS else WORTHWHILE
                 if source.seconds_called_back < patience and not job.is_stored:
@@ -196,17 +200,19 @@ class Entry:
 
         sources: list[Source] = []
         structure = tuple(_structure_of(argument, [], sources) for argument in arguments)
-        sources, _ = self._needed(sources)
+        sources, seldom = self._needed(sources)
         with _lock:
             if time_for(self._jobs(structure, sources)) > patience:
                 return False
             if not WAITS:
-                meanwhile = self._meanwhile(structure, sources)
+                meanwhile = self._meanwhile(structure, sources, seldom)
                 if meanwhile is not None and not meanwhile.is_over(at_once=True):
                     return False
             return self._compiled(structure, sources) is not None
 
-    def _meanwhile(self, structure: tuple[Any, ...], sources: list[Source]) -> "Meanwhile | None":
+    def _meanwhile(
+        self, structure: tuple[Any, ...], sources: list[Source], seldom: list[Source]
+    ) -> "Meanwhile | None":
         """Give what goes on until there is machine code; None where that is not worth it.
 
         Where there can be none, there is some, or it is a matter of a moment, all functions being
@@ -221,7 +227,7 @@ class Entry:
         key = structure, *map(id, sources)
         found = self._awaited.get(key)
         if found is None:
-            found = self._awaited[key] = Meanwhile(jobs)
+            found = self._awaited[key] = Meanwhile(jobs, [source.job for source in seldom])
         return found
 
     def _has_failed(self, structure: tuple[Any, ...], sources: list[Source]) -> bool:
@@ -232,10 +238,7 @@ class Entry:
         """Give what is to be compiled for a call: bound functions, then, always, the entry."""
         from rockframe.compiled.jobs import Job
 
-        jobs = [
-            Job(source.function, source.structure, True, source.in_lanes)
-            for source in _missing(sources)
-        ]
+        jobs = [source.job for source in _missing(sources)]
         return [*jobs, Job(self.source, structure, False)]
 
     def _compiled(

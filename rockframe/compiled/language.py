@@ -31,6 +31,8 @@ KERNELS: Final[dict[Callable[..., Any], bool]] = {}
 
 NEEDED_BY: Final = ContextVar("needed_by", default="this")
 """What needs the machine code that is being compiled."""
+AS_PYTHON: Final[list[float]] = [0.0]
+"""Time that entries have spent in plain Python while they were compiled [s]."""
 STILL_TAKES: Final = ContextVar("still_takes", default=0.0)
 """Time that the caller will still take in plain Python, as far as it knows [s]."""
 
@@ -47,16 +49,6 @@ def inlined(function: Function) -> Function:
     For the few that every step calls.
     """
     KERNELS[function] = True
-    return function
-
-
-SELDOM: Final[set[Callable[..., Any]]] = set()
-"""Functions that compiled code may call back in Python until they are worth compiling."""
-
-
-def seldom_called(function: Function) -> Function:
-    """Mark a function to be bound that is called so seldom that it may run as plain Python."""
-    SELDOM.add(function)
     return function
 
 

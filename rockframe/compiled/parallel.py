@@ -23,7 +23,7 @@ from typing import IO, Any, Final, cast
 
 from rockframe.compiled import store
 from rockframe.compiled.jobs import Job, seconds_of
-from rockframe.compiled.language import NEEDED_BY, STILL_TAKES
+from rockframe.compiled.language import AS_PYTHON, NEEDED_BY, STILL_TAKES
 
 _logger = logging.getLogger("rockframe")
 _announced: Final[set[str]] = set()
@@ -44,12 +44,9 @@ def make_all(jobs: Sequence[Job]) -> list[Any]:
     """Compile jobs, or take what was kept of them; last those that other processes compile now."""
     _tell(jobs)
     made: dict[int, Any] = {}
-    ordered = [*enumerate(jobs)]
-    if _are_at_work():
-        ordered.reverse()  # they begin with the first
     with _helped(jobs) as waiting, without_collection():
         for now in (True, False):
-            for place, job in ordered:
+            for place, job in enumerate(jobs):
                 if place not in made and not (now and _is_at_work_on(job)):
                     made[place] = _made(place, job, waiting)
     return [made[place] for place in range(len(jobs))]
@@ -187,8 +184,11 @@ def help_with(order: bytes) -> None:
 
 
 def make_all_of(order: bytes) -> None:
-    """Compile all jobs, with one more process where neither this nor the first one needs it."""
-    jobs = _jobs_in(order)
+    """Compile all jobs, with one more process where neither this nor the first one needs it.
+
+    From the last one on: the process that started this begins with the first, if it compiles.
+    """
+    jobs = _jobs_in(order)[::-1]
     if processors() > 2:
         make_all(jobs)
         return
@@ -222,6 +222,9 @@ def processors() -> int:
 WORTHWHILE: Final = 0.25
 """Time in plain Python from which on something is compiled: a few short runs need none [s]."""
 
+LONG: Final = 1.0
+"""Time that is known to be left in plain Python from which on something is compiled [s]."""
+
 PRUDENCE: Final = 1.7
 """How many times longer compiling may take than it is said to: machines are seldom idle."""
 
@@ -238,11 +241,13 @@ def _are_at_work() -> bool:
 class Meanwhile:
     """What goes on until there is machine code for a call.
 
-    A context manager, whose blocks are the calls that run in plain Python.
+    A context manager, whose blocks are the calls that run in plain Python. Another process that
+    compiles goes on with what the calls seldom need, if that adds little.
     """
 
-    def __init__(self, jobs: Sequence[Job]) -> None:
+    def __init__(self, jobs: Sequence[Job], later: Sequence[Job] = ()) -> None:
         self._jobs = jobs
+        self._later = later
         self._seconds = 0.0  # spent in plain Python
         self._begun = 0.0
         self._compiler: subprocess.Popen[bytes] | None = None
@@ -252,13 +257,16 @@ class Meanwhile:
         self._begun = perf_counter()
 
     def __exit__(self, *problem: object) -> None:
-        self._seconds += perf_counter() - self._begun
+        seconds = perf_counter() - self._begun
+        self._seconds += seconds
+        AS_PYTHON[0] += seconds
 
     def is_over(self, *, at_once: bool = False) -> bool:
         """Whether machine code is to be loaded, or compiled by this process, which then waits.
 
-        By this process, too, as soon as plain Python has taken, or is known to take yet, as long
-        as compiling will, at the worst: that is never more than twice the shortest time.
+        By this process, too, as soon as plain Python is known to take yet as long as compiling
+        will; where that is not known, as soon as it has taken as long as that, at the worst: that
+        is never more than twice the shortest time.
         """
         if self._compiler is not None and self._compiler.poll() is None:
             return self._is_worth_compiling()
@@ -269,20 +277,25 @@ class Meanwhile:
             return True
         if self._compiler is not None:  # and it has failed
             self._compiler, self._alone = None, True
-        if self._seconds < WORTHWHILE and not at_once:
+        if self._seconds < WORTHWHILE and STILL_TAKES.get() < LONG and not at_once:
             return False
         if self._has_started_compiler():
             return False
         return (at_once and self._alone) or self._is_worth_compiling()
 
     def _is_worth_compiling(self) -> bool:
-        return max(self._seconds, STILL_TAKES.get()) >= PRUDENCE * time_for(self._jobs)
+        rest, needed = STILL_TAKES.get(), time_for(self._jobs)
+        return rest >= needed if rest else self._seconds >= PRUDENCE * needed
+
+    def _adds_little(self, job: Job) -> bool:
+        """Whether nearly all that a job compiles is compiled for the others."""
+        return seconds_of([*self._jobs, job]) < seconds_of(self._jobs) + WORTHWHILE
 
     def _has_started_compiler(self) -> bool:
         """Start one, unless others are at work; whether that has been done."""
         if self._alone or (_are_at_work() and len(_compilers) >= processors() // 2):
             return False
-        self._compiler = start_compiler(self._jobs)
+        self._compiler = start_compiler([*filter(self._adds_little, self._later), *self._jobs])
         self._alone = self._compiler is None
         if self._compiler is not None:
             _compilers.append(self._compiler)

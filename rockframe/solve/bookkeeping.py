@@ -242,10 +242,13 @@ def record_event(
         counters[at.FLIGHTS] += 1
     if after.contact != FULL and math.isnan(clock[at.FIRST_UPLIFT]):
         clock[at.FIRST_UPLIFT] = time
+    repeats = row > 0 and before.mode == after.mode  # and so it would do without end
+    for i in range(events.values.shape[1] if repeats else 0):
+        repeats &= events.values[row, i] == events.values[row - 1, i]
     close = time - clock[at.EVENT_TIME] <= progress.controls[at.CHATTER_TIME]
     counters[at.CLOSE_EVENTS] = counters[at.CLOSE_EVENTS] + 1 if close else 0
     clock[at.EVENT_TIME] = time
-    if counters[at.CLOSE_EVENTS] > at.CLOSE_EVENTS_LIMIT:
+    if repeats or counters[at.CLOSE_EVENTS] > at.CLOSE_EVENTS_LIMIT:
         return at.CHATTER
     return at.COMPLETED
 

@@ -16,7 +16,6 @@ from rockframe.compiled import (
     kernel,
     numbers_in,
     put,
-    seldom_called,
 )
 from rockframe.dynamics.protocol import Equations, Ground
 from rockframe.solve.accuracy import STABLE
@@ -36,7 +35,6 @@ def slope(
     put(system.accelerate(mode, state, Ground(ground_x, ground_y)), 0, out)
 
 
-@seldom_called
 @kernel
 def switched(
     system: Equations, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
@@ -72,15 +70,15 @@ def observed(
 class BoundEquations(NamedTuple):
     """A system, bound: its functions, its numbers, and how many there are of everything.
 
-    Two processes compile the functions from both ends. The march holds most of the others: whoever
-    compiles it has half of what these are made of.
+    Two processes compile the functions from both ends; the march is half of it. What is called at
+    events only is compiled when it is worth it.
     """
 
     march: Bound
-    switching: Bound
     slope: Bound
-    guarding: Bound
     observing: Bound
+    switching: Bound
+    guarding: Bound
     stored: Bound
     meaning: Bound
     numbers: Vector
@@ -94,14 +92,21 @@ def gives_powers(system: Equations) -> bool:
     return hasattr(system, "powers")
 
 
-def equations_of(system: Equations, *, fixed_steps: bool) -> BoundEquations:
-    """Bind a system's equations for the integrator."""
+def equations_of(
+    system: Equations, *, fixed_steps: bool, with_work: bool = False
+) -> BoundEquations:
+    """Bind a system's equations for the integrator; work at outputs is found from many slopes."""
     march = march_by_tolerance
     if fixed_steps:
         march = march_fixed_by_rates if gives_powers(system) else march_fixed
-    functions = bound((march, switched, slope, guards_at, observed, energies, meaning), system)
+    moving, observing = bound((march, observed), system)
+    (sloping,) = bound((slope,), system, seldom=not (fixed_steps or with_work))
+    at_events = bound((switched, guards_at, energies, meaning), system, seldom=True)
     return BoundEquations(
-        *functions,  # type: ignore[call-arg]
+        moving,
+        sloping,
+        observing,
+        *at_events,  # type: ignore[call-arg]
         numbers=numbers_in(system),
         coordinate_count=system.coordinates(),
         variable_count=system.variables(),

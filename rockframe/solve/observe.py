@@ -1,7 +1,7 @@
 """From states to the quantities a model can be observed by."""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,11 @@ from rockframe.dynamics.protocol import POWERS, Column, ContactModel, Equations
 from rockframe.solve.equations import energies, observed, slope
 from rockframe.solve.trajectory import Trajectory
 from rockframe.solve.workspace import BESIDE
+
+MANY: Final = 500
+"""Rows without slopes from which on these are worth compiling."""
+NO_SAMPLES: Final = np.zeros(0, dtype=np.int64)
+NO_COLUMNS: Final = np.zeros((0, 0))
 
 
 class Room(NamedTuple):
@@ -45,38 +50,13 @@ class OfSystem(NamedTuple):
     numbers: Vector
 
 
-def _of(system: Equations, *functions: Callable[..., None]) -> list[OfSystem]:
-    return [OfSystem(one, numbers_in(system)) for one in bound(functions, system)]
+def _of(system: Equations, function: Callable[..., None], *, seldom: bool = False) -> OfSystem:
+    (one,) = bound((function,), system, seldom=seldom)
+    return OfSystem(one, numbers_in(system))
 
 
 @entry_at_once
 def observe_rows(
-    sloping: OfSystem,
-    observing: OfSystem,
-    mode: Integers,
-    state: Matrix,
-    memory: Matrix,
-    memory_row: Integers,
-    ground: Matrix,
-    wanted: Integers,
-    room: Room,
-    out: Matrix,
-) -> None:
-    """Fill the wanted columns, one below the other, for each row of states."""
-    for i in range(len(mode)):
-        copy_row(state, i, room.state)
-        copy_row(memory, memory_row[i], room.memory)
-        x, y = ground[i, 0], ground[i, 1]
-        sloping.function.call(mode[i], room.state, x, y, room.slope, sloping.numbers)
-        observing.function.call(
-            mode[i], room.state, room.slope, x, y, room.memory, room.columns, observing.numbers
-        )
-        for j in range(len(wanted)):
-            out[j, i] = room.columns[wanted[j]]
-
-
-@entry_at_once
-def observe_kept(
     sloping: OfSystem,
     observing: OfSystem,
     exact: int,
@@ -89,7 +69,7 @@ def observe_kept(
     out: Matrix,
     shown: Matrix,
 ) -> None:
-    """Do the same for each row of steps, by the slopes that stand there if they are exact.
+    """Fill the wanted columns for each row of steps, by the slopes there if they are exact.
 
     With it, fill all columns for some rows, `samples`, behind a first that is none of them.
     """
@@ -183,22 +163,25 @@ def _rows(
     memory_row: Integers,
     ground: Matrix,
 ) -> Matrix:
-    wanted = np.arange(len(model.columns))
-    out = np.empty((len(wanted), len(mode)))
-    moves, shows = _of(model.system, slope, observed)
-    observe_rows(
-        moves,
-        shows,
-        mode,
-        np.ascontiguousarray(state),
-        memory,
-        memory_row.astype(np.int64),
-        ground,
-        wanted,
-        _room(model, memory),
-        out,
-    )
+    out = np.empty((len(model.columns), len(mode)))
+    place = np.zeros((len(mode), BESIDE))
+    place[:, 2:] = ground
+    _observe(
+        model, np.hstack([place, state]), np.stack([mode, memory_row], 1).astype(np.int64), memory,
+        np.arange(len(out)), out,
+    )  # fmt: skip
     return out
+
+
+def _observe(
+    model: ContactModel, values: Matrix, codes: IntegerMatrix, memory: Matrix, wanted: Integers,
+    out: Matrix, exact: bool = False, samples: Integers = NO_SAMPLES, shown: Matrix = NO_COLUMNS,
+) -> None:  # fmt: skip
+    moves = _of(model.system, slope, seldom=exact or len(codes) < MANY)
+    observe_rows(
+        moves, _of(model.system, observed), int(exact), values, codes, memory, wanted, samples,
+        _room(model, memory), out, shown,
+    )  # fmt: skip
 
 
 def observe_run(
@@ -246,20 +229,10 @@ def observe_run(
     )
     chosen = [i for i, one in enumerate(model.columns) if names is None or one.name in names]
     out = np.empty((len(chosen), len(steps.time)))
-    moves, shows = _of(model.system, slope, observed)
-    observe_kept(
-        moves,
-        shows,
-        int(steps.exact),
-        steps.values,
-        steps.codes,
-        memory,
-        np.array(chosen, dtype=np.int64),
-        in_steps,
-        _room(model, memory),
-        out,
-        shown,
-    )
+    _observe(
+        model, steps.values, steps.codes, memory, np.array(chosen, dtype=np.int64), out,
+        steps.exact, in_steps, shown,
+    )  # fmt: skip
     along = _named(model, [model.columns[i] for i in chosen], out)
     return along, _named(model, model.columns, shown)
 
@@ -290,9 +263,8 @@ def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
         Per unit mass [m^2 s^-2].
     """
     out = np.empty((len(trajectory.time), 4))
-    (stored,) = _of(model.system, energies)
     energy_rows(
-        stored,
+        _of(model.system, energies),
         trajectory.mode,
         np.ascontiguousarray(trajectory.state),
         np.zeros(trajectory.state.shape[1]),

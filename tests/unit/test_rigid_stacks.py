@@ -243,6 +243,21 @@ def test_a_slip_does_not_begin_against_its_force():
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize(
+    ("number", "ends"),
+    [(217, "1.4 s"), (163, "0.32 s"), (315, "0.65 s")],
+    ids=["a set far from that with sticking", "small bounces of drums that slip", "a slip jams"],
+)
+def test_columns_that_stopped_go_on(number, ends):
+    """Of eleven closed corners and more, of slips that small bounces end, and without forces."""
+    system, motion = drawn_column(number)
+    found = system.simulate(
+        motion, duration=ends, accuracy="standard", outputs=None, second_look=False
+    )
+    assert int(found.status) == Status.COMPLETED
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(("number", "ends", "most"), [(684, "0.5 s", 1e-5), (434, "0.53 s", 1e-3)])
 def test_what_begins_to_slip_has_the_velocity_that_it_had(number, ends, most):
     """A body that is held begins to slip as another one, on pads, changes its contact."""

@@ -222,6 +222,16 @@ class RigidCorners(Chain):
         return Attempt(0, math.inf)
 
     @inlined
+    def try_stops(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> Attempt:
+        """Let a set of the closed corners bear by impulses that stop a slip: there is none."""
+        return Attempt(0, math.inf)
+
+    @inlined
+    def try_standing(self, mode: int, corners: int, state: Vector) -> None:
+        """Let bodies stand on corners after an impact, each held against sliding."""
+        attempt(self, mode, corners, corners, False, True, 0.0, state)
+
+    @inlined
     def stand_still(self, room: Vector, out: Vector) -> None:
         """Take rounding from the accelerations of bodies in full contact with a rigid base."""
         for k in range(self.body_count):

@@ -28,13 +28,18 @@ BOTH: Final = 3
 ALL_TRIED: Final = 10
 """Closed corners up to which every subset of them is tried."""
 NEIGHBOURS: Final = 3
-"""Of more, corners in which the subsets differ from the one with sticking assumed."""
+"""Of more, corners in which the subsets that are tried first differ from the one with sticking
+assumed."""
 NOISE: Final = 1e-11
 """Share of all impulses, or of all speeds, that is rounding."""
 ROUNDING: Final = 1e-12
 """Acceleration over gravity that is rounding."""
 NEARLY_ZERO: Final = 1e-5
 """Acceleration of a corner as its force comes to zero, over gravity."""
+JAMMED: Final = -2
+"""In place of the corner that leaves: no forces are a motion, and impulses have to stop a slip."""
+ALL_WAYS: Final = 4
+"""The trial of sets in which all ways to slip are tried."""
 MOST_PIVOTS: Final = 1000
 """Changes of the set in the search with sticking assumed, which needs a few."""
 
@@ -230,25 +235,32 @@ def bearing_corners(
 
     After an impact the admissible set that loses the least energy. Where one of those that bore
     before is `leaving`, since its force has come to zero, the admissible one nearest to those.
-    Where friction alone has changed, `leaving` is negative. Where no set is admissible, after an
-    impact that of the problem with sticking assumed, which has one solution; under new forces first
-    all ways to slip are tried, then sets of which one corner is held though it does not press.
+    Where friction alone has changed, `leaving` is negative; where it jams, impulses have to stop a
+    slip. Where no set is admissible, after an impact that of the problem with sticking assumed,
+    which has one solution; under new forces first all ways to slip are tried, then sets of which
+    one corner is held though it does not press.
     """
-    impulsive = leaving == 0
+    impulsive, count = leaving in (0, JAMMED), size_of(closed)
     write_corners(system, impulsive, state)
-    noise, near = noise_of(system, closed, impulsive, state), Near(closed, closed, ALL_TRIED)
-    if size_of(closed) > ALL_TRIED:
+    noise, near = noise_of(system, closed, impulsive, state), Near(closed, closed, count)
+    if count > ALL_TRIED:
         reference = with_sticking(system, mode, closed, impulsive, noise, state)
         near = Near(closed, reference, NEIGHBOURS)
     taken, other, admissible, held = -1, -1, 0, 0
     lowest = second = math.inf
-    for ways in range(1 if impulsive else 3):  # first what is admissible but for rounding
-        thorough, some = ways == 2, next_set(closed, near)
-        least = noise if impulsive or ways > 0 else ROUNDING * system.number(0, at.GRAVITY)
+    for trial in range(
+        2 if impulsive else 1 + ALL_WAYS
+    ):  # first what is admissible but for rounding
+        if trial % 2 == 1 and count <= ALL_TRIED:
+            continue  # there are no sets farther off
+        tried = near if trial % 2 == 0 else Near(closed, closed, count)
+        some = next_set(closed, tried)
+        way = JAMMED if leaving == JAMMED else trial
+        least = noise if impulsive or trial > 1 else ROUNDING * system.number(0, at.GRAVITY)
         while some >= 0:
             bears = some | pulled
             if leaving <= 0 or bears != before:
-                found = try_set(system, thorough, mode, bears, closed, impulsive, least, state)
+                found = try_set(system, way, mode, bears, closed, impulsive, least, state)
                 if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
                     loss = found.loss if impulsive else float(size_of(bears ^ before))
                     admissible += 1
@@ -256,9 +268,9 @@ def bearing_corners(
                         other, second, taken, lowest = taken, lowest, bears, loss
                     elif loss < second:
                         other, second = bears, loss
-            some = next_set(some - 1, near)
+            some = next_set(some - 1, tried)
         if admissible > 0:  # what it does stays in the rooms
-            try_set(system, thorough, mode, taken, closed, impulsive, least, state)
+            try_set(system, way, mode, taken, closed, impulsive, least, state)
             return Found(taken, admissible, other, 0)
     if impulsive:
         taken = with_sticking(system, mode, closed, impulsive, noise, state)
@@ -271,11 +283,13 @@ def bearing_corners(
 
 @kernel
 def try_set(
-    system: Any, thorough: bool, mode: int, some: int, closed: int, impulsive: bool, noise: float,
+    system: Any, way: int, mode: int, some: int, closed: int, impulsive: bool, noise: float,
     state: Vector,
 ) -> Attempt:  # fmt: skip
     """Let a set of the closed corners bear, by slips found base by base or by trying all."""
-    if thorough:
+    if way == JAMMED:
+        return system.try_stops(mode, some, closed, noise, state)
+    if way == ALL_WAYS:
         return system.try_all_slips(mode, some, closed, noise, state)
     return system.try_corners(mode, some, closed, impulsive, noise, state)
 

@@ -282,8 +282,7 @@ class RigidChain(RigidCorners):
         if not small:
             return mode
         closed, pulled = self.bearing(mode) | corner, self.pulled(mode)
-        held = self.with_bearing(mode, closed, pulled)
-        self.let_stand(closed, mode, held, state, memory)
+        held = self.let_stand(closed, pulled, mode, state, memory)
         self.accelerate(held, state, ground)
         if self.corner_force(k, left) < 0.0:
             held = self.with_bearing(mode, closed, pulled | corner)
@@ -313,17 +312,19 @@ class RigidChain(RigidCorners):
         return new
 
     @kernel
-    def let_stand(self, corners: int, mode: int, new: int, state: Vector, memory: Vector) -> None:
-        """Let bodies stand on corners in a new mode, by impulses that may pull."""
+    def let_stand(self, corners: int, pulled: int, mode: int, state: Vector, memory: Vector) -> int:
+        """Let bodies stand on corners, by impulses that may pull; give the new mode."""
         self.write_contacts(mode, state, memory)
         flying = self.with_bearing(mode, 0, 0)
         had = self.energies(flying, state).kinetic  # places the bodies, too
         load_bodies(self, 0.0, 0.0, self.places())
         write_corners(self, True, state)
-        attempt(self, flying, corners, corners, False, True, 0.0, state)
+        self.try_standing(flying, corners, state)
         self.change_velocities(state)
+        new = self.with_bearing(mode, corners, pulled)
         self.hold_contacts(new, state, memory)
         memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
+        return new
 
     @kernel
     def meet_anew(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
@@ -427,8 +428,7 @@ class RigidChain(RigidCorners):
         """Let bodies stand on both corners, if these press then; else give the mode as it is."""
         before, lost = self.velocities(state), memory[IMPACT_LOSS]
         all_of_them = self.bearing(mode) | corners
-        resting = self.with_bearing(mode, all_of_them, 0)
-        self.let_stand(all_of_them, mode, resting, state, memory)
+        resting = self.let_stand(all_of_them, 0, mode, state, memory)
         self.accelerate(resting, state, ground)
         least = 0.0
         for k in range(self.body_count):

@@ -10,7 +10,8 @@ from typing import Final
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import PULLED
-from rockframe.dynamics.chain.impact import bearing_corners
+from rockframe.dynamics.chain.impact import JAMMED, Found, bearing_corners
+from rockframe.dynamics.chain.motion import load_bodies
 from rockframe.dynamics.chain.rigid import ADMISSIBLE, OTHER, TAKEN
 from rockframe.dynamics.chain.rows import GUARDS, PLACES
 from rockframe.dynamics.chain.slips import OFFSET, ROUNDING, STATIC
@@ -202,20 +203,52 @@ class SlippingRigidChain(TriedSlips):
         self.write_contacts(mode, state, memory)  # of those that were held and may slip
         self.note_slips(mode)
         flying, pulled = self.with_bearing(mode, 0, 0), self.pulled(mode)
-        closed = before | self.resting_corners(mode, state)
-        self.accelerate(flying, state, ground)
-        found = bearing_corners(
-            self, flying, closed & ~pulled, pulled, before, FRICTION_ALONE, state
-        )
+        closed, count, free = before | self.resting_corners(mode, state), 0, mode
+        found = Found(before, 0, -1, 0)
+        for _ in range(self.body_count):
+            self.accelerate(flying, state, ground)
+            found = bearing_corners(
+                self, flying, closed & ~pulled, pulled, before, FRICTION_ALONE, state
+            )
+            if found.admissible > 0 or found.held != 0:
+                break
+            free = self.let_all_go(free, state, memory)
+            flying = self.with_bearing(free, 0, 0)
+            jammed = self.jam(flying, closed, before, state, memory)
+            if jammed.admissible == 0:
+                break
+            before, pulled, count = jammed.taken, 0, max(count, jammed.admissible)
+            closed = before | self.resting_corners(self.with_bearing(flying, before, 0), state)
         if found.admissible == 0 and found.held == 0:
             self.note_slips(mode)
             for k in range(self.body_count):
                 starts = self.places()[k * PLACES + at.STARTS]
                 if starts != 0.0:
                     self.places()[k * PLACES + at.SLIPS] = starts
-        new = self.with_bearing(mode, found.taken, pulled | found.held)
+        new = self.with_bearing(free, found.taken, pulled | found.held)
         self.hold_contacts(new, state, memory)
         new = self.as_tried(new, state, memory)
-        memory[kept + ADMISSIBLE] = found.admissible
+        # where impulses of several sets would do, motion is not unique either
+        memory[kept + ADMISSIBLE] = max(found.admissible, count if found.admissible > 0 else 0)
         memory[kept + TAKEN], memory[kept + OTHER] = found.taken, found.other
         return new
+
+    @kernel
+    def jam(self, flying: int, closed: int, before: int, state: Vector, memory: Vector) -> Found:
+        """Stop slips by impulses, since no forces are a motion, :eq:`eq-stack-jam`.
+
+        Gives what bears then; nothing has changed where no set does.
+        """
+        had = self.energies(flying, state).kinetic  # places the bodies, too
+        load_bodies(self, 0.0, 0.0, self.places())
+        found = bearing_corners(self, flying, closed, 0, before, JAMMED, state)
+        if found.admissible == 0:
+            return found
+        self.change_velocities(state)
+        stopped = self.with_bearing(flying, found.taken, 0)
+        self.hold_contacts(stopped, state, memory)
+        memory[IMPACT_LOSS] += had - self.energies(stopped, state).kinetic
+        self.write_contacts(stopped, state, memory)
+        for k in range(self.body_count):
+            self.places()[k * PLACES + at.STARTS] = 0.0
+        return found

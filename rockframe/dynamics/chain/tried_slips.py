@@ -260,6 +260,56 @@ class TriedSlips(SlipperyBases, RigidChain):
                 return found
         return Attempt(0, math.inf)
 
+    @kernel
+    def try_standing(self, mode: int, corners: int, state: Vector) -> None:
+        """Let bodies stand on corners after an impact: those that slip go on, the others are held.
+
+        So is one whose slip would turn round: no friction does that.
+        """
+        room, turned = self.places(), True
+        self.note_slips_before(mode, corners, state)
+        while turned:
+            turned = False
+            attempt(self, mode, corners, corners, False, True, 0.0, state)
+            for k in range(self.body_count):
+                sense = room[k * PLACES + at.SLIPS]
+                if sense != 0.0:
+                    pivot = self.tried_at(k, mode, corners, True)
+                    rate, least = self.slip_on(k, pivot, state)
+                    after = self.slips_on(k, pivot, True, state) + rate
+                    if sense * after < -least - NOISE_OF_SLIP * abs(after):
+                        room[k * PLACES + at.SLIPS] = 0.0
+                        turned = True
+
+    @kernel
+    def try_stops(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> Attempt:
+        """Let a set of the closed corners bear by impulses that stop a slip, of each in turn."""
+        room = self.places()
+        for stopped in range(self.body_count):
+            self.note_slips_before(mode, some, state)
+            if room[stopped * PLACES + at.SLIPS] == 0.0:
+                continue
+            room[stopped * PLACES + at.SLIPS] = 0.0
+            for _ in range(TRIES * self.body_count):
+                found = attempt(self, mode, some, closed, False, True, noise, state)
+                k = self.otherwise(mode, some, closed, True, IMPULSIVE, noise, state)
+                if k < 0:
+                    if found.fault < 0 and room[stopped * PLACES + at.SLIPS] == 0.0:
+                        return found
+                    break
+        return Attempt(0, math.inf)
+
+    @kernel
+    def note_slips_before(self, mode: int, some: int, state: Vector) -> None:
+        """Note in which sense bodies that may slip in an impact have slipped before it."""
+        for k in range(self.body_count):
+            pivot, i = self.tried_at(k, mode, some, True), k * PLACES
+            self.places()[i + at.SLIPS] = 0.0
+            if pivot != NOWHERE and self.friction_of(k, IMPULSIVE) < math.inf:
+                rate, least = self.slip_on(k, pivot, state)
+                if abs(rate) > least:
+                    self.places()[i + at.SLIPS] = math.copysign(1.0, rate)
+
     @inlined
     def tried_at(self, k: int, mode: int, some: int, impulsive: bool) -> int:
         """Give the pivot at which a body is held or slips as corners are tried, or `NOWHERE`.

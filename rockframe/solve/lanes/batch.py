@@ -83,9 +83,11 @@ def equations_in(batch: Batch, row: Vector) -> BoundEquations:
     """Give the equations of a row's system."""
     one, shape = batch.equations, batch.shape
     return BoundEquations(
-        one.march, one.switching, one.slope, one.guarding, one.observing, one.stored, one.meaning,
-        stretch(row, shape.numbers, shape.number_count),
-        one.coordinate_count, one.variable_count, one.guard_count,
+        march=one.march, slope=one.slope, observing=one.observing, switching=one.switching,
+        guarding=one.guarding, stored=one.stored, meaning=one.meaning,
+        numbers=stretch(row, shape.numbers, shape.number_count),
+        coordinate_count=one.coordinate_count, variable_count=one.variable_count,
+        guard_count=one.guard_count,
     )  # fmt: skip
 
 

@@ -16,8 +16,8 @@ from rockframe.compiled import (
     entry_at_once,
     kernel,
     numbers_in,
-    seldom_called,
 )
+from rockframe.compiled.bound import _source
 
 pytestmark = [
     pytest.mark.unit,
@@ -30,7 +30,6 @@ class Scale(NamedTuple):
     table: Any
 
 
-@seldom_called
 @kernel
 def gathered(
     scale: Scale, row: int, x: float, out: Vector, counts: Integers, table: ReadOnlyMatrix,
@@ -63,12 +62,12 @@ def through(
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("ROCKFRAME_CACHE_DIR", str(tmp_path / "code"))
-    through._seldom.clear()  # and with it what it knows of another folder
+    _source.cache_clear()  # and with them what they know of another folder
 
 
 def arguments(row, own=0.0):
     scale = Scale(3.0 + own, np.array([1.0, 2.0, 4.0]))
-    (function,) = bound((gathered,), scale)
+    (function,) = bound((gathered,), scale, seldom=True)
     table = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 7.0]])
     table.setflags(write=False)
     handed = Handed(function, numbers_in(scale))
@@ -105,7 +104,6 @@ def test_python_machine_code_and_what_calls_back_give_the_same():
     assert source.address != 0
 
 
-@seldom_called
 @kernel
 def interrupted(scale: Scale, out: Vector) -> int:
     """Be left by a key."""
@@ -118,14 +116,13 @@ def test_what_it_raises_arrives():
     source.address, source.seconds_called_back = 0, 0.0
     with pytest.raises(ValueError, match="no such row"):
         through(*given)
-    (function,) = bound((interrupted,), Scale(1.0, np.zeros(1)))
+    (function,) = bound((interrupted,), Scale(1.0, np.zeros(1)), seldom=True)
     with pytest.raises(KeyboardInterrupt, match="by hand"):
         call(Handed(function, np.zeros(2)), np.zeros(1))
     # and does not come again
     assert result_of(arguments(2)) == EXPECTED
 
 
-@seldom_called
 @kernel
 def hopeless(scale: Scale, out: Vector) -> int:
     """Do what is not compiled."""
@@ -140,7 +137,7 @@ def call(handed: Handed, out: Vector) -> int:
 
 def test_what_cannot_be_compiled_goes_on_as_python(fallbacks):
     scale = Scale(1.0, np.zeros(1))
-    (function,) = bound((hopeless,), scale)
+    (function,) = bound((hopeless,), scale, seldom=True)
     function.source.seconds_called_back = 1e9
     out = np.zeros(1)
     for _ in range(3):
@@ -155,7 +152,6 @@ def at_length(handed: Handed, out: Vector) -> int:
     return handed.function.call(out, handed.numbers)
 
 
-@seldom_called
 @kernel
 def plain(scale: Scale, out: Vector) -> int:
     """Do little."""
@@ -165,7 +161,7 @@ def plain(scale: Scale, out: Vector) -> int:
 
 def test_what_does_not_return_for_long_calls_nothing_back():
     scale = Scale(2.0, np.zeros(1))
-    (function,) = bound((plain,), scale)
+    (function,) = bound((plain,), scale, seldom=True)
     out = np.zeros(1)
     assert at_length(Handed(function, numbers_in(scale)), out) == 5
     assert out[0] == 2.0

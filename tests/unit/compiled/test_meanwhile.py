@@ -19,7 +19,7 @@ from rockframe.compiled import (
     still_taking,
 )
 from rockframe.compiled.entries import Entry
-from rockframe.compiled.parallel import WORTHWHILE, Meanwhile
+from rockframe.compiled.parallel import LONG, WORTHWHILE, Meanwhile
 from rockframe.errors import SolverWarning
 from rockframe.solve import integrate
 
@@ -27,6 +27,10 @@ pytestmark = [
     pytest.mark.unit,
     pytest.mark.skipif(not COMPILED, reason="this run does without compilation"),
 ]
+
+
+NEEDED = 8.0 / parallel.PRUDENCE
+"""Time that the jobs of a test are said to take [s]."""
 
 
 class Compiler:
@@ -40,17 +44,18 @@ class Compiler:
 
 
 class Job:
-    """Stands for what is to be compiled."""
+    """Stands for what is to be compiled: some functions."""
 
-    def __init__(self):
+    def __init__(self, *calls):
         self.is_stored = False
+        self.calls = set(calls)
 
 
 @pytest.fixture
 def jobs(monkeypatch):
     monkeypatch.setattr(parallel, "_compilers", [])
     monkeypatch.setattr(parallel, "processors", lambda: 2)
-    monkeypatch.setattr(parallel, "time_for", lambda jobs: 8.0 / parallel.PRUDENCE)
+    monkeypatch.setattr(parallel, "time_for", lambda jobs: NEEDED)
     return [Job(), Job()]
 
 
@@ -61,6 +66,7 @@ def started(monkeypatch):
 
     def start(jobs):
         found.append(Compiler())
+        found[-1].jobs = jobs
         return found[-1]
 
     monkeypatch.setattr(parallel, "start_compiler", start)
@@ -96,13 +102,33 @@ def test_a_short_run_starts_no_compiler_and_a_longer_one_one(jobs, started):
 
 def test_a_run_that_will_take_longer_than_both_need_compiles_too(jobs, started):
     one = Meanwhile(jobs)
-    spend(one, 1.0)
-    with still_taking(7.9):
+    with still_taking(0.9 * LONG):
+        assert not one.is_over()
+    assert not started
+    with still_taking(0.99 * NEEDED):
         assert not one.is_over()
         assert not one.is_over()
-    with still_taking(8.1):
+    with still_taking(1.01 * NEEDED):
         assert one.is_over()
     assert len(started) == 1
+
+
+def test_a_run_that_is_nearly_over_waits_for_nothing(jobs, started):
+    one = Meanwhile(jobs)
+    spend(one, 100.0)
+    with still_taking(0.1):
+        assert not one.is_over()
+        assert not one.is_over()
+
+
+def test_what_adds_little_is_compiled_behind_what_is_waited_for(started, monkeypatch):
+    monkeypatch.setattr(parallel, "_compilers", [])
+    monkeypatch.setattr(
+        parallel, "seconds_of", lambda jobs: len(set().union(*(one.calls for one in jobs)))
+    )
+    known, inside, beside = Job("march", "slope"), Job("slope"), Job("slope", "switch")
+    assert not Meanwhile([known], [inside, beside]).is_over(at_once=True)
+    assert started[0].jobs == [inside, known]  # of which the last is the first
 
 
 def test_a_run_compiles_too_once_it_has_taken_as_long_as_both_need(jobs, started):
@@ -121,16 +147,19 @@ def test_two_processes_compile_from_both_ends(jobs, started, monkeypatch):
     class Stored(Job):
         file = None
 
-        def make(self, waiting):
+        def make(self, waiting=None):
             made.append(self)
             return self
 
     monkeypatch.setattr(parallel, "_tell", lambda jobs: None)
     monkeypatch.setattr(parallel, "_process", lambda *words: pytest.fail("a third one"))
+    monkeypatch.setattr(parallel, "_jobs_in", lambda order: order)
     parallel._compilers.append(Compiler())
     some = [Stored(), Stored(), Stored()]
     assert parallel.make_all(some) == some
-    assert made == some[::-1]
+    assert made == some
+    parallel.make_all_of(some)
+    assert made[3:] == some[::-1]
 
 
 def test_lanes_are_compiled_though_nothing_has_run(jobs, started):
@@ -263,8 +292,7 @@ def test_a_run_that_comes_back_now_and_then_is_the_same_run(monkeypatch, accurac
         counts.append(advance(*arguments))
         return counts[-1]
 
-    monkeypatch.setattr(integrate, "has_machine_code", lambda equations: False)
-    monkeypatch.setattr(integrate, "STEPS_AT_ONCE", 7)
+    monkeypatch.setattr(integrate, "_steps_at_once", lambda equations: 7)
     monkeypatch.setattr(integrate, "advance", counted)
     pieces = system.simulate(motion, accuracy=accuracy, outputs=["energy"], duration="9 s")
     assert len(counts) > 20
@@ -278,8 +306,7 @@ def test_the_limit_of_steps_ends_a_run_that_comes_back_too(monkeypatch):
     accuracy = rf.Accuracy(rtol=1e-9, max_steps=100)
     with pytest.warns(SolverWarning, match="limit of steps"):
         whole = system.simulate(motion, accuracy=accuracy)
-    monkeypatch.setattr(integrate, "has_machine_code", lambda equations: False)
-    monkeypatch.setattr(integrate, "STEPS_AT_ONCE", 7)
+    monkeypatch.setattr(integrate, "_steps_at_once", lambda equations: 7)
     with pytest.warns(SolverWarning, match="limit of steps"):
         run = system.simulate(motion, accuracy=accuracy)
     assert run.drop_attrs().identical(whole.drop_attrs())

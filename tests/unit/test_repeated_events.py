@@ -1,0 +1,46 @@
+"""Events that change nothing, and would do so without end."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from rockframe.dynamics.events import SILENT, ContactState
+from rockframe.solve import workspace as at
+from rockframe.solve.bookkeeping import record_event
+from rockframe.solve.equations import KnownMode
+from rockframe.solve.workspace import EventTable, Progress, Status
+
+STATE = (0.1, -0.2)
+
+
+def recorded(rows, modes=(3, 3), memory=(0.0,)):
+    """Give the status after the last of some events: the time of each, and the state before."""
+    progress = Progress(np.zeros(at.CONTROLS), np.zeros(at.CLOCK), np.zeros(at.COUNTERS, int))
+    events = EventTable(np.zeros((9, 6)), np.zeros((9, 3), dtype=np.int64))
+    before, after = (KnownMode(mode, 1, int(ContactState.FULL), 1.0) for mode in modes)
+    place, status = SimpleNamespace(state=np.array(STATE)), 0
+    for row, (time, state) in enumerate(rows):
+        events.values[row, 1:3] = state
+        status = record_event(
+            time, SILENT, before, after, np.array(memory), progress, events, place
+        )
+    return Status(status)
+
+
+def test_an_event_that_repeats_itself_is_chatter():
+    assert recorded([(1.0, STATE), (1.0, STATE)]) == Status.CHATTER
+
+
+@pytest.mark.parametrize(
+    ("rows", "modes"),
+    [
+        ([(1.0, STATE)], (3, 3)),
+        ([(1.0, STATE), (1.5, STATE)], (3, 3)),
+        ([(1.0, (0.0, 0.0)), (1.0, STATE)], (3, 3)),
+        ([(1.0, STATE), (1.0, STATE)], (3, 4)),
+    ],
+    ids=["the first one", "later", "from another state", "to another mode"],
+)
+def test_any_other_event_is_not(rows, modes):
+    assert recorded(rows, modes) == Status.COMPLETED
