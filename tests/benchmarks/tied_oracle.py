@@ -13,7 +13,10 @@ import numpy as np
 from reference_models.test_tied_rigid_blocks import AGREES, compare
 
 DATA = Path(__file__).resolve().parents[2] / "docs" / "data" / "tied_oracle.json"
-SCENES = 150
+SCENES = 340
+SHORT = 1e-5
+"""Steps of the equation by hand where both do not agree, for it sees no rotation that passes zero
+twice within one [s]."""
 
 
 def main() -> None:
@@ -28,15 +31,17 @@ def main() -> None:
         if one is None:  # the corner is lifted, which the equation by hand does not follow
             left_out += 1
             continue
-        found.append(one)
-        events += one["events"]
         if one["difference"] > AGREES:
             print(number, one, flush=True)
+            one = compare(number, longest_step=SHORT) | {"stepped over": True}
+        found.append(one)
+        events += one["events"]
     differences = [one["difference"] for one in found]
     table = {
         "scenes": len(found),
         "left out, lifted": left_out,
         "agree": sum(one <= AGREES for one in differences),
+        "of them by short steps": sum("stepped over" in one for one in found),
         "median": float(f"{np.median(differences):.2g}"),
         "worst": float(f"{max(differences):.2g}"),
         "verdicts agree": sum(one["overturned"][0] == one["overturned"][1] for one in found),

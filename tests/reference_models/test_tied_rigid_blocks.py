@@ -76,7 +76,7 @@ def scene_of(drawn: dict) -> tuple[rf.System, rf.GroundMotion]:
     return rf.System(block, *parts), motion
 
 
-def by_hand(drawn: dict, times: np.ndarray) -> tied_rigid_block.Found:
+def by_hand(drawn: dict, times: np.ndarray, **options) -> tied_rigid_block.Found:
     """Run it by hand."""
     b, h = 0.5 * drawn["width"], 0.5 * drawn["height"]
     some = [
@@ -88,11 +88,11 @@ def by_hand(drawn: dict, times: np.ndarray) -> tied_rigid_block.Found:
     ]  # fmt: skip
     block = tied_rigid_block.Block(b, h, (b * b + h * h) / 3.0, GRAVITY, some)
     return tied_rigid_block.simulate(
-        block, drawn["motion"], TIME_STEP, drawn["rotation"], times, limit=block.theta
+        block, drawn["motion"], TIME_STEP, drawn["rotation"], times, limit=block.theta, **options
     )
 
 
-def compare(number: int) -> dict | None:
+def compare(number: int, **options) -> dict | None:
     """Give how far both are apart over the peak, and their events; None where it flies."""
     drawn = draw(number)
     system, motion = scene_of(drawn)
@@ -101,11 +101,12 @@ def compare(number: int) -> dict | None:
         motion, initial=start, accuracy="reference", output_step="10 ms", duration=f"{DURATION} s",
         overturning="stop", outputs=("energy",),
     )  # fmt: skip
-    theirs = by_hand(drawn, run.time.values)
+    # on beyond the instant at which ours overturned
+    theirs = by_hand(drawn, np.append(run.time.values, DURATION), **options)
     kinds = Counter(EventKind(int(one)).name for one in run.event_kind.values)
     if theirs.lifted or kinds["SEPARATION"]:
         return None
-    ours, other = run.rotation.values, theirs.rotation
+    ours, other = run.rotation.values, theirs.rotation[:-1]
     both = ~np.isnan(ours) & ~np.isnan(other)
     peak = max(float(np.abs(ours[both]).max()), 1e-3)
     return {

@@ -17,9 +17,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from .ties import KINDS, Tie
+from .ties import KINDS, PRESSED, YIELDING, Tie
 
 REST = 1e-10
+STOPPED = 1e-12
 RTOL, ATOL = 1e-12, 1e-14
 
 
@@ -90,9 +91,12 @@ class Block:
 
 def simulate(
     block: Block, acceleration: Sequence[float], time_step: float, rotation: float, times,
-    limit: float = math.inf,
+    limit: float = math.inf, longest_step: float = 0.01,
 ) -> Found:  # fmt: skip
-    """Follow a block from a rotation through a piecewise linear motion."""
+    """Follow a block from a rotation through a piecewise linear motion.
+
+    A rotation that passes zero twice within a step is not seen.
+    """
     found = Found(np.full(len(times), np.nan))
     duration, last = float(times[-1]), len(acceleration) - 1
 
@@ -115,7 +119,9 @@ def simulate(
             t, resting = _rest(block, ground, t, end, found, times)
             alpha = rate = 0.0
             continue
-        t, alpha, rate, resting = _rock(block, ground, t, end, alpha, rate, found, times, limit)
+        t, alpha, rate, resting = _rock(
+            block, ground, t, end, alpha, rate, found, times, limit, longest_step
+        )
         if found.overturned:
             break
     return found
@@ -142,7 +148,7 @@ def _rest(block, ground, t, end, found, times):
     return start, start >= end
 
 
-def _rock(block, ground, t, end, alpha, rate, found, times, limit):
+def _rock(block, ground, t, end, alpha, rate, found, times, limit, longest_step):
     """Rock until the next event or the end of an interval."""
     a0, a1 = ground(t), ground(end - 1e-13 * max(1.0, end))
     span = max(end - 1e-13 - t, 1e-300)
@@ -175,7 +181,7 @@ def _rock(block, ground, t, end, alpha, rate, found, times, limit):
 
     run = solve_ivp(
         slope, (t, end), [alpha, rate], method="DOP853", rtol=RTOL, atol=ATOL, events=guards,
-        dense_output=True, max_step=0.01,
+        dense_output=True, max_step=longest_step,
     )  # fmt: skip
     stop = float(run.t[-1])
     some = (times >= t) & (times <= stop)
@@ -192,7 +198,13 @@ def _rock(block, ground, t, end, alpha, rate, found, times, limit):
     if found.overturned:
         return stop, alpha, rate, False
     if tie is not None:
-        tie.switch(kind, block.place(alpha, rate)[0])
+        place = block.place(alpha, rate)[0]
+        tie.switch(kind, place)
+        # a block that stops turns all ties that yield, at once
+        for other in block.ties if kind == "turn" else ():
+            if other.state in (YIELDING, PRESSED) and abs(other.length(place)[2]) < STOPPED:
+                other.switch("turn", place)
+                found.events.append((stop, "turn"))
         return stop, alpha, rate, False
     rate *= 1.0 - 2.0 * block.b**2 / block.about
     block.side = -side
