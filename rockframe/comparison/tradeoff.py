@@ -24,7 +24,12 @@ from rockframe.simulation.run import outcome, run
 from rockframe.simulation.run_arguments import ComparedArguments
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
-from rockframe.solve.equations import equations_of, runs_as_python, steps_as_machine_code
+from rockframe.solve.equations import (
+    call_nothing_back,
+    equations_of,
+    has_machine_code,
+    runs_as_python,
+)
 from rockframe.system.options import AccuracyLike
 
 
@@ -233,9 +238,12 @@ def measure(
 def _run_until_compiled(scene: System, plan: Plan) -> None:
     """Run a rung in plain Python as long as its machine code is made: it is not to be timed so."""
     system = scene.assembly.model.system
-    equations = equations_of(system, fixed_steps=plan.accuracy.rtol is None)
+    equations = equations_of(
+        system, fixed_steps=plan.accuracy.rtol is None, with_work=bool(plan.energies)
+    )
+    call_nothing_back(equations)
     deadline = time.perf_counter() + _PATIENCE
-    while not (steps_as_machine_code(equations) or runs_as_python(equations)):
+    while not (has_machine_code(equations) or runs_as_python(equations)):
         if time.perf_counter() > deadline:
             return
         outcome(scene.assembly, plan)

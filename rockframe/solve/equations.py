@@ -124,6 +124,13 @@ def has_machine_code(equations: BoundEquations) -> bool:
     return all(one.source.address for one in equations if isinstance(one, Bound))
 
 
+def call_nothing_back(equations: BoundEquations) -> None:
+    """Have what is called at events compiled as well, with the next run: one that is timed."""
+    for one in equations:
+        if isinstance(one, Bound):
+            one.source.seconds_called_back = math.inf
+
+
 def steps_as_machine_code(equations: BoundEquations) -> bool:
     """Whether what each step calls is there as machine code."""
     return bool(equations.march.source.address)

@@ -449,7 +449,7 @@ def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
         return 1.0
 
     outcome = module.outcome
-    monkeypatch.setattr(module, "steps_as_machine_code", lambda _: next(there))
+    monkeypatch.setattr(module, "has_machine_code", lambda _: next(there))
     monkeypatch.setattr(module, "runs_as_python", lambda _: False)
     monkeypatch.setattr(module, "outcome", counted)
     monkeypatch.setattr(module, "_timed", timed)
