@@ -237,7 +237,8 @@ class RigidChain(RigidCorners):
         """Let a base catch up with an end; give the new mode.
 
         Where a blow elsewhere has slowed down one that rises, its base presses it, but less and
-        less. If the re-pinning would let it go at once, it is not held: it waits to be let go.
+        less. If the re-pinning would let it go at once, and throw a corner down that is at its
+        rigid base, it is not held: it waits to be let go.
         """
         k, left = guard // GUARDS, guard % GUARDS < CORNER_GUARDS
         part, was = self.on_base(k), self.part_mode(mode, k)
@@ -251,7 +252,7 @@ class RigidChain(RigidCorners):
         )  # fmt: skip
         new = self.switch_on_base(mode, guard, state, ground, memory)
         contact = self.part_mode(new, k).contact
-        if contact != part.base.unpressed(contact, left):
+        if contact != part.base.unpressed(contact, left) or not self.throws_down(new, state):
             return new
         self.blend_velocities(before, 0.0, state)
         memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
