@@ -338,6 +338,21 @@ class RigidCorners(Chain):
         near = level < self.least_rise(k) and self.returns_at_once(k, speed, fall)
         return near and not part.base.is_held(standing.contact, left)
 
+    @kernel
+    def throws_down(self, mode: int, state: Vector) -> bool:
+        """Whether a corner that is at its rigid base, and does not bear, comes down."""
+        for k in range(self.body_count):
+            part, standing = self.on_base(k), self.part_mode(mode, k)
+            line = part.body.base_line_at(self.standing_state(k, standing, state))
+            for side in range(2):
+                gap, speed = line.left, line.left_speed
+                if side == 1:
+                    gap, speed = line.right, line.right_speed
+                bears = not self.is_rigid(k) or part.base.is_held(standing.contact, side == 0)
+                if not bears and gap < self.least_rise(k) and speed < 0.0:
+                    return True
+        return False
+
     @inlined
     def least_rise(self, k: int) -> float:
         """Give the height to which a corner must rise to count as one that has left."""

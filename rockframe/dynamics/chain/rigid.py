@@ -29,10 +29,16 @@ from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING, REENGAGE, corner_contact
-from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
+from rockframe.dynamics.protocol import (
+    HELD_PLACE,
+    IMPACT_LOSS,
+    LAST_EVENT,
+    REPINNING_LOSS,
+    Ground,
+)
 from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 from rockframe.dynamics.sliding import blend
-from rockframe.dynamics.switching import lift_by_slip
+from rockframe.dynamics.switching import has_same_hold, lift_by_slip
 
 # memory, behind the held places and the body of the last event
 ADMISSIBLE: Final = 1  # sets of corners that might have borne after the last event
@@ -150,12 +156,16 @@ class RigidChain(RigidCorners):
             new = self.switch_corner(k, left, mode, state, ground, memory)
         else:
             self.scale_impulses(0.0)
-            new = mode
             if which in (REENGAGE, CORNER_GUARDS + REENGAGE):
-                new = self.part_where_pulled(k, left, mode, state, ground, memory)
-            new = self.switch_on_base(new, guard, state, ground, memory)
+                new = self.catch_up(mode, guard, state, ground, memory)
+            else:
+                new = self.switch_on_base(mode, guard, state, ground, memory)
+            if memory[LAST_EVENT] != IMPACT:
+                return new
             # a change of a held point is the rule's, and no blow: contacts stay as they are
-            if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew():
+            if not self.must_meet_anew():
+                if self.sets_down(k, mode, new):
+                    self.stay_if_small(k, left, new, state, ground, memory)
                 return new
             new = self.meet_anew(new, state, ground, memory)
             self.stay_if_small(k, left, new, state, ground, memory)
@@ -203,14 +213,51 @@ class RigidChain(RigidCorners):
 
         Speeds do not change then: it does as long as its pad presses less and less.
         """
-        part, contact = self.on_base(k), self.part_mode(mode, k).contact
+        contact = self.part_mode(mode, k).contact
         for side in range(2):
             if not self.is_rigid(k) and corner_contact(contact, side == 0) == LEAVING:
-                rises = self.end_accelerations(k, mode, state, ground)
-                line = part.body.base_line_at(self.state_of(k, state))
-                line = accelerated(line, rises[0], rises[1])
-                return not part.base.will_press(side == 0, line, ())
+                return self.presses_less(k, side == 0, mode, state, ground)
         return False
+
+    @kernel
+    def presses_less(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> bool:
+        """Whether the force of a base that gives way on an end does not rise."""
+        part, rises = self.on_base(k), self.end_accelerations(k, mode, state, ground)
+        line = part.body.base_line_at(self.state_of(k, state))
+        return not part.base.will_press(left, accelerated(line, rises[0], rises[1]), ())
+
+    @inlined
+    def sets_down(self, k: int, mode: int, new: int) -> bool:
+        """Whether a body has come down on its other end too, and is held at another point."""
+        part, was, now = self.on_base(k), self.part_mode(mode, k), self.part_mode(new, k)
+        return not part.flies(was.contact) and not has_same_hold(part, was, now)
+
+    @kernel
+    def catch_up(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Let a base catch up with an end; give the new mode.
+
+        Where a blow elsewhere has slowed down one that rises, its base presses it, but less and
+        less. If the re-pinning would let it go at once, and throw a corner down that is at its
+        rigid base, it is not held: it waits to be let go.
+        """
+        k, left = guard // GUARDS, guard % GUARDS < CORNER_GUARDS
+        part, was = self.on_base(k), self.part_mode(mode, k)
+        waits = part.base.waiting(was.contact, left)
+        holds = part.flies(was.contact) or waits == was.contact
+        if holds or not self.presses_less(k, left, mode, state, ground):
+            new = self.part_where_pulled(k, left, mode, state, ground, memory)
+            return self.switch_on_base(new, guard, state, ground, memory)
+        before, lost, place = (
+            self.velocities(state), memory[REPINNING_LOSS], memory[HELD_PLACE + k],
+        )  # fmt: skip
+        new = self.switch_on_base(mode, guard, state, ground, memory)
+        contact = self.part_mode(new, k).contact
+        if contact != part.base.unpressed(contact, left) or not self.throws_down(new, state):
+            return new
+        self.blend_velocities(before, 0.0, state)
+        memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
+        memory[LAST_EVENT] = SILENT
+        return self.with_part(mode, k, Mode(waits, was.pivot, was.slides))
 
     @kernel
     def part_where_pulled(
