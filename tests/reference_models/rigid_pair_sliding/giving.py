@@ -143,6 +143,10 @@ class GivingMoving(Moving):
             self.pair, self.frictions, place, speed, touching, self.giving, self.rule
         )
 
+    def power(self, touch, speed) -> float:
+        """Give the power of springs and dashpots."""
+        return float(touch.load @ speed)
+
     def tidied(self, state):
         """Give a state without what steps add to it by rounding."""
         pattern, self.pattern = self.pattern, self.bare(self.pattern)
@@ -172,6 +176,20 @@ class GivingMoving(Moving):
                 slow = 1e-13 * (1.0 + float(np.abs(self.speed).max()))
                 slips[key] = int(math.copysign(1, rate)) if abs(rate) > slow else 0
         super().take(self.with_points(pattern, slips))
+
+    def hit(self, key, end):
+        """Let an end close by an impact, after which pads may press, or let go, at once."""
+        super().hit(key, end)
+        for base in self.giving.values():
+            for side, contact in base.contact.items():
+                if contact == "leaving":
+                    base.contact[side] = "relaxing"
+        for _ in range(4):
+            guards = self.guards(self.now, self.state).items()
+            fallen = [name for name, value in guards if name[0] == "pad" and value < -1e-12]
+            if not fallen:
+                break
+            self.pad(fallen[0][1], *fallen[0][2])
 
     def pad(self, key, what, side):
         """Let an end on a pad or bed leave, land, or change how it presses."""
