@@ -95,19 +95,16 @@ class SlippingRigidChain(TriedSlips):
         """
         for k in range(self.body_count):
             part, now = self.on_base(k), self.part_mode(mode, k)
-            if not self.is_slippery(k) or part.flies(now.contact):
-                continue
             line, contact = part.body.base_line_at(self.state_of(k, state)), now.contact
-            if part.base.presses(contact, True, line, ()) or part.base.presses(
-                contact, False, line, ()
-            ):
-                rises = self.end_accelerations(k, mode, state, ground)
-                line = accelerated(line, rises[0], rises[1])
-                for side in range(2):
-                    pressed = part.base.presses(contact, side == 0, line, ())
-                    if pressed and part.base.will_press(side == 0, line, ()):
-                        contact = part.base.waiting(contact, side == 0)
-                mode = self.with_part(mode, k, Mode(contact, now.pivot, now.slides))
+            waits = self.is_slippery(k) and not part.flies(contact)
+            for side in range(2):
+                left = side == 0
+                if waits and part.base.presses(contact, left, line, ()):
+                    rises = self.end_accelerations(k, mode, state, ground)
+                    line = accelerated(line, rises[0], rises[1])
+                    if part.base.will_press(left, line, ()):
+                        contact = part.base.waiting(contact, left)
+            mode = self.with_part(mode, k, Mode(contact, now.pivot, now.slides))
         return mode
 
     @kernel
@@ -116,7 +113,7 @@ class SlippingRigidChain(TriedSlips):
     ) -> int:
         """Hold bodies again that an impact moves but so far along bases that give way.
 
-        A slip below all that counts ends by an impulse of friction; bounces may end with it.
+        A slip below all that counts ends at once, with all that it does; bounces may end with it.
         """
         new, n, slipping = mode, self.coordinates(), self.velocity_room()
         for k in range(self.body_count):
@@ -130,6 +127,8 @@ class SlippingRigidChain(TriedSlips):
                 for i in range(n):
                     slipping[i] = slope[i]
                 had, time = self.energies(new, state).kinetic, abs(rate) / slows
+                state[self.horizontal_of(k)] += 0.5 * rate * time  # as far as it comes
+                memory[self.kept(k) + OFFSET] += 0.5 * rate * time
                 new = self.with_slip(k, 0.0, new, state, memory)
                 slope = self.accelerate(new, state, ground)
                 for i in range(n):  # what the slip adds to velocities before it ends

@@ -181,8 +181,8 @@ class GivingMoving(Moving):
         """Let an end close by an impact, after which pads may press, or let go, at once."""
         super().hit(key, end)
         for base in self.giving.values():
-            for side, contact in base.contact.items():
-                if contact == "leaving":
+            for side, now in base.contact.items():
+                if now == "leaving":
                     base.contact[side] = "relaxing"
         for _ in range(4):
             guards = self.guards(self.now, self.state).items()
