@@ -191,6 +191,25 @@ class GivingMoving(Moving):
                 break
             self.pad(fallen[0][1], *fallen[0][2])
 
+    def _rest(self):
+        """Let small bounces end, also such as let a base go and hold it in turn."""
+        super()._rest()
+        rates = {"ground": self.speed[2], "joint": self.speed[5] - self.speed[2]}
+        (rigid,) = set(INTERFACES) - set(self.giving)
+        (key,) = self.giving
+        bears = self.pattern[INTERFACES.index(rigid)].ends
+        bearing = self.pattern[INTERFACES.index(key)]
+        if len(bears) != 1 or abs(rates[rigid]) > self.slow or not bearing.slip:
+            return
+        touch = self.touch(self.place, self.speed)
+        if abs(touch.along(key, HELD, self.speed, False)) > self.slow * self.pair.lower.below:
+            return
+        before = self.speed.copy()
+        self.pattern = self.pattern._replace(**{key: bearing._replace(slip=0)})
+        self.state[6:12] = self.projected(self.pattern, self.place, before)
+        self.lost += 0.5 * float(self.pair.masses @ (before**2 - self.speed**2))
+        super()._rest()
+
     def pad(self, key, what, side):
         """Let an end on a pad or bed leave, land, or change how it presses."""
         base, before = self.giving[key], self.pattern
