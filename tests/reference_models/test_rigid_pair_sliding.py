@@ -8,8 +8,9 @@ from reference_models.rigid_pair_sliding.drawing import draw, draw_giving
 
 pytestmark = pytest.mark.reference_models
 
-# on pads and on beds, below and above the rigid base
-ON_SPRINGS = (2, 6, 8)
+# on pads and on beds, below and above the rigid base; in 199 a corner that slips parts into a
+# flight, in 283 one parts as the held point below changes
+ON_SPRINGS = (2, 6, 8, 199, 283)
 
 
 @pytest.mark.skipif(not have_records(), reason="no recorded motions")

@@ -16,6 +16,7 @@ from rockframe.dynamics.chain.impact import (
     NEARLY_ZERO,
     NOISE,
     RIGHT_ONLY,
+    ROUNDING,
     attempt,
     bearing_corners,
     write_corners,
@@ -345,8 +346,9 @@ class RigidChain(RigidCorners):
         What holds bodies along their bases makes both impossible.
         """
         rises = self.end_accelerations(k, new, state, ground)
-        if rises[0 if left else 1] >= 0.0:
+        if rises[0 if left else 1] >= -ROUNDING * self.number(k, at.GRAVITY):
             return new
+        self.forget_slips(mode, False)  # what slips goes on
         corners, pulled = self.bearing(mode), self.pulled(new)
         held = self.with_bearing(new, corners, pulled | corners & ~self.bearing(new))
         self.write_contacts(new, state, memory)

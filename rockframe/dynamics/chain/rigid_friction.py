@@ -8,6 +8,7 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.body import accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import PULLED
 from rockframe.dynamics.chain.impact import JAMMED, Found, bearing_corners
@@ -17,7 +18,7 @@ from rockframe.dynamics.chain.rows import GUARDS, PLACES
 from rockframe.dynamics.chain.slips import OFFSET, ROUNDING, STATIC
 from rockframe.dynamics.chain.tried_slips import TriedSlips
 from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
-from rockframe.dynamics.on_base import HOLD, SLIP
+from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
 from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
@@ -82,8 +83,30 @@ class SlippingRigidChain(TriedSlips):
             new = self.switch_contacts(new, guard, state, ground, memory)
             new = self.go_on(new, state, memory)
             new = self.hold_as_far(new, state, ground, memory)
+        if memory[LAST_EVENT] not in (IMPACT, REST):
+            new = self.let_wait(new, state, ground)
         self.end_slips(new, state, memory)
         return new
+
+    @kernel
+    def let_wait(self, mode: int, state: Vector, ground: Ground) -> int:
+        """Let ends wait that have just left, and that a change of forces would send back at once.
+
+        As they leave, the held point changes, and with it slips and the corners that bear.
+        """
+        for k in range(self.body_count):
+            part, now = self.on_base(k), self.part_mode(mode, k)
+            line, contact = part.body.base_line_at(self.state_of(k, state)), now.contact
+            waits = self.is_slippery(k) and not part.flies(contact)
+            for side in range(2):
+                left = side == 0
+                if waits and part.base.presses(contact, left, line, ()):
+                    rises = self.end_accelerations(k, mode, state, ground)
+                    line = accelerated(line, rises[0], rises[1])
+                    if part.base.will_press(left, line, ()):
+                        contact = part.base.waiting(contact, left)
+            mode = self.with_part(mode, k, Mode(contact, now.pivot, now.slides))
+        return mode
 
     @kernel
     def stop_creep(
@@ -91,22 +114,28 @@ class SlippingRigidChain(TriedSlips):
     ) -> int:
         """Hold bodies again that an impact moves but so far along bases that give way.
 
-        A slip below all that counts ends by an impulse of friction; bounces may end with it.
+        A slip below all that counts ends at once, with all that it does; bounces may end with it.
         """
-        new = mode
+        new, n, slipping = mode, self.coordinates(), self.velocity_room()
         for k in range(self.body_count):
             was, now, body = self.part_mode(before, k), self.part_mode(new, k), self.on_base(k).body
             if not self.is_slippery(k) or was.slides or not now.slides:
                 continue
-            self.accelerate(new, state, ground)
+            slope = self.accelerate(new, state, ground)
             rate, _ = self.slip_rate(k, new, state)
             slows = -self.sense(new, k) * self.slips_on(k, now.pivot, False, state)
             if rate * rate < 2.0 * slows * REST_AMPLITUDE * body.size():
-                had = self.energies(new, state).kinetic
-                _, slides = self.answers(k, 0.0, 0.0, 1.0, new, state)
-                self.answers(k, 0.0, 0.0, -rate / slides, new, state)
-                self.take_answer(state)
+                for i in range(n):
+                    slipping[i] = slope[i]
+                had, time = self.energies(new, state).kinetic, abs(rate) / slows
+                state[self.horizontal_of(k)] += 0.5 * rate * time  # as far as it comes
+                memory[self.kept(k) + OFFSET] += 0.5 * rate * time
                 new = self.with_slip(k, 0.0, new, state, memory)
+                slope = self.accelerate(new, state, ground)
+                for i in range(n):  # what the slip adds to velocities before it ends
+                    state[n + i] += (slipping[i] - slope[i]) * time
+                self.end_slip(k, new, state)
+                self.write_contacts(new, state, memory)
                 memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
         return new if new == mode else self.rest_where_small(new, state, ground, memory)
 
@@ -159,6 +188,7 @@ class SlippingRigidChain(TriedSlips):
             amiss = False
             for k in range(self.body_count):
                 amiss |= self.is_amiss(k, new, state)
+                self.places()[k * PLACES + at.STARTS] = 0.0  # other corners may let it be held
             if not amiss:
                 break
             new = self.rearrange(new, state, ground, memory)
@@ -221,7 +251,9 @@ class SlippingRigidChain(TriedSlips):
             closed = before | self.resting_corners(self.with_bearing(flying, before, 0), state)
         if found.admissible == 0 and found.held == 0:
             self.note_slips(mode)
+            self.accelerate(mode, state, ground)
             for k in range(self.body_count):
+                self.is_amiss(k, mode, state)
                 starts = self.places()[k * PLACES + at.STARTS]
                 if starts != 0.0:
                     self.places()[k * PLACES + at.SLIPS] = starts

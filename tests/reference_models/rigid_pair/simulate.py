@@ -44,12 +44,20 @@ def first_event(guards, solver, dense, armed, slowness, gone=1e-13):
         if fired and i == 0:
             return (solver.t_old, fired[0]), False
         if fired:
-            found = [
-                (brentq(lambda t, n=n: guards(t, dense(t))[n], looks[i - 1], looks[i],
-                        xtol=1e-15, rtol=1e-15), n)
-                for n in fired
-            ]  # fmt: skip
-            return min(found), False
+            first = looks[i], ""
+            while fired:  # others may fall before the first of these, and rise again
+                found = [
+                    (brentq(lambda t, n=n: guards(t, dense(t))[n], looks[i - 1], first[0],
+                            xtol=1e-15, rtol=1e-15), n)
+                    for n in fired
+                ]  # fmt: skip
+                first = min(found)
+                values = guards(first[0], dense(first[0]))
+                fired = [
+                    name for name, value in values.items()
+                    if value < -1e-12 and armed.get(name) and name != first[1]
+                ]  # fmt: skip
+            return first, False
     return None, False
 
 

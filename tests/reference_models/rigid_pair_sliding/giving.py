@@ -143,6 +143,10 @@ class GivingMoving(Moving):
             self.pair, self.frictions, place, speed, touching, self.giving, self.rule
         )
 
+    def power(self, touch, speed) -> float:
+        """Give the power of springs and dashpots."""
+        return float(touch.load @ speed)
+
     def tidied(self, state):
         """Give a state without what steps add to it by rounding."""
         pattern, self.pattern = self.pattern, self.bare(self.pattern)
@@ -172,6 +176,39 @@ class GivingMoving(Moving):
                 slow = 1e-13 * (1.0 + float(np.abs(self.speed).max()))
                 slips[key] = int(math.copysign(1, rate)) if abs(rate) > slow else 0
         super().take(self.with_points(pattern, slips))
+
+    def hit(self, key, end):
+        """Let an end close by an impact, after which pads may press, or let go, at once."""
+        super().hit(key, end)
+        for base in self.giving.values():
+            for side, now in base.contact.items():
+                if now == "leaving":
+                    base.contact[side] = "relaxing"
+        for _ in range(4):
+            guards = self.guards(self.now, self.state).items()
+            fallen = [name for name, value in guards if name[0] == "pad" and value < -1e-12]
+            if not fallen:
+                break
+            self.pad(fallen[0][1], *fallen[0][2])
+
+    def _rest(self):
+        """Let small bounces end, also such as let a base go and hold it in turn."""
+        super()._rest()
+        rates = {"ground": self.speed[2], "joint": self.speed[5] - self.speed[2]}
+        (rigid,) = set(INTERFACES) - set(self.giving)
+        (key,) = self.giving
+        bears = self.pattern[INTERFACES.index(rigid)].ends
+        bearing = self.pattern[INTERFACES.index(key)]
+        if len(bears) != 1 or abs(rates[rigid]) > self.slow or not bearing.slip:
+            return
+        touch = self.touch(self.place, self.speed)
+        if abs(touch.along(key, HELD, self.speed, False)) > self.slow * self.pair.lower.below:
+            return
+        before = self.speed.copy()
+        self.pattern = self.pattern._replace(**{key: bearing._replace(slip=0)})
+        self.state[6:12] = self.projected(self.pattern, self.place, before)
+        self.lost += 0.5 * float(self.pair.masses @ (before**2 - self.speed**2))
+        super()._rest()
 
     def pad(self, key, what, side):
         """Let an end on a pad or bed leave, land, or change how it presses."""

@@ -97,7 +97,12 @@ class Moving:
         masses, (ax, ay) = self.pair.masses, (self.piece.across(t), self.piece.up(t))
         work = -masses[0] * (ax * speed[0] + ay * speed[1])
         work -= masses[3] * (ax * speed[3] + ay * speed[4])
+        work += self.power(touch, speed)
         return np.concatenate([speed, answer.motion, slips, [work], burnt])
+
+    def power(self, touch: Touch, speed) -> float:
+        """Give the power of bases that give way: there are none."""
+        return 0.0
 
     def tidied(self, state):
         """Give a state without what steps add to it by rounding."""
