@@ -171,9 +171,9 @@ class SlippingBodies(Chain):
         scale = 1.0 / math.sqrt(law.gravity * law.size())
         change = slope[self.horizontal_of(k)] - reach.bend * rate * rate
         change -= reach.rate * slope[BEFORE_HORIZONTAL * k + ROTATION]
-        sway, turning = body.horizontal_velocity, reach.rate * rate
+        sway, rotating = body.horizontal_velocity, reach.rate * rate
         # a slip that starts, or is hardly one, is not stopped by rounding
-        slip = scale * (sense * (sway - turning) + NOISE * (abs(sway) + abs(turning)))
+        slip = scale * (sense * (sway - rotating) + NOISE * (abs(sway) + abs(rotating)))
         return SlidingGuards(1.0, slip, scale * (sense * change + ROUNDING * law.gravity))
 
     @kernel
