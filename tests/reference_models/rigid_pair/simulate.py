@@ -44,7 +44,7 @@ def first_event(guards, solver, dense, armed, slowness, gone=1e-13):
         if fired and i == 0:
             return (solver.t_old, fired[0]), False
         if fired:
-            first = looks[i], ""
+            first, began = (looks[i], ""), guards(looks[i - 1], dense(looks[i - 1]))
             while fired:  # others may fall before the first of these, and rise again
                 found = [
                     (brentq(lambda t, n=n: guards(t, dense(t))[n], looks[i - 1], first[0],
@@ -55,7 +55,7 @@ def first_event(guards, solver, dense, armed, slowness, gone=1e-13):
                 values = guards(first[0], dense(first[0]))
                 fired = [
                     name for name, value in values.items()
-                    if value < -1e-12 and armed.get(name) and name != first[1]
+                    if value < -1e-12 and began[name] > 0.0 and name != first[1]
                 ]  # fmt: skip
             return first, False
     return None, False
