@@ -19,6 +19,10 @@ PIVOT_CENTRE: Final = 0
 PIVOT_RIGHT: Final = 1
 PIVOT_LEFT: Final = 2
 
+REST_AMPLITUDE: Final = 1e-10
+"""Share of theta below which a rebound is taken for rest. It is far below what any
+accuracy setting resolves, and ends the endless series of ever smaller impacts."""
+
 
 @kernel
 def leading_pivot(rotation: float, tendency: float) -> int:
@@ -198,3 +202,13 @@ class Body(NamedTuple):
     def size(self) -> float:
         """Give half the width and the height together, a length that levers are measured by."""
         return 0.5 * (self.left + self.right) + self.height
+
+    @inlined
+    def least_rise(self) -> float:
+        """Give the height to which an end must rise to count as one that has left."""
+        return REST_AMPLITUDE * self.angle * self.size()
+
+    @inlined
+    def returns_at_once(self, speed: float, fall: float) -> bool:
+        """Whether an end that rises so fast comes back before it counts as one that has left."""
+        return fall > 0.0 and speed * speed < 2.0 * fall * self.least_rise()

@@ -12,6 +12,7 @@ import numpy as np
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.base import Guards
+from rockframe.dynamics.body import REST_AMPLITUDE
 from rockframe.dynamics.events import FULL, IMPACT, LEFT, REST, RIGHT, UPLIFT
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -40,10 +41,6 @@ IMPACT_GUARD: Final = 0
 UPLIFT_ON_RIGHT: Final = 1
 UPLIFT_ON_LEFT: Final = 2
 GUARDS: Final = 3
-
-REST_AMPLITUDE: Final = 1e-10
-"""Share of theta below which a rebound is taken for rest. It is far below what any
-accuracy setting resolves, and ends the endless series of ever smaller impacts."""
 
 COLUMNS: Final = (
     *BODY_COLUMNS,

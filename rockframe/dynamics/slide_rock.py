@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics import events
+from rockframe.dynamics.body import REST_AMPLITUDE
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.dynamics.events import IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.protocol import IMPACT_LOSS, LAST_EVENT, Ground
-from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 from rockframe.dynamics.slide_motion import (
     FLIES_LEFT,
     FLIES_RIGHT,
@@ -302,10 +302,25 @@ class SlideSwitches(SlideMotion):
             self.struck(bears, state, (across, up), 1.0)
             touched = self.with_contact(mode, SLIPS * bears)
             new = self.leaning(bears, state, self.loads(touched, state, ground), False)
-            if state[SIZE + RISE] > 0.0:
+            if state[SIZE + RISE] > 0.0 and not self.stays_if_small(bears, touched, state, ground):
                 new = SLIPS * (bears + FLIES_RIGHT - ON_RIGHT)
         memory[IMPACT_LOSS] += before - self.kinetic_energy(new, state)
         return self.with_contact(mode, new)
+
+    @kernel
+    def stays_if_small(self, bears: int, mode: int, state: Vector, ground: Ground) -> bool:
+        """Stop a corner that the impulse that holds it throws up, only to come back at once.
+
+        It does where the ground holds whatever that takes, and the corner falls where it is free.
+        """
+        rise = state[SIZE + RISE]
+        fall = -self.free_rise(bears, state, self.loads(mode, state, ground))
+        if fall <= 0.0 or rise * rise > 2.0 * fall * REST_AMPLITUDE * (self.left + self.right):
+            return False
+        beside, above = self.reach(self.side(bears), state[ROTATION])
+        state[SIZE + ROTATION] -= beside * rise / (self.inertia + beside * beside + above * above)
+        state[SIZE + RISE] = 0.0
+        return True
 
 
 class SlideNumbers(NamedTuple):

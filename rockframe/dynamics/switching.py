@@ -183,6 +183,35 @@ def repin_landing(
 
 
 @kernel
+def comes_back(
+    system: Bodies, part: OnBase, k: int, left: bool, speed: float, mode: int, state: Vector,
+    ground: Ground,
+) -> bool:  # fmt: skip
+    """Whether an end that rises so fast comes back before its rise can be told."""
+    rises = system.end_accelerations(k, mode, state, ground)
+    return part.body.returns_at_once(speed, -(rises[0] if left else rises[1]))
+
+
+@kernel
+def stay_if_small(
+    system: Bodies, part: OnBase, k: int, left: bool, mode: int, state: Vector, ground: Ground,
+    memory: Vector,
+) -> None:  # fmt: skip
+    """Stop an end that has landed, and that leaves only to come back at once."""
+    line = part.body.base_line_at(system.state_of(k, state))
+    speed, lever = line.left_speed, line.left_lever
+    if not left:
+        speed, lever = line.right_speed, line.right_lever
+    if speed <= 0.0 or not comes_back(system, part, k, left, speed, mode, state, ground):
+        return
+    answer = system.response(k, mode, 1.0, lever, 0.0, state)
+    impulse = -speed / (answer.vertical + lever * answer.rotation)
+    answer = system.response(k, mode, impulse, impulse * lever, 0.0, state)
+    system.respond(k, mode, answer, state)
+    memory[IMPACT_LOSS] -= 0.5 * impulse * speed
+
+
+@kernel
 def after_separation(
     system: Bodies, part: OnBase, k: int, left: bool, mode: int, new: int, state: Vector,
     ground: Ground, memory: Vector,
@@ -206,7 +235,10 @@ def after_separation(
     own = part.base.read(state, system.own_place(k))
     presses = part.base.presses(now.contact, left, line, own)
     speed, noise = end_speed(part, left, system.state_of(k, state))
-    if repins and not flies and speed <= noise:
+    rises = not repins or flies or speed > noise
+    if rises and repins and not flies:
+        rises = not comes_back(system, part, k, left, speed, new, state, ground)
+    if not rises:
         system.blend_velocities(before, 0.0, state)
         memory[REPINNING_LOSS], memory[HELD_PLACE + k] = lost, place
         if not presses:
@@ -263,6 +295,7 @@ def switch_end(
         return system.with_part(new, k, Mode(contact, now.pivot, False))
     if found.event == IMPACT:
         strike(system, part, k, new, left or both, both or not left, state, memory)
+        stay_if_small(system, part, k, left, new, state, ground, memory)
     return new
 
 

@@ -385,6 +385,18 @@ def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
         pytest.param(8453, marks=pytest.mark.long),
         pytest.param(8031, marks=pytest.mark.long),
         pytest.param(5943, marks=pytest.mark.long),
+        pytest.param(18451, marks=pytest.mark.long),
+        14161,  # one of a squat body out of flight
+        # what stops a slip throws the corner up, ever less
+        pytest.param(18363, marks=pytest.mark.long),
+        # a corner that pulls, and without which the other one of its body falls
+        pytest.param(19677, marks=pytest.mark.long),
+        pytest.param(19797, marks=pytest.mark.long),
+        # bodies that fall with their ground from the first instant
+        pytest.param(13059, marks=pytest.mark.long),
+        pytest.param(14323, marks=pytest.mark.long),
+        # one that bounces under a tie a million times stiffer than its weight
+        pytest.param(15785, marks=pytest.mark.long),
     ],
 )
 def test_changes_of_contact_beside_ties_come_to_an_end(number):

@@ -21,7 +21,6 @@ from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, Ground, Slope
-from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 
 NONE: Final = -1.0
 """In place of the number of a constraint."""
@@ -335,7 +334,7 @@ class RigidCorners(Chain):
         level, speed = line.left, line.left_speed
         if not left:
             level, speed = line.right, line.right_speed
-        near = level < self.least_rise(k) and self.returns_at_once(k, speed, fall)
+        near = level < part.body.least_rise() and part.body.returns_at_once(speed, fall)
         return near and not part.base.is_held(standing.contact, left)
 
     @kernel
@@ -349,20 +348,9 @@ class RigidCorners(Chain):
                 if side == 1:
                     gap, speed = line.right, line.right_speed
                 bears = not self.is_rigid(k) or part.base.is_held(standing.contact, side == 0)
-                if not bears and gap < self.least_rise(k) and speed < 0.0:
+                if not bears and gap < part.body.least_rise() and speed < 0.0:
                     return True
         return False
-
-    @inlined
-    def least_rise(self, k: int) -> float:
-        """Give the height to which a corner must rise to count as one that has left."""
-        law = self.on_base(k).body
-        return REST_AMPLITUDE * law.angle * law.size()
-
-    @inlined
-    def returns_at_once(self, k: int, speed: float, fall: float) -> bool:
-        """Whether a corner that rises so fast comes back before it counts as one that has left."""
-        return fall > 0.0 and speed * speed < 2.0 * fall * self.least_rise(k)
 
     @inlined
     def free_lowest(self, mode: int, state: Vector) -> None:
@@ -400,15 +388,16 @@ class RigidCorners(Chain):
             i = GUARDS * k + CORNER_GUARDS * side
             if part.base.is_held(standing.contact, side == 0):
                 values[i] = self.corner_force(k, side == 0) / force_size
-            elif flies:
+                continue
+            if flies:
                 size = part.body.size()
                 values[i] = (line.left if side == 0 else line.right) / size
                 changes[i] = (line.left_speed if side == 0 else line.right_speed) / size
             else:
                 scale = (1.0 if side == 0 else -1.0) / part.body.angle
                 values[i], changes[i] = scale * body.rotation, scale * body.angular_velocity
-            if resting >> side & 1 != 0:  # a rate that is rounding does not close a corner
-                changes[i] = 0.0
+            if resting >> side & 1 != 0:  # what is rounding does not close a corner
+                values[i], changes[i] = abs(values[i]), 0.0
 
     @inlined
     def write_idle(self, k: int, values: Vector, changes: Vector) -> None:

@@ -7,7 +7,7 @@ from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
-from rockframe.dynamics.body import accelerated
+from rockframe.dynamics.body import REST_AMPLITUDE, accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import OPENING, PULLED, RigidCorners
 from rockframe.dynamics.chain.impact import (
@@ -37,9 +37,8 @@ from rockframe.dynamics.protocol import (
     REPINNING_LOSS,
     Ground,
 )
-from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
 from rockframe.dynamics.sliding import blend
-from rockframe.dynamics.switching import has_same_hold, lift_by_slip
+from rockframe.dynamics.switching import comes_back, end_speed, lift_by_slip, stay_if_small
 
 # memory, behind the held places and the body of the last event
 ADMISSIBLE: Final = 1  # sets of corners that might have borne after the last event
@@ -161,15 +160,11 @@ class RigidChain(RigidCorners):
                 new = self.catch_up(mode, guard, state, ground, memory)
             else:
                 new = self.switch_on_base(mode, guard, state, ground, memory)
-            if memory[LAST_EVENT] != IMPACT:
-                return new
             # a change of a held point is the rule's, and no blow: contacts stay as they are
-            if not self.must_meet_anew():
-                if self.sets_down(k, mode, new):
-                    self.stay_if_small(k, left, new, state, ground, memory)
+            if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew():
                 return new
             new = self.meet_anew(new, state, ground, memory)
-            self.stay_if_small(k, left, new, state, ground, memory)
+            stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
         struck = memory[LAST_EVENT] in (IMPACT, REST)
         for other in range(count):
             if struck or not self.waits_on(other, new, state, ground):
@@ -226,12 +221,6 @@ class RigidChain(RigidCorners):
         part, rises = self.on_base(k), self.end_accelerations(k, mode, state, ground)
         line = part.body.base_line_at(self.state_of(k, state))
         return not part.base.will_press(left, accelerated(line, rises[0], rises[1]), ())
-
-    @inlined
-    def sets_down(self, k: int, mode: int, new: int) -> bool:
-        """Whether a body has come down on its other end too, and is held at another point."""
-        part, was, now = self.on_base(k), self.part_mode(mode, k), self.part_mode(new, k)
-        return not part.flies(was.contact) and not has_same_hold(part, was, now)
 
     @kernel
     def catch_up(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
@@ -292,33 +281,6 @@ class RigidChain(RigidCorners):
         return parted
 
     @kernel
-    def comes_back(
-        self, k: int, left: bool, mode: int, state: Vector, ground: Ground
-    ) -> tuple[float, bool]:
-        """Give the speed of an end, and whether it leaves only to come back at once."""
-        part = self.on_base(k)
-        line = part.body.base_line_at(self.state_of(k, state))
-        speed = line.left_speed if left else line.right_speed
-        rises = self.end_accelerations(k, mode, state, ground)
-        return speed, self.returns_at_once(k, speed, -(rises[0] if left else rises[1]))
-
-    @kernel
-    def stay_if_small(
-        self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
-    ) -> None:
-        """Stop an end that has landed, and that leaves only to come back at once."""
-        speed, small = self.comes_back(k, left, mode, state, ground)
-        if speed <= 0.0 or not small:
-            return
-        line = self.on_base(k).body.base_line_at(self.state_of(k, state))
-        lever = line.left_lever if left else line.right_lever
-        answer = self.response(k, mode, 1.0, lever, 0.0, state)
-        impulse = -speed / (answer.vertical + lever * answer.rotation)
-        answer = self.response(k, mode, impulse, impulse * lever, 0.0, state)
-        self.respond(k, mode, answer, state)
-        memory[IMPACT_LOSS] -= 0.5 * impulse * speed
-
-    @kernel
     def hold_if_small(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
@@ -326,8 +288,8 @@ class RigidChain(RigidCorners):
         part, corner = self.on_base(k), (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
         if not part.flies(self.part_mode(mode, k).contact):
             return mode
-        _, small = self.comes_back(k, left, mode, state, ground)
-        if not small:
+        speed, _ = end_speed(part, left, self.state_of(k, state))
+        if not comes_back(self, part, k, left, speed, mode, state, ground):
             return mode
         closed, pulled = self.bearing(mode) | corner, self.pulled(mode)
         held = self.let_stand(closed, pulled, mode, state, memory)
@@ -343,10 +305,15 @@ class RigidChain(RigidCorners):
     ) -> int:  # fmt: skip
         """Hold a corner that has left since it would have to pull, but that falls where it is free.
 
-        What holds bodies along their bases makes both impossible.
+        Or where the other one of its body does, that has hardly risen. What holds bodies along
+        their bases makes all of it impossible.
         """
-        rises = self.end_accelerations(k, new, state, ground)
-        if rises[0 if left else 1] >= -ROUNDING * self.number(k, at.GRAVITY):
+        rises, falls = self.end_accelerations(k, new, state, ground), False
+        for side in range(2):
+            fall = -rises[side]
+            if left == (side == 0) or self.is_near(k, side == 0, fall, new, state):
+                falls |= fall > ROUNDING * self.number(k, at.GRAVITY)
+        if not falls:
             return new
         self.forget_slips(mode, False)  # what slips goes on
         corners, pulled = self.bearing(mode), self.pulled(new)

@@ -8,7 +8,7 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.body import accelerated
+from rockframe.dynamics.body import REST_AMPLITUDE, accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import PULLED
 from rockframe.dynamics.chain.impact import JAMMED, Found, bearing_corners
@@ -21,7 +21,7 @@ from rockframe.dynamics.events import IMPACT, REST, SILENT, STICK
 from rockframe.dynamics.on_base import HOLD, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Ground
-from rockframe.dynamics.rigid_ground import REST_AMPLITUDE
+from rockframe.dynamics.switching import stay_if_small
 
 FRICTION_ALONE: Final = -1
 """In place of the corner that leaves: what friction does has changed."""
@@ -154,7 +154,8 @@ class SlippingRigidChain(TriedSlips):
         if memory[LAST_EVENT] == IMPACT:
             if self.must_meet_anew():
                 new = self.meet_anew(new, state, ground, memory)
-                self.stay_if_small(k, which < CORNER_GUARDS, new, state, ground, memory)
+                part, left = self.on_base(k), which < CORNER_GUARDS
+                stay_if_small(self, part, k, left, new, state, ground, memory)
             for other in range(self.body_count):
                 if not self.is_slippery(other):
                     new = self.disturb(other, new, state)
@@ -178,6 +179,7 @@ class SlippingRigidChain(TriedSlips):
         """Let slips go on from what they were, of points that may be others."""
         for k in range(self.body_count):
             memory[self.kept(k) + OFFSET] -= self.point_of(k, mode, state, memory)
+        self.keep_peaks(mode, state, memory)
 
     @kernel
     def hold_as_far(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
