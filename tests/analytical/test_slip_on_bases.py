@@ -31,6 +31,11 @@ def run(base, *, sign=1.0, accuracy="standard", **options):
     )
 
 
+def flags(found):
+    meanings = str(found.contact_state.attrs["flag_meanings"]).split()
+    return dict(zip(meanings, found.contact_state.attrs["flag_values"], strict=True))
+
+
 @BASES
 def test_without_friction_the_ground_moves_beneath_the_block(base):
     found = run(base.replace(friction=0.0))
@@ -42,6 +47,32 @@ def test_without_friction_the_ground_moves_beneath_the_block(base):
         found.slip.sel(time=1.0, method="nearest"), -place[-1], rtol=0.0, atol=1e-9
     )
     assert abs(found.rotation).max() < 1e-12
+
+
+@BASES
+@pytest.mark.parametrize("rule", ["contact-state", "leading-corner"])
+def test_what_flies_at_first_has_not_slipped(base, rule):
+    system = rf.System(BLOCK, base.replace(friction=0.3), restraint=rule)
+    above = rf.InitialState(rotation="0.1 rad", vertical_displacement="0.3 m")
+    found = system.simulate(motion(), initial=above, duration="0.3 s")
+    assert found.contact_state[0] == flags(found)["flight"]
+    assert found.slip[0] == pytest.approx(0.0, abs=1e-15)
+
+
+@BASES
+def test_what_flies_at_last_has_slipped_as_far_as_it_bore(base):
+    fast = np.arange(60) < 30
+    across, up = np.where(fast, 5.0, 0.0), np.where(fast, 0.0, -40.0)  # then the ground falls away
+    thrown = rf.GroundMotion.from_arrays(
+        (across, "m/s^2"), "0.01 s", vertical=(up, "m/s^2")
+    )  # fmt: skip
+    system = rf.System(BLOCK.replace(height="1 m"), base.replace(friction=0.3))
+    found = system.simulate(thrown, output_step="1 ms")
+    flies = (found.contact_state == flags(found)["flight"]).to_numpy()
+    slips = abs(found.slip).to_numpy()
+    assert flies[-1]
+    assert slips[-1] > 2.0 * slips[~flies].max()
+    assert found.peak_slip == pytest.approx(slips[~flies].max(), rel=0.01)
 
 
 @BASES

@@ -63,6 +63,7 @@ class SlippingChain(SlipperyBases):
             if which < 2 * CORNER_GUARDS and memory[LAST_EVENT] == SILENT:
                 return new
         memory[self.kept(k) + OFFSET] += point - self.point_of(k, new, state, memory)
+        self.keep_peaks(new, state, memory)
         new = self.go_on(new, state, memory)
         new = self.let_slip(k if slip == HOLD else -1, new, state, ground, memory)
         if slip in (HOLD, SLIP):

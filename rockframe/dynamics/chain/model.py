@@ -333,7 +333,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
     if isinstance(system, RestOnGround):
         system.keep_hold(mode, state, memory)
     if isinstance(system, SlippingBodies):
-        places = memory[HELD_PLACE : HELD_PLACE + count]
+        places = [system.point_of(k, mode, state, memory) for k in range(count)]
         memory = np.concatenate([memory, *([-place, 0.0, 0.0] for place in places)])
     if isinstance(system, ChainLinks):
         memory = np.append(memory, 0.0)

@@ -113,8 +113,10 @@ class SlippingBodies(Chain):
 
     @inlined
     def keep_peaks(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Remember how far the bodies have slipped, if that is farther than before."""
+        """Remember how far bodies that bear have slipped, if that is farther than before."""
         for k in range(self.body_count):
+            if self.on_base(k).flies(self.part_mode(mode, k).contact):
+                continue
             slip, first = self.slip_of(k, mode, state, memory), self.kept(k)
             memory[first + PEAK_LEFT] = max(memory[first + PEAK_LEFT], -slip)
             memory[first + PEAK_RIGHT] = max(memory[first + PEAK_RIGHT], slip)
@@ -239,13 +241,11 @@ class SlippingBodies(Chain):
 
     def slips(self, k: int, ending: Ending) -> tuple[float, float, float]:
         """Give the slip of a body at the end of a run, and the most to the left and right."""
-        mode, state, memory = ending.mode, ending.state, ending.memory
-        residual, kept = self.slip_of(k, mode, state, memory), memory[self.kept(k) :]
-        return (
-            residual,
-            max(float(kept[PEAK_LEFT]), -residual),
-            max(float(kept[PEAK_RIGHT]), residual),
-        )
+        mode, state, memory = ending.mode, ending.state, ending.memory.copy()
+        self.keep_peaks(mode, state, memory)
+        kept = memory[self.kept(k) :]
+        residual = self.slip_of(k, mode, state, memory)
+        return residual, float(kept[PEAK_LEFT]), float(kept[PEAK_RIGHT])
 
 
 def coefficients(frictions: Sequence[tuple[float, float, float]]) -> Vector:

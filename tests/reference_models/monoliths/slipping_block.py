@@ -403,7 +403,7 @@ class Block:
                 peak = max(peak, float(fit[2] - fit[1] ** 2 / (4.0 * fit[0])))
             peak = max(peak, float(np.abs(ran.y[2]).max()))
             t, z = float(ran.t[-1]), ran.y[:, -1].copy()
-            if ran.status == 1 or not self.flies():
+            if not self.flies():
                 peak_slip = max(peak_slip, abs(self.offset + self.place(z)))
             if ran.status == 1:
                 hit = next(k for k, times in enumerate(ran.t_events) if len(times))
@@ -415,6 +415,8 @@ class Block:
                     self.tie_ends(*names[hit][1:], z, self.ground(t, piece), t)
                 else:
                     self.fell(*names[hit], z, self.ground(t, piece), t)
+                if not self.flies():  # it may have landed
+                    peak_slip = max(peak_slip, abs(self.offset + self.place(z)))
                 turned = ties.turn_others(self.tied, self.seen_by_ties(z))
                 self.events += [(t, one) for one in turned]
             pieces += 1
