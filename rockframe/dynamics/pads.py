@@ -37,8 +37,10 @@ CONTACTS: Final = CORNER * CORNER
 
 # guards of a corner; those of its law's state stand behind them
 LEAVE: Final = 0  # the reaction of a touching corner; the gap of a free one
-REENGAGE: Final = 1  # a relaxing pad catches up with its corner; a leaving corner outruns its pad
-REVERSE: Final = 2  # a leaving corner stops rising; an engaging one is pressed
+# a relaxing pad catches up with its corner, a leaving corner outruns its pad, an engaging one is
+# pressed
+REENGAGE: Final = 1
+REVERSE: Final = 2  # a leaving corner stops rising
 CORNER_GUARDS: Final = 3
 
 LEVEL_ROUNDING: Final = 1e-12
@@ -224,7 +226,7 @@ class Pads(Base, PadNumbers):
         if corner == TOUCHING:
             leave, leave_rate = reaction, change
         elif corner == ENGAGING:  # until it is pressed, only its height can take it off again
-            reverse, reverse_rate = -reaction, -change
+            again, again_rate = -reaction, -change
         elif corner == CLEAR:
             leave, leave_rate = -leave, -leave_rate
         elif corner == RELAXING:  # the pad presses again at a positive force
@@ -281,7 +283,7 @@ class Pads(Base, PadNumbers):
             return EndEvent(self.with_corner(contact, left, CLEAR), SILENT, True)
         if corner == LEAVING and which == REENGAGE:
             return EndEvent(self.with_corner(contact, left, RELAXING), SILENT, False)
-        if corner == ENGAGING and which == REVERSE:
+        if corner == ENGAGING and which == REENGAGE:
             return EndEvent(self.with_corner(contact, left, TOUCHING), SILENT, False)
         was, other_speed = other, -self.corner(not left, line).speed
         event, crossed = REENGAGEMENT, False
