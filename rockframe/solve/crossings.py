@@ -6,12 +6,20 @@ cubic through value and rate.
 """
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 from rockframe.compiled import Vector, kernel
 from rockframe.solve.equations import BoundEquations
 from rockframe.solve.march import DIP_MARGIN, may_dip
 from rockframe.solve.workspace import Span, Workspace, ground_in
+
+
+class Crossing(NamedTuple):
+    """Where a guard falls through zero, as fractions of a step."""
+
+    guard: int  # -1 if none does
+    place: float
+    negative: float  # where it is negative
 
 
 @kernel
@@ -119,11 +127,11 @@ def earliest_crossing(
     span: Span,
     tolerance: Vector,
     w: Workspace,
-) -> tuple[int, float, float]:
-    """Give the guard that falls through zero first, where, and where it is negative then.
+) -> Crossing:
+    """Give the guard that falls through zero first.
 
-    Places are fractions of the step. Looks into the first dip of each guard that may have one,
-    however it begins, and at the step's end. Gives -1 if no guard crosses.
+    Looks into the first dip of each guard that may have one, however it begins, and at the
+    step's end.
     """
     found, place, negative = -1, 2.0, 1.0
     for i in range(len(tolerance)):
@@ -145,7 +153,7 @@ def earliest_crossing(
             root = _first_root(equations, i, end, mode, count, span, tolerance, w)
             if root < place:
                 found, place, negative = i, root, end
-    return found, place, negative
+    return Crossing(found, place, negative)
 
 
 @kernel

@@ -21,7 +21,7 @@ from rockframe.solve.bookkeeping import (
     record_event,
     store_outputs,
 )
-from rockframe.solve.crossings import earliest_crossing
+from rockframe.solve.crossings import Crossing, earliest_crossing
 from rockframe.solve.equations import (
     BoundEquations,
     KnownMode,
@@ -129,17 +129,49 @@ def step_to_event(
 ) -> tuple[float, int]:  # fmt: skip
     """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
 
-    The place is found on the dense solution, and corrected (Newton) on the Runge-Kutta solution
-    itself, kept by bisection between lengths at which the guard is positive and negative: of a
-    step that is long beside a damped vibration the one tells little of the other. So is the
-    guard that rises from zero and falls again from its first root, the start. A dip that the
-    Runge-Kutta solution does not have is an event where it comes closest.
+    The place is found on the dense solution, and corrected. What that may pass by, another guard
+    that has fallen before, is looked for in what is left of the step.
     """
-    crossed, place, negative = earliest_crossing(
+    found = earliest_crossing(
         equations, known.mode, known.moving, span_of(whole, progress), tolerance, w
     )
-    if crossed < 0:
+    if found.guard < 0:
         return whole, -1
+    h = correct_crossing(equations, known, whole, found, tolerance, pieces, progress, steps, w)
+    while h > 0.0 and another_has_fallen(found.guard, tolerance, w):
+        earlier = earliest_crossing(
+            equations, known.mode, known.moving, span_of(h, progress), tolerance, w
+        )
+        if earlier.guard in (-1, found.guard) or earlier.place > 1.0 - SMALL:
+            break
+        found = earlier
+        h = correct_crossing(equations, known, h, found, tolerance, pieces, progress, steps, w)
+    return h, found.guard
+
+
+@kernel
+def another_has_fallen(crossed: int, tolerance: Vector, w: Workspace) -> bool:
+    """Whether another guard has fallen below zero at the end of a step."""
+    for i in range(len(tolerance)):
+        if i != crossed and w.before[i] > tolerance[i] and w.after[i] < -tolerance[i]:
+            return True
+    return False
+
+
+@kernel
+def correct_crossing(
+    equations: BoundEquations, known: KnownMode, whole: float, crossing: Crossing,
+    tolerance: Vector, pieces: Pieces, progress: Progress, steps: StepTable, w: Workspace,
+) -> float:  # fmt: skip
+    """Repeat a step up to where a guard falls; give its length.
+
+    Newton's method on the Runge-Kutta solution itself, kept by bisection between lengths at which
+    the guard is positive and negative: of a step that is long beside a damped vibration the dense
+    solution tells little of the other. So is the guard that rises from zero and falls again from
+    its first root, the start. A dip that the Runge-Kutta solution does not have is an event where
+    it comes closest.
+    """
+    crossed, place, negative = crossing
     now = time_of(progress)
     h, rates = place * whole, equations.guard_count + 1
     noise, low, high = tolerance[crossed], 0.0, negative * whole
@@ -175,7 +207,7 @@ def step_to_event(
         if change <= ROUNDING * (now + h) or close:
             break
         h = moved
-    return h, crossed
+    return h
 
 
 @kernel
