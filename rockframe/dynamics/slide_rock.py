@@ -311,13 +311,18 @@ class SlideSwitches(SlideMotion):
     def stays_if_small(self, bears: int, mode: int, state: Vector, ground: Ground) -> bool:
         """Stop a corner that the impulse that holds it throws up, only to come back at once.
 
-        It does where the ground holds whatever that takes, and the corner falls where it is free.
+        It does where the ground holds whatever that takes, the corner falls where it is free, and
+        the other one is clear of the ground.
         """
-        rise = state[SIZE + RISE]
+        rise, side = state[SIZE + RISE], self.side(bears)
         fall = -self.free_rise(bears, state, self.loads(mode, state, ground))
-        if fall <= 0.0 or rise * rise > 2.0 * fall * REST_AMPLITUDE * (self.left + self.right):
+        small = rise * rise < 2.0 * fall * REST_AMPLITUDE * (self.left + self.right)
+        leans = side * state[ROTATION] > REST_AMPLITUDE * math.atan2(
+            self.distance(side), self.height
+        )
+        if fall <= 0.0 or not small or not leans:
             return False
-        beside, above = self.reach(self.side(bears), state[ROTATION])
+        beside, above = self.reach(side, state[ROTATION])
         state[SIZE + ROTATION] -= beside * rise / (self.inertia + beside * beside + above * above)
         state[SIZE + RISE] = 0.0
         return True

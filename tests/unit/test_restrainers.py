@@ -389,6 +389,7 @@ def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
         14161,  # one of a squat body out of flight
         # what stops a slip throws the corner up, ever less
         pytest.param(18363, marks=pytest.mark.long),
+        219,  # not where the block leans nowhere
         # a corner that pulls, and without which the other one of its body falls
         pytest.param(19677, marks=pytest.mark.long),
         pytest.param(19797, marks=pytest.mark.long),
