@@ -105,26 +105,33 @@ def product(one, i, other, j, inverse):
     return total
 
 
+@compiled
+def stretched(which, z, stack, arms):
+    """Give the way between a tie's points, its rate, and the distance at rest; fill in the arms."""
+    count, row = stack.inverse.size, stack.ties[which]
+    dx, dy, vx, vy = row[6], row[7], 0.0, 0.0
+    given = math.sqrt(dx * dx + dy * dy)
+    for side in range(2):
+        k, sign = int(row[3 * side]), 1.0 - 2.0 * side
+        if k < 0:
+            continue
+        sine, cosine, r = math.sin(z[3 * k + 2]), math.cos(z[3 * k + 2]), count + 3 * k
+        x, y = row[3 * side + 1], row[3 * side + 2]
+        arms[side, 0], arms[side, 1] = x * cosine + y * sine, y * cosine - x * sine
+        dx += sign * (z[3 * k] + arms[side, 0] - x)
+        dy += sign * (z[3 * k + 1] + arms[side, 1] - y)
+        vx += sign * (z[r] + z[r + 2] * arms[side, 1])
+        vy += sign * (z[r + 1] - z[r + 2] * arms[side, 0])
+    return dx, dy, vx, vy, given
+
+
 @within
 def pull_ties(z, stack, load):
     """Add what ties do to the bodies, and give the power of their dashpots."""
-    count, lost = stack.inverse.size, 0.0
+    lost = 0.0
     for which in range(stack.ties.shape[0]):
-        row = stack.ties[which]
-        dx, dy, vx, vy = row[6], row[7], 0.0, 0.0
-        given = math.sqrt(dx * dx + dy * dy)
-        arms = np.zeros((2, 2))
-        for side in range(2):
-            k, sign = int(row[3 * side]), 1.0 - 2.0 * side
-            if k < 0:
-                continue
-            sine, cosine, r = math.sin(z[3 * k + 2]), math.cos(z[3 * k + 2]), count + 3 * k
-            x, y = row[3 * side + 1], row[3 * side + 2]
-            arms[side, 0], arms[side, 1] = x * cosine + y * sine, y * cosine - x * sine
-            dx += sign * (z[3 * k] + arms[side, 0] - x)
-            dy += sign * (z[3 * k + 1] + arms[side, 1] - y)
-            vx += sign * (z[r] + z[r + 2] * arms[side, 1])
-            vy += sign * (z[r + 1] - z[r + 2] * arms[side, 0])
+        row, arms = stack.ties[which], np.zeros((2, 2))
+        dx, dy, vx, vy, given = stretched(which, z, stack, arms)
         length = math.sqrt(dx * dx + dy * dy)
         rate, slack = (dx * vx + dy * vy) / length, row[10]
         force = row[9] * rate

@@ -2,9 +2,10 @@
 
 import math
 
+import numpy as np
 from reference_models.maximal.compiling import compiled, within
 
-from .forces import accelerate, pad_force
+from .forces import accelerate, pad_force, stretched
 from .impulses import relate, slip
 from .kinematics import end, size_of, sway
 from .scene import LEADING_CORNER
@@ -48,7 +49,12 @@ def evaluate(z, gx, gy, stack, standing, room, guards):
             _of_end(k, i, stack, standing, room, guards, first + END_GUARDS * i)
         if stack.rule == LEADING_CORNER and standing.hold[k] != FREE:
             guards[first + LEAD_GUARD] = standing.lead[k] * room.rel[k, 2]
-    guards[BASE_GUARDS * n] = nearest
+    for which in range(stack.ties.shape[0]):
+        if stack.ties[which, 10] >= 0.0:
+            dx, dy, _, _, given = stretched(which, z, stack, np.zeros((2, 2)))
+            more = math.sqrt(dx * dx + dy * dy) - given - stack.ties[which, 10]
+            guards[BASE_GUARDS * n + which] = standing.taut[which] * more / given
+    guards[guards.size - 1] = nearest
 
 
 @within

@@ -120,8 +120,8 @@ def simulate(scene: Scene, motion: Excitation, tolerance: float = TOLERANCE) -> 
 
 def _run(course, z, motion, stack, standing, room) -> tuple[int, list[Event]]:
     n, clock = stack.mass.size, course.clock
-    path = path_of(z.size, BASE_GUARDS * n + 1)
-    noise = np.zeros(BASE_GUARDS * n + 1)
+    guards = BASE_GUARDS * n + len(stack.ties) + 1
+    path, noise = path_of(z.size, guards), np.zeros(guards)
     events: list[Event] = []
     since, count = -1.0, 0
     while True:
@@ -133,6 +133,9 @@ def _run(course, z, motion, stack, standing, room) -> tuple[int, list[Event]]:
         since = t
         if count > AT_ONCE or len(events) == MOST_EVENTS:
             return CHATTER, events
+        if slot >= BASE_GUARDS * n:  # there the force of a tie has a kink
+            standing.taut[slot - BASE_GUARDS * n] *= -1.0
+            continue
         noise_levels(z, stack, noise)
         shaken = ground(t, course.pieces[int(clock[STOP])], *motion)
         before = kinetic(z, stack)

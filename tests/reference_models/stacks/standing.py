@@ -9,7 +9,8 @@ FREE, HELD, SLIDING = 0, 1, 2
 # states of an end of a base; one that is CLEAR of a bed is raised
 CLEAR, RELAXING, TOUCHING, LEAVING, ENGAGING, SLIDES = 0, 1, 2, 3, 4, 5
 
-# guards of a base: three of either end, that of the leading corner; then one of all limits
+# guards of a base: three of either end, that of the leading corner; then those of ties, and one of
+# all limits
 END_GUARDS, LEAD_GUARD, BASE_GUARDS = 3, 6, 7
 
 # how a run ended
@@ -28,6 +29,7 @@ class Standing(NamedTuple):
     place: np.ndarray  # where it is held, on what carries the body
     sense: np.ndarray  # sign of the slip of a sliding end
     lead: np.ndarray  # sign of the leading corner
+    taut: np.ndarray  # of each tie: 1 if it is taut, -1 if it is slack
 
 
 class Room(NamedTuple):
@@ -45,11 +47,11 @@ class Room(NamedTuple):
     out: np.ndarray  # accelerations
 
 
-def standing_of(n: int) -> Standing:
+def standing_of(n: int, ties: int) -> Standing:
     """Give a standing in flight."""
     numbers = [np.zeros(n) for _ in range(3)]
     ends, hold = np.zeros((n, 2), dtype=np.int64), np.zeros(n, dtype=np.int64)
-    return Standing(ends, hold, *numbers, np.ones(n))
+    return Standing(ends, hold, *numbers, np.ones(n), np.ones(ties))
 
 
 def room_of(n: int) -> Room:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.optimize import root
 
-from .forces import accelerate, pad_force
+from .forces import accelerate, pad_force, stretched
 from .impulses import note_places, relate
 from .kinematics import end, sway
 from .scene import CENTRE, LEADING_CORNER, WORKS, Scene, Stack
@@ -83,7 +83,7 @@ def placed(stack: Stack, angles, middles, rate=0.0) -> tuple[np.ndarray, Standin
     """
     n, count = stack.mass.size, stack.inverse.size
     z = np.zeros(2 * count + WORKS)
-    standing, room = standing_of(n), room_of(n)
+    standing, room = standing_of(n, len(stack.ties)), room_of(n)
     for k in range(n - 1, -1, -1):
         angle, e = angles[k], stack.eccentricity[k]
         i, tilt, turning = 3 * k, z[3 * k + 5], rate if k == 0 else 0.0
@@ -105,6 +105,9 @@ def placed(stack: Stack, angles, middles, rate=0.0) -> tuple[np.ndarray, Standin
             z[count + i] = math.cos(tilt) * speed
             z[count + i + 1] = -math.sin(tilt) * speed
     note_places(z, stack, standing, room)
+    for which, tie in enumerate(stack.ties):
+        dx, dy, _, _, given = stretched(which, z, stack, np.zeros((2, 2)))
+        standing.taut[which] = 1.0 if math.hypot(dx, dy) - given > tie[10] else -1.0
     return z, standing, room
 
 
