@@ -194,9 +194,9 @@ def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
     if unsure.any():
         i = int(np.argmax(unsure))
         cautions.append(
-            f"at {events.time[i]:.6g} s a slip begins or ends, and {int(sets[i]) or 'no'} sets of "
-            f"corners may bear then: taken is {_named(int(taken[i]), rigid)}; of such changes "
-            f"there are {unsure.sum()}: {_ONE_OF}"
+            f"at {events.time[i]:.6g} s a slip begins or ends, and there are "
+            f"{int(sets[i]) or 'no'} ways to bear and to slip then: taken is one with "
+            f"{_named(int(taken[i]), rigid)}; of such changes there are {unsure.sum()}: {_ONE_OF}"
         )
     if held.any():
         i = int(np.argmax(held))

@@ -43,6 +43,25 @@ def run_of(interfaces, base, motion, *links, bodies=(STATUE, PLINTH), offset=0.0
     return rf.System(stack, base, *links).simulate(motion, **given)
 
 
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize(
+    ("between", "below", "told"),
+    [
+        ((0.5, 0.3), (0.42, 0.4), True),  # both bases slip, or the lower one: 0.4 g < 0.5 g
+        ((0.35, 0.3), (0.42, 0.4), False),  # friction cannot hold the upper plate at 0.4 g
+        ((0.3, 0.3), (0.4, 0.4), False),
+    ],
+)
+def test_a_jump_after_which_plates_may_slip_in_two_ways_is_told(between, below, told):
+    jump = rf.GroundMotion.from_arrays((np.full(11, 0.6 * GRAVITY), "m/s^2"), "0.01 s")
+    with plainly():
+        found = run_of(
+            [ground(*between)], ground(*below), jump, bodies=(PLATE, PLATE), free_vibration=None
+        )
+    assert ("there are 2 ways to bear and to slip" in found.attrs["cautions"]) == told
+    assert (found.body_slip[:, -1] < 0.0).all()
+
+
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_two_plates_that_slide_in_closed_form(way):
     upper, lower, strong, length = 0.1, 0.3, way * 5.0, 0.4

@@ -316,6 +316,6 @@ def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
     system, motion = drawn("stack of mixed bases", np.random.default_rng(38))
     with plainly():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
-    told = "a slip begins or ends, and 2 sets of corners may bear then: taken is body 1 in full"
+    told = "and there are 2 ways to bear and to slip then: taken is one with body 1 in full"
     assert told in found.attrs["cautions"]
     assert found.attrs["impacts_of_several_modes"] == 0

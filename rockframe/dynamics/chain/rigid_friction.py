@@ -251,6 +251,7 @@ class SlippingRigidChain(TriedSlips):
                 break
             before, pulled, count = jammed.taken, 0, max(count, jammed.admissible)
             closed = before | self.resting_corners(self.with_bearing(flying, before, 0), state)
+        ways = found.admissible
         if found.admissible == 0 and found.held == 0:
             self.note_slips(mode)
             self.accelerate(mode, state, ground)
@@ -259,11 +260,14 @@ class SlippingRigidChain(TriedSlips):
                 starts = self.places()[k * PLACES + at.STARTS]
                 if starts != 0.0:
                     self.places()[k * PLACES + at.SLIPS] = starts
+        elif found.held == 0:
+            noise = ROUNDING * self.number(0, at.GRAVITY)
+            ways += self.other_ways(flying, found.taken, closed & ~pulled, noise, state)
         new = self.with_bearing(free, found.taken, pulled | found.held)
         self.hold_contacts(new, state, memory)
         new = self.as_tried(new, state, memory)
         # where impulses of several sets would do, motion is not unique either
-        memory[kept + ADMISSIBLE] = max(found.admissible, count if found.admissible > 0 else 0)
+        memory[kept + ADMISSIBLE] = max(ways, count if found.admissible > 0 else 0)
         memory[kept + TAKEN], memory[kept + OTHER] = found.taken, found.other
         return new
 

@@ -249,16 +249,62 @@ class TriedSlips(SlipperyBases, RigidChain):
         """
         loose = self.note_first_slips(mode, some, False, state)
         for way in range(min(3 ** size_of(loose), MOST_WAYS)):
-            rest = way
-            for k in range(self.body_count):
-                if loose >> k & 1 != 0:
-                    self.places()[k * PLACES + at.SLIPS] = float((rest + 1) % 3 - 1)
-                    rest //= 3
+            self.note_way(way, loose)
             found = attempt(self, mode, some, closed, False, False, noise, state)
             k = self.otherwise(mode, some, closed, False, STATIC, noise, state)
             if found.fault < 0 and k < 0:
                 return found
         return Attempt(0, math.inf)
+
+    @inlined
+    def note_way(self, way: int, bodies: int) -> None:
+        """Note how some bodies slip, or are held, by the number of that way, in base 3."""
+        for k in range(self.body_count):
+            if bodies >> k & 1 != 0:
+                self.places()[k * PLACES + at.SLIPS] = float((way + 1) % 3 - 1)
+                way //= 3
+
+    @kernel
+    def noted_way(self) -> int:
+        """Give the number of the way that is noted, of all bodies."""
+        way = 0
+        for k in range(self.body_count - 1, -1, -1):
+            way = 3 * way + int(self.places()[k * PLACES + at.SLIPS]) % 3
+        return way
+
+    @kernel
+    def other_ways(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> int:
+        """Count the ways, beside that tried last, in which bodies on a set of corners may slip.
+
+        In each what friction can hold, with the others as they are, is held: a body that alone may
+        slip has but one.
+        """
+        room, found, taken = self.places(), 0, self.noted_way()
+        loose = self.note_first_slips(mode, some, False, state)
+        for way in range(min(3 ** size_of(loose), MOST_WAYS) if size_of(loose) > 1 else 0):
+            self.note_way(way, loose)
+            counts = self.noted_way() != taken and self.is_motion(mode, some, closed, noise, state)
+            for k in range(self.body_count):
+                slips = room[k * PLACES + at.SLIPS]
+                if counts and loose >> k & 1 != 0 and slips != 0.0:
+                    room[k * PLACES + at.SLIPS] = 0.0
+                    held = attempt(self, mode, some, closed, False, False, noise, state)
+                    friction = self.friction_of(k, STATIC)
+                    counts = held.fault >= 0 or self.cannot_hold(k, friction, False)
+                    room[k * PLACES + at.SLIPS] = slips
+            found += 1 if counts else 0
+        self.note_way(taken, 2**self.body_count - 1)
+        attempt(self, mode, some, closed, False, False, noise, state)
+        return found
+
+    @kernel
+    def is_motion(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> bool:
+        """Whether bodies may bear on a set of corners, and slip as is noted, under forces."""
+        way = self.noted_way()
+        found = attempt(self, mode, some, closed, False, False, noise, state)
+        k = self.otherwise(mode, some, closed, False, STATIC, noise, state)
+        self.note_way(way, 2**self.body_count - 1)
+        return found.fault < 0 and k < 0
 
     @kernel
     def try_standing(self, mode: int, corners: int, state: Vector) -> None:
@@ -339,7 +385,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         With the coefficient `holding` friction holds. Under forces accelerations up to `noise`
         are none.
         """
-        room, rows = self.places(), self.constraints()
+        room = self.places()
         for k in range(self.body_count):
             i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
             friction = self.friction_of(k, holding)
@@ -348,14 +394,8 @@ class TriedSlips(SlipperyBases, RigidChain):
                 continue
             sense = room[i + at.SLIPS]
             if sense == 0.0:
-                press = self.pressed(k)
-                thrust = rows[int(room[i + at.HOLDS_ALONG]) * CONSTRAINT + at.FORCE]
-                least = NOISE * abs(press)
-                if not impulsive:  # what has just lost its hold may not be held at the bound
-                    least = ROUNDING * self.number(k, at.FORCE_SIZE)
-                    least = least if room[i + at.STARTS] == 0.0 else -least
-                if abs(thrust) > friction * max(press, 0.0) + least:
-                    room[i + at.SLIPS] = -math.copysign(1.0, thrust)
+                if self.cannot_hold(k, friction, impulsive):
+                    room[i + at.SLIPS] = -math.copysign(1.0, self.thrust_of(k))
                     return k
             else:
                 rate, least = self.slip_before(k, pivot, mode, state)
@@ -369,6 +409,22 @@ class TriedSlips(SlipperyBases, RigidChain):
                         room[i + at.SLIPS] = 0.0
                         return k
         return -1
+
+    @inlined
+    def thrust_of(self, k: int) -> float:
+        """Give the force along its base of a body that is held as corners are tried."""
+        which = int(self.places()[k * PLACES + at.HOLDS_ALONG])
+        return float(self.constraints()[which * CONSTRAINT + at.FORCE])
+
+    @kernel
+    def cannot_hold(self, k: int, friction: float, impulsive: bool) -> bool:
+        """Whether friction cannot hold a body that is held as corners are tried."""
+        press = self.pressed(k)
+        least = NOISE * abs(press)
+        if not impulsive:  # what has just lost its hold may not be held at the bound
+            least = ROUNDING * self.number(k, at.FORCE_SIZE)
+            least = least if self.places()[k * PLACES + at.STARTS] == 0.0 else -least
+        return abs(self.thrust_of(k)) > friction * max(press, 0.0) + least
 
     @kernel
     def slips_on(self, k: int, pivot: int, impulsive: bool, state: Vector) -> float:
