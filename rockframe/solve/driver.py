@@ -138,7 +138,9 @@ def step_to_event(
     if found.guard < 0:
         return whole, -1
     h = correct_crossing(equations, known, whole, found, tolerance, pieces, progress, steps, w)
-    while h > 0.0 and another_has_fallen(found.guard, tolerance, w):
+    for _ in range(len(tolerance)):
+        if h == 0.0 or not another_has_fallen(found.guard, tolerance, w):
+            break
         earlier = earliest_crossing(
             equations, known.mode, known.moving, span_of(h, progress), tolerance, w
         )
