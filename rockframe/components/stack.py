@@ -14,7 +14,7 @@ from rockframe.components.registry import component_from_dict
 from rockframe.errors import ComponentError, shown, unexpected_argument
 from rockframe.units import LENGTH, QuantityLike, to_si
 
-MOST_BODIES: Final = 8
+MOST_BODIES: Final = 12
 """Bodies of a stack: of more, contacts have more combinations than can be numbered."""
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final, cast
 
-from rockframe.components import Component, Tendon
+from rockframe.components import Component, RigidGround, Tendon, TwoSpringSupport
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import HELD, SMALL_SLIDING, friction_under
 from rockframe.system.options import Sliding
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from rockframe.dynamics.chain.slips import SlippingBodies
     from rockframe.dynamics.protocol import ContactModel, Ending
 
-MOST_THAT_SLIDE: Final = 7
-"""Bodies of a stack that may slide; more have more modes than can be numbered."""
 LEAST_OVERHANG: Final = 0.1
 """Share of half the width of its base by which a body is beyond an edge when that is told.
 
@@ -86,7 +84,10 @@ class SlidingStackSetting(StackSetting):
 
 def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
     """Give the setting of bodies with links: of those that slip where bases have friction."""
-    if all(getattr(one.si, "friction", None) is None for one in bases):
+    slips = any(getattr(one.si, "friction", None) is not None for one in bases)
+    if refused := too_many_modes(bases, slips):
+        raise AssemblyError([refused])
+    if not slips:
         return held
     found = [friction_under(one, held.options) for one in bases]
     faults = list[str]()
@@ -103,15 +104,31 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
             ]
     if held.options.small:
         faults.append(SMALL_SLIDING)
-    if len(held.bodies) > MOST_THAT_SLIDE:
-        faults.append(
-            f"bodies of a Stack that slide are at most {MOST_THAT_SLIDE}, got {len(held.bodies)}"
-        )
     if faults:
         raise AssemblyError(faults)
     frictions = tuple(HELD if one is None else one for one in found)
     return SlidingStackSetting(
         held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties, frictions
+    )
+
+
+def too_many_modes(bases: Sequence[Component], slips: bool) -> str | None:
+    """Refuse bodies whose contacts have more combinations than can be numbered."""
+    from rockframe.dynamics.chain.rows import BED_MODES, PAD_MODES, RIGID_MODES
+    from rockframe.dynamics.protocol import MOST_MODES
+
+    count = 1
+    for base in bases:
+        if isinstance(base, RigidGround):
+            modes = RIGID_MODES
+        else:
+            modes = PAD_MODES if isinstance(base, TwoSpringSupport) else BED_MODES
+        count *= 2 * modes if slips else modes
+    if count <= MOST_MODES:
+        return None
+    return (
+        f"the contacts of {len(bases)} bodies on these bases have {count:.2g} combinations, more "
+        f"than the {MOST_MODES:.2g} that can be numbered: give fewer bodies, or rigid joints"
     )
 
 

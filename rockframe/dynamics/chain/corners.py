@@ -29,8 +29,8 @@ PULLED: Final = CORNER
 back at once."""
 OPENING: Final = 1
 """Guard of such a corner, behind that of its force: that it would come back."""
-EVERY_LEFT: Final = 0x5555
-"""The left corners of eight bodies."""
+EVERY_LEFT: Final = 0x55555555
+"""The left corners of sixteen bodies."""
 LEVEL: Final = 1e-13
 """Share of a body's size, or of its speed of fall, below which a corner is at its base."""
 

@@ -30,6 +30,10 @@ ALL_TRIED: Final = 10
 NEIGHBOURS: Final = 3
 """Of more, corners in which the subsets that are tried first differ from the one with sticking
 assumed."""
+MOST_TRIED: Final = 16
+"""Closed corners up to which every other subset is tried then."""
+FAR_NEIGHBOURS: Final = 5
+"""Of more, corners in which the subsets that are tried then may differ."""
 NOISE: Final = 1e-11
 """Share of all impulses, or of all speeds, that is rounding."""
 ROUNDING: Final = 1e-12
@@ -243,16 +247,18 @@ def bearing_corners(
     impulsive, count = leaving in (0, JAMMED), size_of(closed)
     write_corners(system, impulsive, state)
     noise, near = noise_of(system, closed, impulsive, state), Near(closed, closed, count)
+    far = near
     if count > ALL_TRIED:
         reference = with_sticking(system, mode, closed, impulsive, noise, state)
         near = Near(closed, reference, NEIGHBOURS)
+        far = Near(closed, reference, count if count <= MOST_TRIED else FAR_NEIGHBOURS)
     taken, other, admissible, held = -1, -1, 0, 0
     lowest = second = math.inf
     # first what is admissible but for rounding, and of each trial first the near sets
     for trial in range(2 if impulsive else 1 + ALL_WAYS):
         if trial % 2 == 1 and count <= ALL_TRIED:
             continue  # there are no sets farther off
-        tried = near if trial % 2 == 0 else Near(closed, closed, count)
+        tried = near if trial % 2 == 0 else far
         some = next_set(closed, tried)
         way = JAMMED if leaving == JAMMED else trial
         least = noise if impulsive or trial > 1 else ROUNDING * system.number(0, at.GRAVITY)

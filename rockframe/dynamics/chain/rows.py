@@ -4,7 +4,6 @@ Bodies are counted from the top down. One machine code serves all chains, whatev
 their bases, since it reads both from here.
 """
 
-import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
@@ -19,7 +18,7 @@ from rockframe.dynamics.body import BY_CONTACT, BaseLine, Body, BodyState
 from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
-from rockframe.dynamics.protocol import MOST_MODES, POWERS
+from rockframe.dynamics.protocol import POWERS
 
 # a row: the body's numbers in their order in `Body`, among them
 INERTIA: Final = 3
@@ -33,7 +32,8 @@ PER_INERTIA: Final = 12
 PLACE_VALUE: Final = 13  # of its mode in that of the chain
 LAW: Final = 14  # which law its base has
 FORCE_SIZE: Final = 15  # of what its corners bear, by which rounding is known
-BASE: Final = 16  # numbers of that law
+MODE_COUNT: Final = 16  # of its modes
+BASE: Final = 17  # numbers of that law
 BASE_NUMBERS: Final = 12
 ROW: Final = BASE + BASE_NUMBERS
 
@@ -112,12 +112,13 @@ COLUMNS: Final = 14 + OBSERVED
 """What users see of each body and its base."""
 
 CORNERS: Final = 5
-"""States of a corner on its pad; an end on a bed has fewer."""
+"""States of a corner on its pad."""
+ENDS: Final = 4
+"""States of both ends on a bed, or of both corners on a rigid base."""
 PIVOTS: Final = 3
-MODES: Final = 2 * PIVOTS * CORNERS * CORNERS
-"""Modes of each body."""
-MOST_BODIES: Final = int(math.log(MOST_MODES, MODES))
-"""More would have more modes than can be numbered."""
+PAD_MODES: Final = 2 * PIVOTS * CORNERS * CORNERS
+BED_MODES: Final = 2 * PIVOTS * ENDS
+RIGID_MODES: Final = 2 * 2 * ENDS  # what is held follows from the corners that bear
 
 
 class LawNumbers(NamedTuple):
@@ -440,20 +441,37 @@ class Rows(InState, Lists):
         """Give what the mode of a body is multiplied by in that of the chain."""
         return int(self.rows[k * ROW + PLACE_VALUE])
 
+    @inlined
+    def mode_count(self, k: int) -> int:
+        """Give the number of modes of a body."""
+        return int(self.rows[k * ROW + MODE_COUNT])
+
+    @inlined
+    def modes_of_bodies(self) -> int:
+        """Give the number of modes of all bodies together."""
+        return self.place_value(self.body_count - 1) * self.mode_count(self.body_count - 1)
+
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
         """Give how a body stands."""
-        both, standing = divmod(mode // self.place_value(k) % MODES, 2 * PIVOTS)
+        number = mode // self.place_value(k) % self.mode_count(k)
+        if self.number(k, LAW) == ON_RIGID:
+            ends, rest = number % ENDS, number // ENDS
+            return Mode(ends + CORNER * (rest % 2), ends % PIVOTS, rest >= 2)
+        both, standing = divmod(number, 2 * PIVOTS)
         contact = both % CORNERS + CORNER * (both // CORNERS)
         return Mode(contact, standing % PIVOTS, standing >= PIVOTS)
 
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
         """Give the mode in which a body stands otherwise."""
-        value = self.place_value(k)
-        both = part.contact % CORNER + CORNERS * (part.contact // CORNER)
-        number = part.pivot + (PIVOTS if part.slides else 0) + 2 * PIVOTS * both
-        return mode + value * (number - mode // value % MODES)
+        value, low, high = self.place_value(k), part.contact % CORNER, part.contact // CORNER
+        if self.number(k, LAW) == ON_RIGID:
+            number = low + ENDS * (high + (2 if part.slides else 0))
+        else:
+            number = part.pivot + (PIVOTS if part.slides else 0)
+            number += 2 * PIVOTS * (low + CORNERS * high)
+        return mode + value * (number - mode // value % self.mode_count(k))
 
 
 def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float) -> Vector:
@@ -472,6 +490,7 @@ def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float
     # a corner that bears on a rigid base does not slide on it, whatever the rule
     row[: len(body)] = body._replace(restraint=BY_CONTACT) if law == ON_RIGID else body
     row[[MASS, TOP, BESIDE, LAW, FORCE_SIZE]] = mass, top, beside, law, mass * body.gravity
+    row[MODE_COUNT] = (PAD_MODES, BED_MODES, RIGID_MODES)[law]
     row[[PER_MASS, PER_INERTIA]] = 1.0 / mass, 1.0 / body.inertia
     numbers = numbers_in(base.law)
     row[BASE : BASE + len(numbers)] = numbers
@@ -480,12 +499,10 @@ def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float
 
 def lists_of(rows: Sequence[Vector]) -> Lists:
     """Give the lists of bodies, from the top down, with room to work in."""
-    if len(rows) > MOST_BODIES:
-        msg = f"a chain has at most {MOST_BODIES} bodies, got {len(rows)}"
-        raise ValueError(msg)
-    count = len(rows)
-    for k, row in enumerate(rows):
-        row[PLACE_VALUE] = MODES**k
+    count, value = len(rows), 1
+    for row in rows:
+        row[PLACE_VALUE] = value
+        value *= int(row[MODE_COUNT])
     room = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 2 * DEGREES + 2 * GUARDS + COLUMNS
     size = count * room + POWERS + (MOST_CONSTRAINTS * count) ** 2
     return Lists(count, np.concatenate([*rows, np.zeros(size)]))

@@ -15,11 +15,11 @@ from rockframe.dynamics import events
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import load_along
-from rockframe.dynamics.chain.rows import COLUMNS, MODES, PLACES
+from rockframe.dynamics.chain.rows import COLUMNS, PLACES
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.on_base import Mode, SlidingGuards
-from rockframe.dynamics.protocol import HELD_PLACE, MOST_MODES, Ending, Slope
+from rockframe.dynamics.protocol import HELD_PLACE, Ending, Slope
 from rockframe.dynamics.sliding import NOISE
 
 STATIC: Final = 0
@@ -66,17 +66,17 @@ class SlippingBodies(Chain):
     @kernel
     def modes(self) -> int:
         """Give the number of modes: of contacts and pivots, and of the senses of slips."""
-        return (2 * MODES) ** self.body_count
+        return int(self.modes_of_bodies() * 2**self.body_count)
 
     @inlined
     def sense(self, mode: int, k: int) -> float:
         """Give the sense of the slip of a body that slips."""
-        return -1.0 if mode // MODES**self.body_count // 2**k % 2 == 1 else 1.0
+        return -1.0 if mode // self.modes_of_bodies() // 2**k % 2 == 1 else 1.0
 
     @inlined
     def slipping(self, mode: int, k: int, sense: float) -> int:
         """Give the mode in which a body slips in a sense."""
-        was, value = self.part_mode(mode, k), MODES**self.body_count * 2**k
+        was, value = self.part_mode(mode, k), self.modes_of_bodies() * 2**k
         new = self.with_part(mode, k, Mode(was.contact, was.pivot, True))
         new -= new // value % 2 * value
         return new + value if sense < 0.0 else new
@@ -250,8 +250,5 @@ class SlippingBodies(Chain):
 
 def coefficients(frictions: Sequence[tuple[float, float, float]]) -> Vector:
     """Give the coefficients of friction of all bases, and room for what is shown of their slips."""
-    count = len(frictions)
-    if (2 * MODES) ** count > MOST_MODES:
-        msg = f"a chain of {count} bodies that slip has more modes than can be numbered"
-        raise ValueError(msg)
-    return np.concatenate([np.ravel(frictions), np.zeros((COLUMNS + SLIP_COLUMNS) * count)])
+    room = (COLUMNS + SLIP_COLUMNS) * len(frictions)
+    return np.concatenate([np.ravel(frictions), np.zeros(room)])

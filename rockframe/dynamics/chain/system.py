@@ -9,7 +9,6 @@ from rockframe.dynamics.chain.moving import MovingBodies
 from rockframe.dynamics.chain.rows import (
     COLUMNS,
     GUARDS,
-    MODES,
     OBSERVED,
     PLACES,
 )
@@ -32,7 +31,7 @@ class Chain(MovingBodies):
     @kernel
     def modes(self) -> int:
         """Give the number of modes, of which some have no meaning."""
-        return MODES**self.body_count
+        return self.modes_of_bodies()
 
     @kernel
     def contact_state_of(self, mode: int, k: int) -> int:

@@ -31,7 +31,7 @@ from rockframe.dynamics.chain.motion import (
     write_direction,
 )
 from rockframe.dynamics.chain.rigid import RigidChain
-from rockframe.dynamics.chain.rows import CONSTRAINT, MODES, MOST_CONSTRAINTS, PLACES
+from rockframe.dynamics.chain.rows import CONSTRAINT, MOST_CONSTRAINTS, PLACES
 from rockframe.dynamics.chain.slippery import SlipperyBases
 from rockframe.dynamics.chain.slips import IMPULSIVE, KINETIC, ROUNDING, STATIC, TRIES
 from rockframe.dynamics.on_base import Mode
@@ -81,7 +81,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         sense = self.slip_sense(k)
         if bears != 0 and sense != 0.0:
             return self.slipping(mode, k, sense)
-        value = MODES**self.body_count * 2**k
+        value = self.modes_of_bodies() * 2**k
         return mode - mode // value % 2 * value
 
     @kernel
