@@ -275,6 +275,20 @@ class Grid:
         return places[MOTION]
 
 
-def chunks_of(count: int, size: int) -> Sequence[range]:
-    """Cut the cases into chunks of a size; the last may be shorter."""
-    return [range(first, min(first + size, count)) for first in range(0, count, size)]
+@dataclass(frozen=True)
+class Chunk:
+    """Some cases, by their numbers in the order of running."""
+
+    number: int
+    cases: range
+
+    @classmethod
+    def of(cls, number: int, count: int, size: int) -> "Chunk":
+        """Give a chunk of a size, of a number of cases; the last may be shorter."""
+        first = number * size
+        return cls(number, range(first, min(first + size, count)))
+
+
+def chunks_of(count: int, size: int) -> list[Chunk]:
+    """Cut cases into chunks of a size."""
+    return [Chunk.of(number, count, size) for number in range(-(-count // size))]

@@ -12,14 +12,13 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import contextmanager, nullcontext
 from functools import partial
 from threading import Event, Thread
 from typing import Any, Final, Protocol, runtime_checkable
 
 from rockframe.errors import ComponentError, RockframeError, StudyError, shown
-from rockframe.studies.sweeps.axes import OWNER
+from rockframe.studies.sweeps.axes import OWNER, Chunk
 from rockframe.studies.sweeps.chunk import CaseResults, run_chunk
 from rockframe.studies.sweeps.study import SweepJob, worker_count
 
@@ -139,14 +138,6 @@ _GLANCE: Final = 0.2
 """Longest wait in which an interrupt might go unheard [s]."""
 
 
-@dataclass(frozen=True)
-class Chunk:
-    """Some cases, by their numbers in the order of running."""
-
-    number: int
-    cases: range
-
-
 _END: Final = Chunk(-1, range(0))
 """What follows the last chunk."""
 
@@ -183,7 +174,7 @@ def run_chunks(
     stop = Event()
     waiting = iter(chunks)
     going: dict[Future[CaseResults | None], Chunk] = {}
-    with _own_threads() if executor is None else _of_the_user(executor) as pool:
+    with _own_threads() if executor is None else nullcontext(executor) as pool:
         run = partial(run_chunk, stopped=stop.is_set) if executor is None else run_chunk
         try:
             some_left = True
@@ -281,8 +272,3 @@ def _own_threads() -> Generator[Executor]:
         return
     with ThreadPoolExecutor(worker_count(), thread_name_prefix="rockframe") as pool:
         yield pool
-
-
-@contextmanager
-def _of_the_user(executor: Executor) -> Generator[Executor]:
-    yield executor

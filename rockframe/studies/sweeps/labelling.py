@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -14,12 +14,11 @@ from rockframe.results.points import BodyPoint, point_labels
 from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
-from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
+from rockframe.results.variables.runs import EVENTS_AND_SCALARS
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
-from rockframe.simulation.run import NONE
 from rockframe.studies.sweeps.axes import Axis, Grid
-from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, Driver, put_into
+from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, CollectedResults, Driver
 from rockframe.studies.sweeps.runs import SCREEN
 from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
 from rockframe.studies.sweeps.study import Histories, Study
@@ -150,24 +149,12 @@ def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) 
 
 def _joined(count: int, found: Iterable[tuple[range, CaseResults]]) -> CaseResults:
     """Put chunks together, in the order of running, with gaps where there are none."""
-    scalars: dict[str, Generic] = {}
-    histories: dict[str, Generic] = {}
-    status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
-    message = np.zeros(count, dtype=np.int64)
-    texts: dict[str, int] = {NONE: 0}
+    collected = CollectedResults(count)
     for cases, rows in found:
-        here = slice(cases.start, cases.stop)
-        status[here] = rows.status
-        # texts in the order of their cases, however these were cut into chunks
-        _, firsts = np.unique(rows.message, return_index=True)
-        for k in sorted(firsts):
-            texts.setdefault(rows.texts[rows.message[k]], len(texts))
-        message[here] = np.array([texts.get(text, 0) for text in rows.texts])[rows.message]
-        for kept, given in ((scalars, rows.scalars), (histories, rows.histories)):
-            for name, values in given.items():
-                put_into(kept, count, name, here, values)
-    few, message = summed_up(list(texts), message)
-    return CaseResults(status, scalars, histories, message, few)
+        collected.put_rows(slice(cases.start, cases.stop), rows)
+    whole = collected.rows()
+    few, message = summed_up(whole.texts, whole.message)
+    return replace(whole, message=message, texts=few)
 
 
 def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
