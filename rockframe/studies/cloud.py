@@ -15,6 +15,7 @@ from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import Arrangement, Means, with_stripes
@@ -27,10 +28,16 @@ from rockframe.studies.intensities import (
     measure_words,
     told_period,
 )
-from rockframe.studies.limit_states import OVERTURNING, check_runs, listed_limits, scalar_of
+from rockframe.studies.limit_states import (
+    OVERTURNING,
+    check_runs,
+    listed_limits,
+    read_in_unit,
+    scalar_of,
+)
 from rockframe.studies.logistic import Logistic, fit_logistic
 from rockframe.studies.sweeps.motions import MotionsLike
-from rockframe.units import POSITIVE, Measure, RatioLike, Unit, to_ratio, to_si
+from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"
 _FEWEST: Final = 4
@@ -297,11 +304,8 @@ def read_least(given: Any, values: xr.DataArray, *, owner: str) -> float:
 
 
 def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> float:
-    unit = str(values.attrs.get("units", "1"))
-    if unit == Unit.ONE:
-        return to_ratio(given, owner=owner, name=name, condition=POSITIVE, example="0.5")
-    kind = Measure(str(values.name).replace("_", " "), Unit(unit), f"1 {unit}")
-    return to_si(given, kind, owner=owner, name=name, condition=POSITIVE)
+    unit, words = str(values.attrs.get("units", "1")), str(values.name).replace("_", " ")
+    return read_in_unit(given, unit, words, owner=owner, name=name, condition=POSITIVE)
 
 
 def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
@@ -314,12 +318,9 @@ def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
 def _names(
     levels: Sequence[float], response: str, label: str | None, values: xr.DataArray
 ) -> list[str]:
-    unit = str(values.attrs.get("units", "1"))
     words = " ".join(filter(None, [response.replace("_", " "), label]))
-    return [
-        OVERTURNING if math.isinf(one) else f"{words} {one:g}{'' if unit == '1' else f' {unit}'}"
-        for one in levels
-    ]
+    unit = unit_behind(values.attrs)
+    return [OVERTURNING if math.isinf(one) else f"{words} {one:g}{unit}" for one in levels]
 
 
 @dataclass(frozen=True, eq=False)

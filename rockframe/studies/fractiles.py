@@ -14,6 +14,7 @@ from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.intensities import PeriodLike, measure_in, told_period
 from rockframe.studies.limit_states import check_runs, scalar_of
@@ -318,8 +319,7 @@ def _words(response: str, label: str | None) -> str:
 def _sentence(lines: Sequence[_Line], along: Array, responses: Array, measure: xr.DataArray) -> str:
     """Tell how many motions overturned, and by which intensity half of them."""
     fell = np.isinf(responses)
-    unit = str(measure.attrs.get("units", "1"))
-    unit = "" if unit == "1" else f" {unit}"
+    unit = unit_behind(measure.attrs)
     text = f"Of {len(lines)} motions {int(fell.any(axis=1).sum())} overturned at some "
     text += f"{str(measure.name).replace('_', ' ')} from {along[0]:.4g} to {along[-1]:.4g}{unit}"
     half = np.flatnonzero(fell.sum(axis=0) >= 0.5 * len(lines))

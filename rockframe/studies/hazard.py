@@ -14,6 +14,7 @@ from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsErr
 from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.words import measures_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
@@ -384,8 +385,7 @@ def _of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve
 
 def _say_what_lacks(found: xr.Dataset, curve: HazardCurve) -> None:
     """Warn where the hazard curve ends where the integrand does not."""
-    unit = str(found["quantile_intensity"].attrs["units"])
-    unit = "" if unit == "1" else f" {unit}"
+    unit = unit_behind(found["quantile_intensity"].attrs)
     ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}
     lacking: list[str] = []
     for side, end in ends.items():
@@ -413,8 +413,7 @@ def _sentence(found: xr.Dataset) -> str:
     if not len(known):
         return f"There is no fragility against {state}, and so no rate."
     measure = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
-    unit = str(found["quantile_intensity"].attrs["units"])
-    unit = "" if unit == "1" else f" {unit}"
+    unit = unit_behind(found["quantile_intensity"].attrs)
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
     low, _, high = last["quantile_intensity"].to_numpy().ravel()

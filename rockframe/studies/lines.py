@@ -21,6 +21,7 @@ from rockframe.errors import (
 )
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
+from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.limit_states import interrupted
@@ -28,7 +29,7 @@ from rockframe.studies.rounds import Rounds, rounds_of
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.motions import TARGETS
-from rockframe.units import Condition, Unit, to_ratio
+from rockframe.units import Condition, Measure, to_ratio
 
 if TYPE_CHECKING:
     from rockframe.simulation.system import System
@@ -337,6 +338,15 @@ def read_resolution(given: object, *, owner: str) -> float:
     return to_ratio(given, owner=owner, name="resolution", condition=_RESOLUTION, example="0.02")
 
 
+def read_rising(given: object, measure: Measure, name: str, *, owner: str) -> Array:
+    """Read values above zero; those that are alike are one."""
+    values = np.unique(numbers_of(given, measure, name))
+    if not len(values) or values[0] <= 0.0:
+        msg = f"{owner}: {name} must be above zero, got {shown(given)}"
+        raise ComponentError(msg)
+    return values
+
+
 def read_scales(given: object, *, owner: str, most: int) -> Array:
     """Read the scales of a scan."""
     values = np.unique(numbers_of(given, TARGETS[SCALE].measure, SCALE))
@@ -349,8 +359,3 @@ def read_scales(given: object, *, owner: str, most: int) -> Array:
 def read_width(given: object, *, owner: str) -> float:
     """Read the relative width of brackets."""
     return to_ratio(given, owner=owner, name="bracket_width", condition=_WIDTH, example="0.001")
-
-
-def head(name: str, unit: str) -> str:
-    """Give the head of a column in a table of cases."""
-    return name if unit == Unit.ONE else f"{name} [{unit}]"

@@ -12,13 +12,13 @@ from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset
+from rockframe.results.table import head
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import head
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.motions import MotionsLike, full_name, named_motions

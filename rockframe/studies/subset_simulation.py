@@ -19,6 +19,7 @@ from rockframe.errors import (
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import concat
 from rockframe.results.schema import build_dataset
+from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -42,7 +43,7 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_json,
 )
-from rockframe.studies.lines import INTERRUPTED, head
+from rockframe.studies.lines import INTERRUPTED
 from rockframe.studies.probability import SAMPLED, Spread, read_correlation, read_spread
 from rockframe.studies.rounds import Rounds, rounds_of
 from rockframe.studies.sweeps.arguments import SweepArguments

@@ -1,5 +1,6 @@
 """A row of the table of variables, and the shapes that rows have."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, Final
@@ -78,6 +79,12 @@ class Variable:
             attributes["flag_values"] = np.array([0, 1], dtype=dtype or "int8")
             attributes["flag_meanings"] = " ".join(TRUTH)
         return attributes
+
+
+def unit_behind(attributes: Mapping[Any, Any]) -> str:
+    """Write the unit of values as it stands behind a number of them; nothing where it is 1."""
+    unit = str(attributes.get("units", Unit.ONE))
+    return "" if unit == Unit.ONE else f" {unit}"
 
 
 def flag(name: str, dims: tuple[str, ...], words: str, kind: type[IntEnum]) -> Variable:

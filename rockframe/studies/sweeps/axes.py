@@ -185,6 +185,15 @@ def _as_python(given: Any) -> Any:
     return given
 
 
+def faults_of_values(name: str, values: Generic) -> list[str]:
+    """Tell what is wrong with the values of an axis."""
+    kept, counts = np.unique(values, return_counts=True)
+    if not len(kept):
+        return [f"axis {name!r} has no values"]
+    twice = kept[counts > 1]
+    return [f"axis {name!r} has the value {twice[0]!s} twice"] if len(twice) else []
+
+
 Places: Final = NDArray[np.intp]
 MOST_CASES: Final = 1_000_000_000
 

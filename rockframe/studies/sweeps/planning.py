@@ -44,7 +44,7 @@ from rockframe.simulation.plan import (
     read_arguments,
     run_length,
 )
-from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid
+from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid, faults_of_values
 from rockframe.studies.sweeps.motions import (
     NO_MOTION,
     OF_THE_SCENE,
@@ -373,13 +373,8 @@ def _read(
         if axis is None:
             continue
         found.append(axis)
-        if axis.values.size == 0:
-            faults.append(f"axis {name!r} has no values")
-        if repeats:
-            continue
-        kept, counts = np.unique(axis.values, return_counts=True)
-        if (counts > 1).any():
-            faults.append(f"axis {name!r} has the value {kept[counts > 1][0]!s} twice")
+        if not repeats or not len(axis.values):
+            faults += faults_of_values(name, axis.values)
     return found
 
 
