@@ -99,15 +99,8 @@ def _by_shape_factor(system: System, block: Block) -> System:
     with collected_warnings():  # block and system have warned when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
         others = [part for part in system.parts.structural() if part is not block]
-        return System(
-            scaling,
-            *others,
-            restraint=system.restraint,
-            rotation=system.rotation,
-            gravity=system.gravity,
-            inclination=system.inclination,
-            sliding=system.sliding,
-        )
+        options: dict[str, Any] = system.options.to_dict()
+        return System(scaling, *others, **options)
 
 
 def _block(system: System, owner: str) -> Block:

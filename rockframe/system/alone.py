@@ -136,9 +136,8 @@ class SlidingAloneSetting(AloneSetting):
             left_out=[one for one in base.left_out if one != "sliding"],
         )  # fmt: skip
 
-    @cached_property
-    def _model(self) -> "ContactModel":
-        """The equations of a body that slips on its base: those of a chain of one."""
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of slip, rotation and rise: those of a chain of one."""
         from rockframe.dynamics.chain.model import AtRest, ChainBody, chain
 
         body, rest = self.load.rigid_body, None
@@ -148,13 +147,9 @@ class SlidingAloneSetting(AloneSetting):
         one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
         return chain([one], self.body.mass, rest, frictions=[self.friction])
 
-    def contact_model(self) -> "ContactModel":
-        """Give the equations of slip, rotation and rise."""
-        return self._model
-
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the body slipped."""
-        system = cast("SlippingBodies", self._model.system)
+        system = cast("SlippingBodies", self.compile().system)
         return (SlipRange(*system.slips(0, ending)),)
 
 
