@@ -9,8 +9,7 @@ from rockframe.components.cap import CushionCapSI
 from rockframe.dynamics.body import Body
 from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
-from rockframe.signals.motion import Slope
-from rockframe.system.options import Options, restraint_code
+from rockframe.system.options import RESTRAINT_CODES, Options
 
 ROUNDING = 1e-12
 """Excess over the greatest restitution that is taken for rounding."""
@@ -106,11 +105,6 @@ class OverturningAngles(NamedTuple):
         """Give that of the side to which a body is rotated."""
         return self.left if rotation < 0.0 else self.right
 
-    def on_slope(self, slope: Slope, *, small: bool) -> "OverturningAngles":
-        """Give those relative to a base line that rises, :eq:`eq-incline-overturning`."""
-        i = tan(slope.inclination) if small else slope.inclination
-        return OverturningAngles(self.left - i, self.right + i)
-
 
 @dataclass(frozen=True)
 class Cap:
@@ -197,8 +191,10 @@ class BaseLoad:
 
     @cached_property
     def overturning_angles(self) -> OverturningAngles:
-        """Rotations at which the centre of mass stands above an end of the base."""
-        return self.body.overturning_angles.on_slope(self.options.slope, small=self.options.small)
+        """Those of the body relative to its base line, :eq:`eq-incline-overturning`."""
+        (left, right), i = self.body.overturning_angles, self.options.inclination
+        i = tan(i) if self.options.small else i
+        return OverturningAngles(left - i, right + i)
 
     @cached_property
     def rigid_body(self) -> Body:
@@ -214,7 +210,7 @@ class BaseLoad:
             right=self.body.right,
             height=self.body.centre_height,
             inertia=self.body.inertia / mass,
-            restraint=restraint_code(self.options.restraint),
+            restraint=RESTRAINT_CODES[self.options.restraint],
             small_rotation=self.options.small,
             gravity=self.options.slope.normal_gravity,
         )
