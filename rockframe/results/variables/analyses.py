@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Final
 
 from rockframe.results.variables.studies import PARAMETER
-from rockframe.results.variables.variable import FLIP, Variable, count, counting, flag
+from rockframe.results.variables.variable import FLIP, Variable, bounds, count, counting, flag
 from rockframe.units import Unit
 
 LIMIT_STATE: Final = ("limit_state",)
@@ -95,18 +95,7 @@ FRAGILITY: Final = (
         Unit.ONE,
         "median of the capacity, in the unit of the intensity",
     ),
-    Variable(
-        "median_intensity_lower_bound",
-        (),
-        Unit.ONE,
-        "lower bound of the median, of nominal confidence",
-    ),
-    Variable(
-        "median_intensity_upper_bound",
-        (),
-        Unit.ONE,
-        "upper bound of the median, of nominal confidence",
-    ),
+    *bounds("median_intensity", (), "{} bound of the median, of nominal confidence"),
     Variable(
         "separation_lower_intensity",
         (),
@@ -121,18 +110,7 @@ FRAGILITY: Final = (
     ),
     Variable("log_median_error", (), Unit.ONE, "standard error of the logarithm of the median"),
     Variable("dispersion", (), Unit.ONE, "standard deviation of the logarithm of the capacity"),
-    Variable(
-        "dispersion_lower_bound",
-        (),
-        Unit.ONE,
-        "lower bound of the dispersion, of nominal confidence",
-    ),
-    Variable(
-        "dispersion_upper_bound",
-        (),
-        Unit.ONE,
-        "upper bound of the dispersion, of nominal confidence",
-    ),
+    *bounds("dispersion", (), "{} bound of the dispersion, of nominal confidence"),
     Variable("dispersion_error", (), Unit.ONE, "standard error of the dispersion"),
     count("trial_count", "number of runs, or of capacities, that count"),
     count("left_out_count", "number of those left out, without a result that counts"),
@@ -141,18 +119,7 @@ FRAGILITY: Final = (
     Variable(
         "exceedance_probability", (), Unit.ONE, "probability that the limit state is exceeded"
     ),
-    Variable(
-        "exceedance_probability_lower_bound",
-        (),
-        Unit.ONE,
-        "lower bound of the probability, confidence nominal",
-    ),
-    Variable(
-        "exceedance_probability_upper_bound",
-        (),
-        Unit.ONE,
-        "upper bound of the probability, confidence nominal",
-    ),
+    *bounds("exceedance_probability", (), "{} bound of the probability, confidence nominal"),
     Variable(
         "coefficient", COEFFICIENT, None, "what a coefficient of the fit stands before", dtype="str"
     ),
@@ -178,12 +145,7 @@ FRAGILITY: Final = (
         dtype="int64",
     ),
     Variable("stripe_fraction", STRIPE, Unit.ONE, "share of the group that exceeded"),
-    Variable(
-        "stripe_fraction_lower_bound", STRIPE, Unit.ONE, "lower confidence bound of the share"
-    ),
-    Variable(
-        "stripe_fraction_upper_bound", STRIPE, Unit.ONE, "upper confidence bound of the share"
-    ),
+    *bounds("stripe_fraction", STRIPE, "{} confidence bound of the share"),
     Variable(
         "velocity_to_acceleration_ratio",
         (),
@@ -267,12 +229,7 @@ HAZARD: Final = (
         Unit.ONE,
         "number of times a year that the limit state is exceeded on average",
     ),
-    Variable(
-        "annual_rate_lower_bound", (), Unit.ONE, "the same of the lower bound of the fragility"
-    ),
-    Variable(
-        "annual_rate_upper_bound", (), Unit.ONE, "the same of the upper bound of the fragility"
-    ),
+    *bounds("annual_rate", (), "the same of the {} bound of the fragility"),
     Variable(
         "unreached_rate_below",
         (),
@@ -369,12 +326,7 @@ SPECTRA: Final = (
 
 PROBABILITY: Final = (
     Variable("overturning_probability", (), Unit.ONE, "share of the cases that overturned"),
-    Variable(
-        "overturning_probability_lower_bound", (), Unit.ONE, "lower confidence bound of that share"
-    ),
-    Variable(
-        "overturning_probability_upper_bound", (), Unit.ONE, "upper confidence bound of that share"
-    ),
+    *bounds("overturning_probability", (), "{} confidence bound of that share"),
     count("verdict_count", "number of cases with a verdict"),
     Variable("parameter", PARAMETER, None, "what is spread", dtype="str"),
     Variable(
@@ -441,38 +393,11 @@ SUBSETS: Final = (
 ENSEMBLE: Final = (
     Variable("ordered_value", RANK, Unit.ONE, "value of the ensemble, in order and its own unit"),
     Variable("cumulative_probability", RANK, Unit.ONE, "share of the ensemble up to the value"),
-    Variable(
-        "cumulative_probability_lower_bound",
-        RANK,
-        Unit.ONE,
-        "lower confidence bound of the distribution at the value",
-    ),
-    Variable(
-        "cumulative_probability_upper_bound",
-        RANK,
-        Unit.ONE,
-        "upper confidence bound of the distribution at the value",
-    ),
-    Variable(
-        "simultaneous_lower_bound",
-        RANK,
-        Unit.ONE,
-        "lower bound of a band that holds the whole distribution",
-    ),
-    Variable(
-        "simultaneous_upper_bound",
-        RANK,
-        Unit.ONE,
-        "upper bound of a band that holds the whole distribution",
-    ),
+    *bounds("cumulative_probability", RANK, "{} confidence bound of the distribution at the value"),
+    *bounds("simultaneous", RANK, "{} bound of a band that holds the whole distribution"),
     Variable("quantile", QUANTILE, Unit.ONE, "share of the distribution below"),
     Variable("quantile_value", QUANTILE, Unit.ONE, "value below which that share lies"),
-    Variable(
-        "quantile_value_lower_bound", QUANTILE, Unit.ONE, "lower confidence bound of the quantile"
-    ),
-    Variable(
-        "quantile_value_upper_bound", QUANTILE, Unit.ONE, "upper confidence bound of the quantile"
-    ),
+    *bounds("quantile_value", QUANTILE, "{} confidence bound of the quantile"),
     count("member_count", "number of members of the ensemble"),
 )
 """Of ensembles."""

@@ -100,3 +100,11 @@ def count(name: str, words: str) -> Variable:
 def counting(name: str, words: str) -> Variable:
     """Make the row of a coordinate that counts."""
     return Variable(name, (name,), Unit.ONE, words, dtype="int64")
+
+
+def bounds(name: str, dims: tuple[str, ...], words: str) -> tuple[Variable, ...]:
+    """Make the rows of a lower and an upper bound of a ratio, whose words say which at ``{}``."""
+    return tuple(
+        Variable(f"{name}_{end}_bound", dims, Unit.ONE, words.format(end))
+        for end in ("lower", "upper")
+    )
