@@ -92,6 +92,16 @@ def flag(name: str, dims: tuple[str, ...], words: str, kind: type[IntEnum]) -> V
     return Variable(name, dims, None, words, kind, "int8")
 
 
+def number(name: str, words: str, dims: tuple[str, ...] = ()) -> Variable:
+    """Make the row of a pure number, or of one whose unit is that of what a dataset is of."""
+    return Variable(name, dims, Unit.ONE, words)
+
+
+def whether(name: str, words: str, dims: tuple[str, ...] = ()) -> Variable:
+    """Make the row of a truth value."""
+    return Variable(name, dims, None, words, dtype="bool")
+
+
 def count(name: str, words: str) -> Variable:
     """Make the row of a scalar count."""
     return Variable(name, (), Unit.ONE, words, dtype="int64")
@@ -102,9 +112,7 @@ def counting(name: str, words: str) -> Variable:
     return Variable(name, (name,), Unit.ONE, words, dtype="int64")
 
 
-def bounds(name: str, dims: tuple[str, ...], words: str) -> tuple[Variable, ...]:
+def bounds(name: str, words: str, dims: tuple[str, ...] = ()) -> tuple[Variable, ...]:
     """Make the rows of a lower and an upper bound of a ratio, whose words say which at ``{}``."""
-    return tuple(
-        Variable(f"{name}_{end}_bound", dims, Unit.ONE, words.format(end))
-        for end in ("lower", "upper")
-    )
+    ends = ("lower", "upper")
+    return tuple(number(f"{name}_{end}_bound", words.format(end), dims) for end in ends)
