@@ -11,7 +11,7 @@ import xarray as xr
 from rockframe.arguments import checked_dataset, truth
 from rockframe.errors import SchemaError, shown
 from rockframe.proposals import hinted
-from rockframe.results.schema import SCHEMA, dated
+from rockframe.results.schema import SCHEMA, dated, without_fill_values
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
 
@@ -147,10 +147,7 @@ def concat(
     joined.attrs["history"] = dated(f"{joined.sizes[dim]} joined along {dim!r}")
     if labels is not None:
         joined = _labelled(joined, dim, labels)
-    for name in joined.coords:
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
-        joined[name].encoding["_FillValue"] = None
-    return joined
+    return without_fill_values(joined)
 
 
 def _each(runs: object) -> Iterable[Any]:

@@ -218,8 +218,20 @@ def build_dataset(
     # labelled in place, since xarray copies each variable that it is handed with attributes
     for name, label in labels.items():
         dataset.variables[name].attrs = label
-    for name in coordinates:
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
+    return without_fill_values(dataset)
+
+
+def with_variables(
+    dataset: xr.Dataset, values: "Values", *, over: tuple[str, ...] = ()
+) -> xr.Dataset:
+    """Add variables, labelled by the schema, to a dataset; its attributes stay."""
+    added = build_dataset(values, {}, over=over)
+    return dataset.assign(added.data_vars).assign_coords(added.coords)
+
+
+def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
+    """Tell that coordinates have no missing values, and so need no fill value (CF 2.5.1)."""
+    for name in dataset.coords:
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
 

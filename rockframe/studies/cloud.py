@@ -12,7 +12,7 @@ from rockframe.arguments import whole_number
 from rockframe.errors import StudyError
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
@@ -455,12 +455,10 @@ def _labelled(
         f"exceedance_probability{end}": np.stack([one.points[k] for one in curves])
         for k, end in enumerate(ends)
     }
-    found = found.assign(build_dataset({**of_states, **counts}, {}, over=over).data_vars)
-    found = found.assign(build_dataset(points, {}, over=(*over, name)).data_vars)
+    found = with_variables(found, {**of_states, **counts}, over=over)
+    found = with_variables(found, points, over=(*over, name))
     found = found.assign_coords({name: (name, np.exp(along), measure.attrs)})
-    found = found.assign_coords(
-        build_dataset({"limit_state": np.array(list(names), dtype=object)}, {}).coords
-    )
+    found = with_variables(found, {"limit_state": np.array(list(names), dtype=object)})
     counted = [
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
         for level in levels

@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.errors import ModelWarning, StudyError, warn
 from rockframe.results.outcome import overturns
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -193,13 +193,12 @@ def incremental_dynamic_analysis(
         over=("limit_state", *over),
         source="scan and bisection of event-driven runs",
     )
-    censored = build_dataset(
+    found = with_variables(
+        scan.assign(narrow.data_vars),
         {"censored_count": np.isinf(capacity).sum(axis=-1)},
-        {},
         over=("limit_state", *line_axes.sizes),
     )
-    labels = labels_of_states(states)
-    found = scan.assign(narrow.data_vars).assign(censored.data_vars).assign_coords(labels)
+    found = found.assign_coords(labels_of_states(states))
     if measure is not None:
         found = found.assign({measure.name: intensity_in(scan, measure, given, owner=_OWNER)})
         found.attrs |= of_study(measure.name, measure.period)

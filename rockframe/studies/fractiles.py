@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
@@ -142,7 +142,7 @@ def fractile_curves(
     ]
     found = xr.merge([part.drop_attrs(deep=False) for part in parts], join="exact", compat="equals")
     found = found.assign_coords({**labels.coords, name: (name, along, measure.attrs)})
-    found = found.assign_coords(build_dataset({_LEVEL: asked}, {}).coords)
+    found = with_variables(found, {_LEVEL: asked})
     unit = values.attrs.get("units", "1")
     for one in ("motion_response", "response_fractile", _LEVEL):
         found[one].attrs["units"] = unit

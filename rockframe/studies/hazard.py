@@ -12,7 +12,7 @@ from numpy.polynomial.legendre import leggauss
 from rockframe.arguments import checked_dataset, function_of
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
 from rockframe.proposals import hinted
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
@@ -148,17 +148,15 @@ def annual_rate(
         {}, over=dims, title="Annual rate of exceeding limit states",
         source="integral of a fragility over a hazard curve",
     )  # fmt: skip
-    shares = build_dataset(
-        {"rate_share": laid("shares"), "quantile_intensity": laid("quantiles")}, {}, over=dims
-    )
-    labels = build_dataset(
-        {"contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
-         "quantile": np.array(_SHARES)}, {},
-    )  # fmt: skip
+    shares = {"rate_share": laid("shares"), "quantile_intensity": laid("quantiles")}
+    labels = {
+        "contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
+        "quantile": np.array(_SHARES),
+    }
     kept = [str(name) for name in given.coords if set(given[name].dims) <= set(dims)]
-    found = scalars.assign(shares.data_vars).assign_coords(
-        {**{name: given[name].variable for name in kept}, **labels.coords}
-    )
+    found = with_variables(scalars, shares, over=dims)
+    found = found.assign_coords({name: given[name].variable for name in kept})
+    found = with_variables(found, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
         found[name].attrs["units"] = given[measure].attrs.get("units", "1")
     told = {key: given.attrs[key] for key in (PERIOD_OF, "model") if key in given.attrs}

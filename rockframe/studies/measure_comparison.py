@@ -12,7 +12,7 @@ from rockframe.arguments import several
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.cloud import Cloud, cloud_of, laid_out, read_least
@@ -228,7 +228,7 @@ def _compared(
     found = build_dataset(
         {name: np.array(one) for name, one in values.items()}, {}, over=("measure",)
     )
-    return found.assign_coords(build_dataset(names, {}).coords)
+    return with_variables(found, names)
 
 
 def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:

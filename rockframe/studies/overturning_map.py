@@ -11,7 +11,7 @@ from rockframe.arguments import function_of, whole_number
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.schema import SCHEMA, build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -117,9 +117,9 @@ def overturning_map(
     )
     below, above, before, after = (one[0] for one in bracket_arrays(brackets, (1, len(motions))))
     counted = ways(scan)
-    of_cases = build_dataset(
+    found = with_variables(
+        scan,
         {"impacts_before_overturning": _without_stands(counted.to_numpy())},
-        {},
         over=tuple(map(str, counted.dims)),
     )
     of_frequencies = build_dataset(
@@ -134,8 +134,9 @@ def overturning_map(
         over=(MOTION,),
         source="scan and bisection of event-driven runs",
     )
-    found = scan.assign(of_cases.data_vars).assign(of_frequencies.data_vars)
-    found = found.assign_coords(_labels(system, levels, frequencies))
+    found = found.assign(of_frequencies.data_vars).assign_coords(
+        _labels(system, levels, frequencies)
+    )
     found = found.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
     found.attrs |= {
         "title": "Overturning by pulses",

@@ -11,7 +11,7 @@ import xarray as xr
 from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
 from rockframe.results.outcome import Generic
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
@@ -391,19 +391,16 @@ def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: fl
         columns[MOTION] = runs[MOTION].to_numpy()[known].astype(str)
     order = ranked(columns, verdict[known])
     share = falls / count if count else np.nan
-    added = build_dataset(
-        {
-            "overturning_probability": share,
-            "overturning_probability_lower_bound": lower,
-            "overturning_probability_upper_bound": upper,
-            "verdict_count": count,
-            "parameter": np.array(list(order), dtype=object),
-            "first_order_index": np.array([one.first_order for one in order.values()]),
-            "verdict_distance": np.array([one.distance for one in order.values()]),
-            "chance_probability": np.array([one.chance for one in order.values()]),
-        },
-        {},
-    )
+    added = {
+        "overturning_probability": share,
+        "overturning_probability_lower_bound": lower,
+        "overturning_probability_upper_bound": upper,
+        "verdict_count": count,
+        "parameter": np.array(list(order), dtype=object),
+        "first_order_index": np.array([one.first_order for one in order.values()]),
+        "verdict_distance": np.array([one.distance for one in order.values()]),
+        "chance_probability": np.array([one.chance for one in order.values()]),
+    }
     most = next(iter(order), "")
     said = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"
     said += f" with confidence {level:g}, by {count} cases"
@@ -415,4 +412,4 @@ def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: fl
         said += f"; {lacking} without a verdict are left out"
     if most and not np.isnan(order[most].first_order):
         said += f"; {most} matters most"
-    return runs.assign(added.data_vars).assign_coords(added.coords).assign_attrs(verdict=f"{said}.")
+    return with_variables(runs, added).assign_attrs(verdict=f"{said}.")

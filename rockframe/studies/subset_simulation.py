@@ -18,7 +18,7 @@ from rockframe.errors import (
 )
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import concat
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
@@ -341,24 +341,15 @@ def _labelled(
         {},
         source="subset simulation by event-driven runs",
     )
-    of_samples = build_dataset(
-        {
-            "demand": np.concatenate([one.demands for one in found]),
-            "sample_level": np.repeat(
-                of_levels["sampling_level"], [len(one.demands) for one in found]
-            ),
-            "sample_weight": np.concatenate(weights_of(found)),
-        },
-        {},
-        over=(CASE,),
-    )
+    of_samples = {
+        "demand": np.concatenate([one.demands for one in found]),
+        "sample_level": np.repeat(of_levels["sampling_level"], [len(one.demands) for one in found]),
+        "sample_weight": np.concatenate(weights_of(found)),
+    }
     known = {name: first.attrs[name] for name in _TOLD}
-    return (
-        samples.assign(of_levels.data_vars)
-        .assign_coords(of_levels.coords)
-        .assign(of_samples.data_vars)
-        .assign_attrs({**known, "source": of_levels.attrs["source"]})
-    )
+    samples = samples.assign(of_levels.data_vars).assign_coords(of_levels.coords)
+    samples = with_variables(samples, of_samples, over=(CASE,))
+    return samples.assign_attrs({**known, "source": of_levels.attrs["source"]})
 
 
 def _say_what_is_lacking(found: xr.Dataset) -> None:

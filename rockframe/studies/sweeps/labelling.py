@@ -11,7 +11,12 @@ import xarray as xr
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint, point_labels
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.schema import (
+    SCHEMA,
+    build_dataset,
+    with_variables,
+    without_fill_values,
+)
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS
@@ -111,7 +116,7 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
             for name in SCHEMA
             if name in rows.histories
         }
-        dataset = dataset.assign(build_dataset(histories, {}, over=tuple(grid.sizes)).data_vars)
+        dataset = with_variables(dataset, histories, over=tuple(grid.sizes))
     return with_coordinates(dataset, labels, said)
 
 
@@ -140,11 +145,7 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
 def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
     """Add the axes, and what is said of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
-    dataset = dataset.assign_coords(_of_bodies(labels, dataset.sizes))
-    for name in dataset.coords:
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
-        dataset[name].encoding["_FillValue"] = None
-    return dataset
+    return without_fill_values(dataset.assign_coords(_of_bodies(labels, dataset.sizes)))
 
 
 def _joined(count: int, found: Iterable[tuple[range, CaseResults]]) -> CaseResults:
