@@ -116,10 +116,8 @@ def concat(
         raise SchemaError(msg)
     _check_dimension(given, dim)
     truth(histories, owner=_OWNER, name="histories")
-    parts = [
-        _without(run, (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME))
-        for run in given
-    ]
+    left_out = (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME)
+    parts = [run.drop_dims(left_out, errors="ignore") for run in given]
     common = set[Any].intersection(*(set(part.data_vars) for part in parts))
     if not common:
         msg = (
@@ -168,10 +166,6 @@ def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
     if 0 < having < len(runs):
         msg = f"{_OWNER}: {having} of {len(runs)} datasets have the dimension {dim!r}; expected "
         raise SchemaError(msg + "all or none")
-
-
-def _without(run: xr.Dataset, dims: tuple[str, ...]) -> xr.Dataset:
-    return run.drop_dims([dim for dim in dims if dim in run.dims])
 
 
 def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:

@@ -45,7 +45,6 @@ from rockframe.system.options import PointsLike
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
-_MOST_SCALES: Final = 100_000
 _ARGUMENTS: Final = (
     *SweepArguments.__annotations__, "scale", "limits", "intensity", "period", "resolution",
     "bracket_width",
@@ -157,7 +156,7 @@ def incremental_dynamic_analysis(
     scene = scene_of(system)
     line_axes = read_line_axes(axes, scene, owner=_OWNER, others=_ARGUMENTS)
     states = limit_states(limits, owner=_OWNER)
-    scales = read_scales(scale, owner=_OWNER, most=_MOST_SCALES)
+    scales = read_scales(scale, owner=_OWNER)
     share = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
     measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)

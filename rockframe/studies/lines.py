@@ -210,6 +210,7 @@ _SCAN: Final = "scan"
 INTERRUPTED: Final = "; interrupted."
 """Ends the verdict of an analysis whose brackets are wider than asked."""
 _WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
+_MOST_SCALES: Final = 100_000
 _RESOLUTION: Final = Condition("from 1e-4 to 1", lambda value: 1e-4 <= value <= 1.0)
 
 LabelledVerdicts = Callable[[xr.Dataset], xr.DataArray]
@@ -347,11 +348,12 @@ def read_rising(given: object, measure: Measure, name: str, *, owner: str) -> Ar
     return values
 
 
-def read_scales(given: object, *, owner: str, most: int) -> Array:
+def read_scales(given: object, *, owner: str) -> Array:
     """Read the scales of a scan."""
     values = np.unique(numbers_of(given, TARGETS[SCALE].measure, SCALE))
-    if not 2 <= len(values) <= most or values[0] <= 0.0:
-        msg = f"{owner}: scale needs 2 to {most} different numbers above zero, got {shown(given)}"
+    if not 2 <= len(values) <= _MOST_SCALES or values[0] <= 0.0:
+        wanted = f"2 to {_MOST_SCALES} different numbers above zero"
+        msg = f"{owner}: scale needs {wanted}, got {shown(given)}"
         raise ComponentError(msg)
     return values
 

@@ -126,7 +126,6 @@ def _in_the_middle(block: Block) -> bool:
 
 _ROCKING: Final = "rocking_spectrum"
 _OVERTURNING: Final = "overturning_spectrum"
-_MOST_SCALES: Final = 100_000
 _ARGUMENTS: Final = (
     *SweepArguments.__annotations__, "periods", "slenderness", "scale", "intensity", "period",
     "resolution", "bracket_width",
@@ -273,7 +272,7 @@ def overturning_spectrum(
     """
     check_system(system, _OVERTURNING)
     sizes = BlockSizes(system, periods, slenderness, axes, owner=_OVERTURNING)
-    scales = read_scales(scale, owner=_OVERTURNING, most=_MOST_SCALES)
+    scales = read_scales(scale, owner=_OVERTURNING)
     share = read_width(bracket_width, owner=_OVERTURNING)
     finest = read_resolution(resolution, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)

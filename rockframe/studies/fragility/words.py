@@ -108,7 +108,8 @@ def _fit(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
     aside += [f"pooled over {last.attrs[POOLED]}"] if POOLED in last.attrs else []
     head = f"{state} ({'; '.join(aside)})" if aside else state
     if not fitted.any():
-        why = ", ".join(dict.fromkeys(_why(one) for one in status))
+        whys = (FragilityStatus(one).name.lower().replace("_", " ") for one in status)
+        why = ", ".join(dict.fromkeys(whys))
         return f"Against {head} no lognormal capacity fits over {over}: {why}.{_separation(last)}"
     rest = f"; to {int((~fitted).sum())} of them none fits" if not fitted.all() else ""
     if len(names) > 1:
@@ -119,10 +120,6 @@ def _fit(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
         for name, digits in zip(("median_intensity", "dispersion"), _DIGITS, strict=True)
     )
     return f"Capacity against {head}: median {over} {median}{unit}, dispersion {dispersion}{rest}."
-
-
-def _why(status: int) -> str:
-    return FragilityStatus(status).name.lower().replace("_", " ")
 
 
 def _range(values: Array, digits: int) -> str:

@@ -22,7 +22,7 @@ from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
-from rockframe.studies.sweeps.axes import Axis, Grid
+from rockframe.studies.sweeps.axes import Grid
 from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, CollectedResults, Driver
 from rockframe.studies.sweeps.runs import SCREEN
 from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
@@ -56,11 +56,11 @@ class Labels:
 def sweep_labels(study: Study) -> Labels:
     """Give the labels of a sweep."""
     arguments = study.arguments
-    scene = study.scene
+    scene, grid = study.scene, study.grid
     attributes: dict[str, str | float | int] = {
         "accuracy": SCREEN if study.screened else arguments.accuracy_name,
         "run_json": json.dumps(arguments.to_dict()),
-        "axes_json": json.dumps([axis.to_dict() for axis in every_axis(study.grid)]),
+        "axes_json": json.dumps([axis.to_dict() for axis in (*grid.axes, *grid.columns)]),
         "motions_json": json.dumps(
             [None if motion is None else motion.to_dict() for motion in study.motions.values()]
         ),
@@ -76,12 +76,7 @@ def sweep_labels(study: Study) -> Labels:
         attributes["system_json"] = scene.assembly.json
     elif isinstance(scene, FunctionScene):
         attributes["function"] = scene.name
-    return Labels(study.grid, tuple(study.motions), study.histories, arguments.points, attributes)
-
-
-def every_axis(grid: Grid) -> tuple[Axis, ...]:
-    """Give all axes: those with a dimension, then the columns of the table."""
-    return (*grid.axes, *grid.columns)
+    return Labels(grid, tuple(study.motions), study.histories, arguments.points, attributes)
 
 
 def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:

@@ -84,10 +84,10 @@ _GROUPS: Final = (
 
 
 def check_memory(
-    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str, copies: float = _COPIES
+    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str
 ) -> list[str]:
     """Tell what cases need, and whether it is there."""
-    sizes = {what: _FLOAT * copies * each * cases for what, each in numbers.items()}
+    sizes = {what: _FLOAT * _COPIES * each * cases for what, each in numbers.items()}
     needed, there = sum(sizes.values()), available()
     parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
     told = (
