@@ -52,17 +52,7 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
 
 
 def scales(nudge: float, reach: float) -> list[float]:
-    """Give the changes of scale to be tried first, from near to far.
-
-    Parameters
-    ----------
-    nudge, reach : float
-        Between a share of the nudge and the reach [1].
-
-    Returns
-    -------
-    list of float
-    """
+    """Give the changes of scale to be tried first, from a share of the nudge up to the reach."""
     row = [share * nudge for share in QUARTERS if share * nudge < reach]
     place = min(nudge, reach)
     while place < reach:
@@ -107,21 +97,9 @@ MOST_PER_PERIOD: Final = 1e4
 
 
 def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str, Plan]]:
-    """Give the same run by finer means, each independent of the others.
+    """Give the same run by finer means, each independent of the others, and what is finer.
 
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    plan : Plan
-        The run's arguments.
-    step : float
-        Average length of its steps [s].
-
-    Yields
-    ------
-    str, Plan
-        What is finer, in words, and the arguments.
+    `step` is the average length of its steps [s].
     """
     accuracy = plan.accuracy
     interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
@@ -157,22 +135,9 @@ def tightened(accuracy: Accuracy) -> Accuracy:
 
 
 def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float) -> Accuracy:
-    """Give settings whose longest step is shorter than the run's steps were on average.
+    """Give settings whose longest step is shorter than a run's steps were on average.
 
-    Parameters
-    ----------
-    accuracy : Accuracy
-        The run's settings.
-    system : Assembly
-        The scene.
-    step : float
-        Average length of the run's steps [s].
-    interval : float
-        Time between the motion's samples [s].
-
-    Returns
-    -------
-    Accuracy
+    `interval` is the time between the motion's samples [s].
     """
     wanted = step / SHORTER
     if accuracy.substeps is not None:

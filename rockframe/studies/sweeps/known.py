@@ -23,15 +23,7 @@ _NOBODY: Final = -1
 
 
 class KnownCases:
-    """The cases of a study that others have run.
-
-    Parameters
-    ----------
-    study : Study
-        The study that takes them.
-    folders : iterable of Path
-        Stores of the others; of a case that several have, the first one counts.
-    """
+    """The cases of a study that others have run; of several that have one the first counts."""
 
     def __init__(self, study: Study, folders: Iterable[Path]) -> None:
         self._grid = study.grid
