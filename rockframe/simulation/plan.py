@@ -28,6 +28,7 @@ from rockframe.results.variables.variable import TIME as OVER_TIME
 from rockframe.simulation.run_arguments import PROVED, Certification, RunArguments
 from rockframe.simulation.soundness import has_limit
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
+from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
 from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, Measure, QuantityLike, to_si
@@ -195,7 +196,7 @@ def ending_as_json(ending: Ending) -> dict[str, Any]:
 
 MOST_SAMPLES = 1e8
 """Samples of the histories beyond which a run is refused: some ten gigabytes."""
-STILL_GROUND_OUTPUT_STEP = 0.005
+_STILL_GROUND_OUTPUT_STEP: Final = 0.005
 """Spacing of the histories of a run without a ground motion [s]."""
 _REST: Final = InitialState()
 
@@ -265,6 +266,11 @@ class Plan(_Requested):
     def energies(self) -> tuple[str, ...]:
         """Energies among what is requested."""
         return tuple(name for name in self.requested if name in ENERGIES)
+
+    @property
+    def interval(self) -> float:
+        """Time between samples of the motion, or between steps of a still ground [s]."""
+        return STILL_INTERVAL if self.motion is None else self.motion.si.time_step
 
     def bare(self) -> "Plan":
         """Give the same run without samples."""
@@ -339,7 +345,7 @@ def fit_plan(
     if arguments.histories or arguments.points or has_limit(system):
         step = arguments.output_step
         if step is None:
-            step = STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
+            step = usual_output_step(motion)
         if length / step > MOST_SAMPLES:
             faults.append(
                 f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
@@ -398,6 +404,11 @@ def _beginning(
             f"{theta:.6g} rad"
         )
     return given
+
+
+def usual_output_step(motion: GroundMotion | None) -> float:
+    """Give the spacing that histories have where none is asked for [s]."""
+    return _STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
 
 
 def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:

@@ -13,7 +13,7 @@ from rockframe.system.fitting import SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Statics, static_values
 from rockframe.system.support import Support
 from rockframe.system.words import SLIPS, Words, angle_words
 
@@ -104,8 +104,7 @@ class AloneSetting(Setting):
         """Give settlement, reactions and moment at uplift, by their names in the schema."""
         found = self.upright()
         if self.rest_rotation != 0.0:
-            shown = self.statics(self.rest_rotation).reactions
-            found |= {f"static_{name}": value for name, value in shown.items()}
+            found |= static_values(self.statics(self.rest_rotation).reactions)
         return found
 
 

@@ -79,7 +79,7 @@ class RigidBase(Support):
         )
 
 
-REACTIONS = ("left_reaction", "right_reaction")
+REACTIONS: tuple[str, ...] = ("left_reaction", "right_reaction")
 
 
 class Pressed(NamedTuple):

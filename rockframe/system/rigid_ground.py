@@ -10,7 +10,7 @@ from rockframe.many import atan, cos, hypot, sin, sqrt, tan
 from rockframe.system.bodies import Restitutions, restitution_cautions
 from rockframe.system.rigid_base import REACTIONS
 from rockframe.system.setting import Setting
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Statics, static_values
 from rockframe.system.words import Words, angle_words
 
 if TYPE_CHECKING:
@@ -131,8 +131,8 @@ class RigidGroundSetting(Setting):
     def equilibrium(self) -> dict[str, float]:
         """Give the reactions at rest and the moment at uplift, by their names in the schema."""
         uplift = self.load.weight * self.body.half_width * self.body.base_ratio
-        shares = zip(REACTIONS, self.shares, strict=True)
-        return {"uplift_moment": uplift} | {f"static_{name}": force for name, force in shares}
+        shares = dict(zip(REACTIONS, self.shares, strict=True))
+        return {"uplift_moment": uplift, **static_values(shares)}
 
     @property
     def shares(self) -> tuple[float, float]:

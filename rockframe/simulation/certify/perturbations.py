@@ -11,7 +11,6 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.processing.samples import divided_signal
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
-from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly, assemble
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.links import link_labels
@@ -102,11 +101,10 @@ def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str
     `step` is the average length of its steps [s].
     """
     accuracy = plan.accuracy
-    interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
     yield tolerance_words(accuracy), replace(plan, accuracy=tightened(accuracy))
     yield (
         f"steps {SHORTER:g} times shorter",
-        replace(plan, accuracy=shortened(accuracy, system, step, interval)),
+        replace(plan, accuracy=shortened(accuracy, system, step, plan.interval)),
     )
     if plan.motion is None:
         return

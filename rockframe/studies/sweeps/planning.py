@@ -38,11 +38,11 @@ from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALAR
 from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.simulation.plan import (
-    STILL_GROUND_OUTPUT_STEP,
     RunRequest,
     listed,
     read_arguments,
     run_length,
+    usual_output_step,
 )
 from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid, faults_of_values
 from rockframe.studies.sweeps.motions import (
@@ -185,10 +185,7 @@ def _at_common_times(
 
 def _time_steps(motions: Mapping[str, GroundMotion | None]) -> set[float]:
     """Give the spacings that histories have where none is asked for."""
-    return {
-        STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
-        for motion in motions.values()
-    }
+    return {usual_output_step(motion) for motion in motions.values()}
 
 
 Read = TypeVar("Read")

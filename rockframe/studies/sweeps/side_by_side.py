@@ -11,7 +11,7 @@ from rockframe.errors import RockframeError
 from rockframe.signals import Motion
 from rockframe.simulation.plan import Plan, start_of
 from rockframe.simulation.run import Response, has_no_cautions
-from rockframe.solve.integrate import STILL_INTERVAL, begun
+from rockframe.solve.integrate import begun
 from rockframe.solve.lanes.integrate import (
     LaneRun,
     integrate_lanes,
@@ -153,9 +153,8 @@ def prepared(system: Assembly, said: list[str], plan: Plan, vertical: bool) -> L
         return None  # the ground is another one for each scene; or a block may leave it
     if system.model.shows_bodies or system.model.links:
         return None  # its equations work in lists, for which there are no lanes
-    interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
     begin = begun(
-        system.model, start_of(plan.initial), plan.accuracy, interval=interval,
+        system.model, start_of(plan.initial), plan.accuracy, interval=plan.interval,
         duration=plan.duration, output_step=None, stop_at_overturning=plan.stop_at_overturning,
     )  # fmt: skip
     run = LaneRun(system.model, begin)
