@@ -82,8 +82,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     values |= cap_histories(values, setting)
     values = body_histories(system.model, run, values)
     values |= relative_histories(values, setting)
-    vertical = plan.motion is not None and plan.motion.si.vertical is not None
-    values |= ground_histories(ground, has_vertical_motion=vertical)
+    values |= ground_histories(ground, has_vertical_motion=plan.has_vertical_motion)
     values["time"] = run.time
     along, upright = _along(system, plan, run, columns, events), events
     if not along.steps.complete:

@@ -54,36 +54,33 @@ def outputs_of(
     """
     wanted: set[str] = set()
     diagnostics: set[str] = set()
-    for name in listed(outputs):
-        if isinstance(name, str) and _has_dimensions(name, POINT_TIME):
+    for given in listed(outputs):
+        name = given if isinstance(given, str) else ""
+        dims = SCHEMA[name].dims if name in SCHEMA else ()
+        if dims == POINT_TIME:
             if not points:
                 faults.append(f"{name!r} is of points, and there are none; give {EXAMPLE}")
-        elif isinstance(name, str) and name in GROUPS:
+        elif name in GROUPS:
             wanted.update(GROUPS[name])
-        elif isinstance(name, str) and name in DIAGNOSTICS:
+        elif name in DIAGNOSTICS:
             diagnostics.add(name)
-        elif isinstance(name, str) and (name in ON_REQUEST or _has_dimensions(name, OVER_TIME)):
+        elif name in ON_REQUEST or dims == OVER_TIME:
             wanted.add(name)
         else:
             known = (*GROUPS, *ON_REQUEST, *DIAGNOSTICS)
             words = ", ".join(map(repr, known))
-            if isinstance(name, str) and name in SCHEMA and "time" in SCHEMA[name].dims:
+            found = (
+                f"outputs has no {shown(given)}; every run has its response, and on request "
+                f"{words}{nearest(given, known)}"
+            )
+            if "time" in dims:
                 found = (
                     f"outputs need not name {name!r}: a single run has it anyway, if its scene "
                     f"has; on request there are {words}"
                 )
-            else:
-                found = (
-                    f"outputs has no {shown(name)}; every run has its response, and on request "
-                    f"{words}{nearest(name, known)}"
-                )
             faults.append(found)
     requested = tuple(name for name in ON_REQUEST if name in wanted)
     return requested, tuple(one for name, one in DIAGNOSTICS.items() if name in diagnostics)
-
-
-def _has_dimensions(name: str, dims: tuple[str, ...]) -> bool:
-    return name in SCHEMA and SCHEMA[name].dims == dims
 
 
 NEEDED: Final = {
@@ -271,6 +268,11 @@ class Plan(_Requested):
     def interval(self) -> float:
         """Time between samples of the motion, or between steps of a still ground [s]."""
         return STILL_INTERVAL if self.motion is None else self.motion.si.time_step
+
+    @property
+    def has_vertical_motion(self) -> bool:
+        """Whether the ground moves vertically, too."""
+        return self.motion is not None and self.motion.si.vertical is not None
 
     def bare(self) -> "Plan":
         """Give the same run without samples."""

@@ -131,7 +131,7 @@ def _take_up(
     key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
     if key not in scenes:
         scenes[key] = None  # unless it can be prepared
-        found = prepared(*cases.planned(case), cases.has_vertical(case))
+        found = prepared(*cases.planned(case))
         scenes[key] = found if found is not None and ready(found) else None
     scene = scenes[key]
     if scene is None:
@@ -145,11 +145,11 @@ def _take_up(
     groups.setdefault(scene.kind, _Group()).add(case, scene, moved, motion)
 
 
-def prepared(system: Assembly, said: list[str], plan: Plan, vertical: bool) -> LaneScene | None:
+def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
     """Prepare a scene for lanes; None if its runs need a closer look."""
     if plan.output_step is not None:
         return None  # samples are looked at, for friction
-    if not system.options.slope.level or (vertical and not system.setting.flies):
+    if not system.options.slope.level or (plan.has_vertical_motion and not system.setting.flies):
         return None  # the ground is another one for each scene; or a block may leave it
     if system.model.shows_bodies or system.model.links:
         return None  # its equations work in lists, for which there are no lanes

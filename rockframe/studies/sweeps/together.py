@@ -97,9 +97,7 @@ def _alike(cases: CasesOfJob, which: Sequence[int]) -> list[Places]:
 def _assembled(cases: CasesOfJob, some: Places) -> _Group:
     """Assemble the scenes of cases; give the row of each for lanes."""
     first = int(some[0])
-    vertical = cases.has_vertical(first)
-    several = prepared(*cases.planned_together(some), vertical)
-    one = prepared(*cases.planned(first), vertical)
+    several, one = prepared(*cases.planned_together(some)), prepared(*cases.planned(first))
     if several is None or one is None:
         raise OnlyAlone
     rows = rows_of(several.run.model, several.run.begun, len(some))
