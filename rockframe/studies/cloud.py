@@ -20,7 +20,7 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import Arrangement, Means, with_stripes
 from rockframe.studies.fragility.likelihood import Bands
-from rockframe.studies.fragility.trials import motion_numbers
+from rockframe.studies.fragility.trials import laid_out, motion_numbers
 from rockframe.studies.intensities import (
     PERIOD_OF,
     PeriodLike,
@@ -278,8 +278,11 @@ def cloud_of(
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without motions; expected those of many motions"
         raise StudyError(msg)
-    along, response = laid_out(runs, measure), np.abs(laid_out(runs, values))
-    fell = laid_out(runs, overturns(runs))
+    along, response, fell = (
+        laid_out(one, runs["status"]).astype(np.float64)
+        for one in (measure, values, overturns(runs))
+    )
+    response = np.abs(response)
     response = np.where(fell == 1.0, np.inf, np.where(response < least, 0.0, response))
     known = ~np.isnan(fell) & (along > 0.0) & np.isfinite(along) & ~np.isnan(response)
     if known.sum() < _FEWEST:
@@ -289,13 +292,6 @@ def cloud_of(
     used = motion_numbers(overturns(runs))[known]
     made = Cloud.of(np.log(along[known]), response[known])
     return CloudOfRuns(made, known, len(np.unique(used)) < len(used))
-
-
-def laid_out(runs: xr.Dataset, values: xr.DataArray) -> Array:
-    """Lay numbers of runs out in a row."""
-    status = runs["status"]
-    laid = values.broadcast_like(status).transpose(*status.dims)
-    return laid.to_numpy().ravel().astype(np.float64)
 
 
 def read_least(given: Any, values: xr.DataArray, *, owner: str) -> float:
@@ -338,11 +334,10 @@ def _curve(cloud: Cloud, level: float, along: Array, about: "_Bounds") -> _Curve
     wide = np.linspace(cloud.logs.min() - _BEYOND, cloud.logs.max() + _BEYOND, _WIDE)
     middle, spread = _parameters(cloud.probabilities(wide, level)[None], wide)
     points = np.full((3, len(along)), np.nan)
+    points[0] = cloud.probabilities(along, level)
     medians, spreads = np.full((2, 3), np.nan)
     if status not in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
-        points[0] = cloud.probabilities(along, level)
         return _Curve(status, points, medians, spreads)
-    points[0] = cloud.probabilities(along, level)
     medians[0], spreads[0] = np.exp(middle[0]), spread[0]
     if status is FragilityStatus.SEPARATED:
         medians[0], spreads[0] = np.exp(cloud.overturning.coefficients[0]), 0.0

@@ -15,7 +15,8 @@ from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.cloud import Cloud, cloud_of, laid_out, read_least
+from rockframe.studies.cloud import Cloud, cloud_of, read_least
+from rockframe.studies.fragility.trials import laid_out
 from rockframe.studies.intensities import (
     PERIOD_OF,
     PeriodLike,
@@ -139,7 +140,8 @@ def compare_intensities(
         msg = f"{_OWNER}: measures are named twice: {', '.join(named)}"
         raise ComponentError(msg)
     beside = {
-        name: laid_out(runs, one)[kept[0]] for name, one in _covariates(runs, against).items()
+        name: laid_out(one, runs["status"]).astype(np.float64)[kept[0]]
+        for name, one in _covariates(runs, against).items()
     }
     about = build_dataset({}, {}, title="Comparison of intensity measures", source=_SOURCE).attrs
     found = _compared(named, clouds, beside).assign_attrs(about)
