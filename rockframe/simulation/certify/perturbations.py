@@ -11,7 +11,7 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.processing.samples import divided_signal
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
-from rockframe.system.assembly import Assembly, assemble
+from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.links import link_labels
 
@@ -27,27 +27,26 @@ SceneAt = Callable[[float], Assembly | None]
 
 def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
     """Give every parameter of every part of a scene, and the scene with it changed."""
-    options = system.options.to_dict()
-    parts = system.parts.structural()
+    parts = system.parts
 
-    def changed(place: int, name: str) -> SceneAt:
+    def changed(slot: str, name: str) -> SceneAt:
         def at(change: float) -> Assembly | None:
             try:
-                part = parts[place].with_scaled(name, 1.0 + change)
-                return assemble([*parts[:place], part, *parts[place + 1 :]], **options)
+                part = parts[slot].with_scaled(name, 1.0 + change)
+                return assembly_of(parts.changed(**{slot: part}, motion=None), system.options)
             except RockframeError:
                 return None
 
         return at
 
-    links = system.parts.links
+    links = parts.links
     labels = dict(zip(map(id, links), link_labels(links), strict=True)) if len(links) > 1 else {}
-    for place, part in enumerate(parts):
+    for slot, part in parts.components.items():
         owner = labels.get(id(part), f"the {part.noun}")
         for name in part.parameters():
             if name == "friction" and not system.setting.slides:  # it changes no motion
                 continue
-            yield f"{name.replace('_', ' ')} of {owner}", changed(place, name)
+            yield f"{name.replace('_', ' ')} of {owner}", changed(slot, name)
 
 
 def scales(nudge: float, reach: float) -> list[float]:
