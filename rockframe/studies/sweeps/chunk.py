@@ -26,7 +26,6 @@ from rockframe.studies.sweeps.together import FinishedTogether
 
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""
-_STATUS: Final = "status"
 DRIVER: Final = "driver"
 """Column that tells how cases were run; no result, and in no dataset."""
 
@@ -171,8 +170,7 @@ class _Collector(CollectedResults):
         if run.summary.overturned is None:
             self._clear(case)
             return
-        self._put_scalars(case, {DRIVER: _driver(run)})
-        self._put_scalars(case, {name: scalars[name] for name in scalars if name != _STATUS})
+        self._put_scalars(case, {DRIVER: _driver(run), **scalars})
         if self._kept is not None and response is not None and response.answers.values:
             self._put_histories(case, response.answers.values, self._kept)
 
@@ -181,9 +179,7 @@ class _Collector(CollectedResults):
             self._clear(run.cases)
         self._say(run.cases, "; ".join(run.said) or NONE)
         self._status[run.cases] = run.status
-        self._put_scalars(run.cases, {DRIVER: Driver.IN_LANES})
-        kept = {name: each for name, each in run.scalars.items() if name != _STATUS}
-        self._put_scalars(run.cases, kept)
+        self._put_scalars(run.cases, {DRIVER: Driver.IN_LANES, **run.scalars})
 
     def screen(self, every: Iterable[int], doubtful: Iterable[int]) -> None:
         """Note which cases were screened, and whose verdict was in doubt."""
@@ -201,6 +197,8 @@ class _Collector(CollectedResults):
 
     def _put_scalars(self, case: int | Places, values: Mapping[str, Generic | float]) -> None:
         for name, value in values.items():
+            if name == "status":  # which has a place of its own
+                continue
             # what is the same in all of several cases has no row for each
             row = value if np.ndim(value) else np.broadcast_to(value, np.shape(case))
             _put_into(self._scalars, self._count, name, case, row)

@@ -12,7 +12,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import contextmanager, nullcontext
+from contextlib import closing, contextmanager, nullcontext
 from functools import partial
 from threading import Event, Thread
 from typing import Any, Final, Protocol, runtime_checkable
@@ -46,6 +46,8 @@ class ProgressBar(Protocol):
 
 
 class _Silent:
+    """A bar that shows nothing."""
+
     def name(self, part: str) -> None:
         """Show nothing."""
 
@@ -53,6 +55,9 @@ class _Silent:
         """Show nothing."""
 
     def update(self, count: int) -> None:
+        """Show nothing."""
+
+    def close(self) -> None:
         """Show nothing."""
 
 
@@ -100,17 +105,14 @@ class _Bar:
 @contextmanager
 def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
     """Show a bar while something is done."""
-    bar = _made(given, owner, unit)
-    try:
-        yield bar
-    finally:
-        if isinstance(bar, _Bar):
-            bar.close()
-
-
-def _made(given: object, owner: str, unit: str) -> ProgressBar:
     if isinstance(given, ProgressBar):  # of the caller, who closes it
-        return given
+        yield given
+        return
+    with closing(_made(given, owner, unit)) as bar:
+        yield bar
+
+
+def _made(given: object, owner: str, unit: str) -> _Silent | _Bar:
     if given is not None and not isinstance(given, bool):
         msg = f"{owner}: progress must be True, False or None, got {shown(given)}"
         raise ComponentError(msg)
