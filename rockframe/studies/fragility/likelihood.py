@@ -170,15 +170,15 @@ def log_likelihood(trials: Trials, coefficients: Array) -> Array:
 
 def scores(trials: Trials, coefficients: Array) -> Array:
     """Give the slope of each trial's share in the log-likelihood."""
-    return trials.weight[:, None] * slopes_of(*_ends(trials, coefficients))
+    return trials.weight[:, None] * slopes_of_shares(*_ends(trials, coefficients))
 
 
 def information(trials: Trials, coefficients: Array) -> Array:
     """Give the observed information, the curvature of the log-likelihood with its sign changed."""
-    return curvature_of(*_ends(trials, coefficients), trials.weight)
+    return curvature_of_shares(*_ends(trials, coefficients), trials.weight)
 
 
-def slopes_of(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
+def slopes_of_shares(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
     """Give the slopes of the logarithms of shares between two ends by the coefficients.
 
     From what these multiply at the ends, and eta there; an open end has zeros, and eta is infinite.
@@ -187,7 +187,7 @@ def slopes_of(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) ->
     return at_upper[:, None] * upper - at_lower[:, None] * lower
 
 
-def curvature_of(
+def curvature_of_shares(
     upper: Array, lower: Array, eta_upper: Array, eta_lower: Array, weight: Array | float = 1.0
 ) -> Array:
     """Give their curvature, summed up with weights, with its sign changed."""

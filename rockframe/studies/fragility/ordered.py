@@ -17,10 +17,10 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import (
     Bands,
     Fit,
-    curvature_of,
+    curvature_of_shares,
     jackknife,
     log_shares,
-    slopes_of,
+    slopes_of_shares,
 )
 
 
@@ -78,7 +78,7 @@ def _of_share(share: float) -> Fit:
 def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, Array]:
     """Give what coefficients multiply at both ends of each verdict, and eta there.
 
-    As :func:`rockframe.studies.fragility.likelihood.slopes_of` takes them.
+    As :func:`rockframe.studies.fragility.likelihood.slopes_of_shares` takes them.
     """
     states = len(at) - 1
     upper, lower = np.zeros((2, len(logs), len(at)))
@@ -101,11 +101,11 @@ def _value(logs: Array, count: Generic, at: Array) -> float:
 
 
 def _scores(logs: Array, count: Generic, at: Array) -> Array:
-    return slopes_of(*_ends(logs, count, at))
+    return slopes_of_shares(*_ends(logs, count, at))
 
 
 def _information(logs: Array, count: Generic, at: Array) -> Array:
-    return curvature_of(*_ends(logs, count, at))
+    return curvature_of_shares(*_ends(logs, count, at))
 
 
 _STEPS = 100
