@@ -21,9 +21,9 @@ from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis
-from rockframe.studies.sweeps.motions import MotionsLike, full_name, named_motions
+from rockframe.studies.sweeps.motions import MotionsLike, full_name
 from rockframe.studies.sweeps.planning import check_memory
-from rockframe.studies.sweeps.scenes import SweptScene, own_motion, scene_of
+from rockframe.studies.sweeps.scenes import SweptScene, read_motions, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio, to_si
 
@@ -344,8 +344,7 @@ def probability_of_overturning(
     way = one_of_words(Sampling, sampling, owner=_OWNER, name="sampling")
     first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_level(confidence, owner=_OWNER)
-    own = own_motion(scene) if motions is None else motions
-    named = None if own is None else named_motions(own)
+    named = read_motions(motions, scene)
     wrong = check_memory(
         {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER
     )

@@ -50,14 +50,13 @@ from rockframe.studies.sweeps.motions import (
     OF_THE_SCENE,
     SPECTRAL,
     motion_number,
-    named_motions,
 )
 from rockframe.studies.sweeps.runs import AGAIN, FIRST, SCREEN
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,
     SystemScene,
-    own_motion,
+    read_motions,
     scene_of,
 )
 from rockframe.studies.sweeps.study import Histories, Study
@@ -316,11 +315,9 @@ def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept
 
 
 def _motions(given: object, scene: SweptScene) -> dict[str, GroundMotion | None]:
-    if given is not None:
-        return dict(named_motions(given))
-    own = own_motion(scene)
-    if own is not None:
-        return {own.name: own}
+    named = read_motions(given, scene)
+    if named is not None:
+        return dict(named)
     return {OF_THE_SCENE if isinstance(scene, FunctionScene) else NO_MOTION: None}
 
 

@@ -27,7 +27,7 @@ from rockframe.studies.sweeps.axes import (
     words_of,
 )
 from rockframe.studies.sweeps.identity import name_of
-from rockframe.studies.sweeps.motions import TARGETS, full_name
+from rockframe.studies.sweeps.motions import TARGETS, full_name, named_motions
 from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.links import link_labels
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
@@ -265,6 +265,12 @@ def scene_of(given: object) -> SweptScene:
         return FunctionScene(given)
     msg = f"scene must be a System, or a function of the axes that returns one, got {shown(given)}"
     raise StudyError(msg)
+
+
+def read_motions(given: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
+    """Read the argument ``motions``: unless given, the one of the scene; None where it has none."""
+    own = own_motion(scene) if given is None else given
+    return None if own is None else named_motions(own)
 
 
 def own_motion(scene: SweptScene) -> GroundMotion | None:
