@@ -23,7 +23,7 @@ from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis
 from rockframe.studies.sweeps.motions import MotionsLike, full_name
 from rockframe.studies.sweeps.planning import check_memory
-from rockframe.studies.sweeps.scenes import SweptScene, read_motions, scene_of
+from rockframe.studies.sweeps.scenes import SweptScene, motions_of_study, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio, to_si
 
@@ -344,7 +344,7 @@ def probability_of_overturning(
     way = one_of_words(Sampling, sampling, owner=_OWNER, name="sampling")
     first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_level(confidence, owner=_OWNER)
-    named = read_motions(motions, scene)
+    named = motions_of_study(motions, scene)
     wrong = check_memory(
         {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER
     )

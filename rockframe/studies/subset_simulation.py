@@ -49,7 +49,7 @@ from rockframe.studies.rounds import Rounds, rounds_of
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.case import remember, remembered
 from rockframe.studies.sweeps.planning import check_memory
-from rockframe.studies.sweeps.scenes import read_motions, scene_of
+from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
 from rockframe.system.options import PointsLike
 from rockframe.units import Condition, RatioLike, to_ratio
 
@@ -182,7 +182,7 @@ def subset_simulation(
     most = whole_number(levels, owner=_OWNER, name="levels", lowest=1, highest=_MOST_LEVELS)
     first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     trust = read_level(confidence, owner=_OWNER)
-    named = read_motions(motions, scene)
+    named = motions_of_study(motions, scene)
     wrong = check_memory(
         {"samples": 2.0 + len(spreads)}, count * most, "draw fewer cases", owner=_OWNER
     )

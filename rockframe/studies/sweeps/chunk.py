@@ -19,10 +19,9 @@ from rockframe.simulation.certify.second_look import Look
 from rockframe.simulation.run import NONE, in_motion, scalars_of
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
+from rockframe.studies.sweeps.lanes import Failed, Finished, FinishedTogether
 from rockframe.studies.sweeps.runs import each_run, in_doubt, looks_of, repeated
-from rockframe.studies.sweeps.side_by_side import Failed, Finished
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
-from rockframe.studies.sweeps.together import FinishedTogether
 
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""

@@ -56,7 +56,7 @@ from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,
     SystemScene,
-    read_motions,
+    motions_of_study,
     scene_of,
 )
 from rockframe.studies.sweeps.study import Histories, Study
@@ -315,7 +315,7 @@ def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept
 
 
 def _motions(given: object, scene: SweptScene) -> dict[str, GroundMotion | None]:
-    named = read_motions(given, scene)
+    named = motions_of_study(given, scene)
     if named is not None:
         return dict(named)
     return {OF_THE_SCENE if isinstance(scene, FunctionScene) else NO_MOTION: None}

@@ -267,7 +267,7 @@ def scene_of(given: object) -> SweptScene:
     raise StudyError(msg)
 
 
-def read_motions(given: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
+def motions_of_study(given: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
     """Read the argument ``motions``: unless given, the one of the scene; None where it has none."""
     own = own_motion(scene) if given is None else given
     return None if own is None else named_motions(own)
