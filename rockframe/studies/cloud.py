@@ -1,7 +1,7 @@
 """Cloud analysis: a straight line in logarithms, with runs that overturn apart."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
@@ -250,17 +250,18 @@ def cloud_analysis(
     values = scalar_of(runs, response, label or "", owner=_OWNER)
     asked = _levels(limits, values)
     floor = read_least(least, values, owner=_OWNER)
-    cloud, kept, repeated = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
-    return _labelled(
-        cloud, asked, _names(asked, response, label, values), measure, level,
-        {
-            "left_out": int((~kept).sum()), "repeated": repeated, "seed": seed,
-            "response": response if label is None else f"{response} {label}",
-            "unit": str(values.attrs.get("units", "1")),
-            "told": told_period(runs, [intensity], period, owner=_OWNER),
-            "kept": {key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs},
-        },
+    found = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
+    dataset = _labelled(
+        found, asked, _names(asked, response, label, values), measure, level, seed,
+        unit=str(values.attrs.get("units", "1")),
     )  # fmt: skip
+    dataset.attrs |= {
+        **{key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs},
+        **told_period(runs, [intensity], period, owner=_OWNER),
+        "intensity": str(measure.name),
+        "response": response if label is None else f"{response} {label}",
+    }
+    return dataset.assign_attrs(verdict=_sentence(dataset, found.repeated))
 
 
 class CloudOfRuns(NamedTuple):
@@ -329,7 +330,7 @@ class _Curve:
     dispersion: Array
 
 
-def _curve(cloud: Cloud, level: float, along: Array, about: "_Bounds") -> _Curve:
+def _curve(cloud: Cloud, level: float, along: Array, bounds: "_Bounds") -> _Curve:
     status = _status(cloud, level)
     wide = np.linspace(cloud.logs.min() - _BEYOND, cloud.logs.max() + _BEYOND, _WIDE)
     middle, spread = _parameters(cloud.probabilities(wide, level)[None], wide)
@@ -341,9 +342,9 @@ def _curve(cloud: Cloud, level: float, along: Array, about: "_Bounds") -> _Curve
     medians[0], spreads[0] = np.exp(middle[0]), spread[0]
     if status is FragilityStatus.SEPARATED:
         medians[0], spreads[0] = np.exp(cloud.overturning.coefficients[0]), 0.0
-    elif not math.isnan(about.confidence):
-        tails = 0.5 * (1.0 - about.confidence), 0.5 * (1.0 + about.confidence)
-        rng = np.random.default_rng(about.seed)
+    elif not math.isnan(bounds.confidence):
+        tails = 0.5 * (1.0 - bounds.confidence), 0.5 * (1.0 + bounds.confidence)
+        rng = np.random.default_rng(bounds.seed)
         drawn = cloud.drawn(np.concatenate([along, wide]), level, rng, _DRAWS)
         points[1:] = np.quantile(drawn[:, : len(along)], tails, axis=0)
         each = _parameters(drawn[:, len(along) :], wide)
@@ -400,15 +401,17 @@ def _crossing(eta: Array, logs: Array, level: float) -> Array:
 
 
 def _labelled(
-    cloud: Cloud,
+    runs: CloudOfRuns,
     levels: Sequence[float],
     names: Sequence[str],
     measure: xr.DataArray,
     confidence: float,
-    about: Mapping[str, Any],
+    seed: int,
+    *,
+    unit: str,
 ) -> xr.Dataset:
-    """Label a cloud and its fragility."""
-    bounds = _Bounds(math.nan if about["repeated"] else confidence, about["seed"])
+    """Label a cloud and its fragility; the responses have a unit."""
+    cloud, bounds = runs.cloud, _Bounds(math.nan if runs.repeated else confidence, seed)
     along = np.linspace(cloud.logs.min(), cloud.logs.max(), _POINTS)
     curves = [_curve(cloud, level, along, bounds) for level in levels]
     name, over = str(measure.name), ("limit_state",)
@@ -444,7 +447,7 @@ def _labelled(
         of_states[f"dispersion{end}"] = np.array([one.dispersion[k] for one in curves])
     counts = {
         "trial_count": np.full(len(levels), len(cloud.logs)),
-        "left_out_count": np.full(len(levels), about["left_out"]),
+        "left_out_count": np.full(len(levels), int((~runs.kept).sum())),
     }
     points = {
         f"exceedance_probability{end}": np.stack([one.points[k] for one in curves])
@@ -462,14 +465,8 @@ def _labelled(
     found = with_stripes(found, counted, layout, Means(Bands.PROFILE, confidence))
     for one in _OF_INTENSITY:
         found[one].attrs["units"] = measure.attrs.get("units", "1")
-    found["cloud_response"].attrs["units"] = found["response_limit"].attrs["units"] = about["unit"]
-    found.attrs |= {
-        **about["kept"],
-        **about["told"],
-        "intensity": name,
-        "response": about["response"],
-    }
-    return found.assign_attrs(verdict=_sentence(found, about["repeated"]))
+    found["cloud_response"].attrs["units"] = found["response_limit"].attrs["units"] = unit
+    return found
 
 
 def _sentence(found: xr.Dataset, repeated: bool) -> str:
