@@ -13,7 +13,7 @@ from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
 from rockframe.system.setting import SlipRange
-from rockframe.system.words import Words
+from rockframe.system.words import HELD_BY_FRICTION, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel, Ending
@@ -82,8 +82,7 @@ class SlidingSetting(RigidGroundSetting):
                 ("flight", "nothing bears: N = 0"),
                 ("impact", f"{self.impact}: {law}; {onto}"),
             ],
-            restraint="friction at the corner that bears, or on the whole base (the restraint "
-            "options make no difference)",
+            restraint=HELD_BY_FRICTION,
             numbers=[
                 *base.numbers[:-1],
                 ("friction at rest, and of slip", self.friction.words()),

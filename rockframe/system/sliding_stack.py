@@ -18,7 +18,7 @@ from rockframe.system.sliding_ground import (
     slips_on_ground,
 )
 from rockframe.system.stack import StackSetting
-from rockframe.system.words import SLIPS, Words
+from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.slips import SlippingBodies
@@ -179,8 +179,7 @@ class TiedSlidingSetting(TiedSetting):
                  "are finite, have no part in it"),
                 *(one for one in told.equations if one[0] == "restrainers"),
             ],
-            restraint="friction at the corner that bears, or on the whole base (the restraint "
-            "options make no difference)",
+            restraint=HELD_BY_FRICTION,
             numbers=[
                 *told.numbers,
                 ("friction at rest, and of slip", self.friction.words()),
