@@ -229,14 +229,9 @@ def run(
 
 def _looked_again(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
     """Give the error of the peak that a second run with more steps shows, and its doubts."""
-    second = outcome(system, second_look(system, plan))
+    second = respond(system, second_look(system, plan)).trajectory
     found = doubts(system.setting, plan, summary, second)
     return peak_error(summary, second), [(SolverWarning, text) for text in found]
-
-
-def outcome(system: Assembly, plan: Plan) -> Summary:
-    """Integrate as planned, and give only what became of the run."""
-    return respond(system, plan).trajectory
 
 
 def summary_of(system: Assembly, plan: Plan) -> RunSummary:
