@@ -16,14 +16,14 @@ from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
+from rockframe.studies.confidence import SHARE
 from rockframe.studies.intensities import PeriodLike, measure_in, told_period
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.motions import MotionsLike
-from rockframe.units import Condition, Measure, RatioLike, Unit, to_ratio, to_si_values
+from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
-_SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _POINTS: Final = 201
 """Intensities, and levels of the response, at which curves are given unless told otherwise."""
 _LEVEL: Final = "response_level"
@@ -106,7 +106,7 @@ def fractile_curves(
     runs = check_runs(runs, owner=_OWNER)
     shares = np.array(
         [
-            to_ratio(one, owner=_OWNER, name="fractiles", condition=_SHARE, example="0.5")
+            to_ratio(one, owner=_OWNER, name="fractiles", condition=SHARE, example="0.5")
             for one in several(fractiles, owner=_OWNER, name="fractiles", of="numbers")
         ]
     )

@@ -17,13 +17,13 @@ from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME, unit_behind
+from rockframe.studies.confidence import SHARE
 from rockframe.units import Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
 OVERTURNING: Final = "overturning"
 STATES: Final = "limits_json"
 """Attribute by which a dynamic analysis keeps its limit states."""
-_SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _OF_SAMPLES: Final = {"residual_displacement", *(row.name for row in FORCE_SCALARS)} | {
     row.name for row in (*BODIES, *RESTRAINERS) if row.name.startswith("peak_")
 }
@@ -91,7 +91,7 @@ def _share(given: Any, owner: str, name: str) -> float:
         )
         msg = f"{words}, got {shown(given)}{nearest(given, (UPLIFT, OVERTURNING))}"
         raise ComponentError(msg)
-    return to_ratio(given, owner=owner, name=name, condition=_SHARE, example="0.5")
+    return to_ratio(given, owner=owner, name=name, condition=SHARE, example="0.5")
 
 
 def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:

@@ -196,9 +196,9 @@ def stored_dataset(kept: Store) -> xr.Dataset:
     return dataset.assign_attrs(kept.provenance())
 
 
-def folder_of(path: object) -> Path:
-    """Read the argument ``store``."""
+def folder_of(path: object, *, owner: str = "") -> Path:
+    """Read the argument ``store``, of a function that is named in messages, if there is one."""
     if isinstance(path, str | PathLike):
         return Path(path)  # pyright: ignore[reportUnknownArgumentType]
-    msg = f"store must be the path of a folder, got {shown(path)}"
-    raise StudyError(msg)
+    words = f"store must be the path of a folder, got {shown(path)}"
+    raise StudyError(f"{owner}: {words}" if owner else words)
