@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
-from rockframe.components import Component
 from rockframe.errors import AssemblyError
 from rockframe.many import isnan
-from rockframe.system.fitting import SMALL_SLIDING, BaseFriction, friction_under
+from rockframe.system.fitting import BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange
 from rockframe.system.small_motion import SmallMotion
@@ -150,13 +149,3 @@ class SlidingAloneSetting(AloneSetting):
         """Tell how far the body slipped."""
         system = cast("SlippingBodies", self.compile().system)
         return (SlipRange(*system.slips(0, ending)),)
-
-
-def alone_on(part: Component, held: AloneSetting) -> AloneSetting:
-    """Give the setting of a body on a base: of one that slips on it where that has friction."""
-    found = friction_under(part, held.options)
-    if found is None:
-        return held
-    if held.options.small:
-        raise AssemblyError([SMALL_SLIDING])
-    return SlidingAloneSetting(held.load, held.support, found, cap_offset=held.cap_offset)

@@ -8,9 +8,16 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe.components import Component, RigidGround
 from rockframe.errors import AssemblyError
-from rockframe.system.alone import AloneSetting, alone_on
+from rockframe.system.alone import AloneSetting, SlidingAloneSetting
 from rockframe.system.bodies import BaseLoad, load_of, one_body
-from rockframe.system.fitting import contradictions, misfits, missizes, unused
+from rockframe.system.fitting import (
+    SMALL_SLIDING,
+    contradictions,
+    friction_under,
+    misfits,
+    missizes,
+    unused,
+)
 from rockframe.system.options import (
     Coupling,
     Options,
@@ -71,8 +78,13 @@ def _held(slot: str, parts: Parts, options: Options) -> AloneSetting:
 
 
 def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
-    """Put a block on the base in a slot."""
-    return alone_on(parts[slot], _held(slot, parts, options))
+    """Put a block on the base in a slot, on which it slips where that has friction."""
+    held, friction = _held(slot, parts, options), friction_under(parts[slot], options)
+    if friction is None:
+        return held
+    if options.small:
+        raise AssemblyError([SMALL_SLIDING])
+    return SlidingAloneSetting(held.load, held.support, friction, cap_offset=held.cap_offset)
 
 
 def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
