@@ -170,6 +170,8 @@ class RockframeAccessor:
     @property
     def summary(self) -> str:
         """What the dataset holds and what became of it, in a few lines."""
+        from rockframe.results.variables.variable import unit_behind
+
         given = self._dataset
         lines = [line for line in (str(given.attrs.get("title", "")), self.verdict) if line]
         lines += [
@@ -181,8 +183,8 @@ class RockframeAccessor:
             lines.append("over " + ", ".join(f"{dim} ({n})" for dim, n in given.sizes.items()))
         for name in _SHOWN:
             if name in given and given[name].ndim == 0:
-                unit = str(given[name].attrs.get("units", "1"))
-                lines.append(f"{name}: {given[name].item():.4g}{'' if unit == '1' else f' {unit}'}")
+                unit = unit_behind(given[name].attrs)
+                lines.append(f"{name}: {given[name].item():.4g}{unit}")
         return "\n".join(lines)
 
     def __repr__(self) -> str:

@@ -8,7 +8,7 @@ from rockframe.measures.common import check_some
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.system.tied_sliding import TiedSetting
+from rockframe.system.sliding_stack import TiedSetting
 from rockframe.units import QuantityLike
 
 

@@ -18,7 +18,7 @@ from rockframe.reports.checks import CheckedLine, CheckedVerdict, CodeCheck
 from rockframe.simulation.system import System
 from rockframe.suites import TargetSpectrum
 from rockframe.system.rigid_ground import RigidGroundSetting
-from rockframe.system.tied_sliding import TiedSetting
+from rockframe.system.sliding_stack import TiedSetting
 from rockframe.units import (
     POSITIVE,
     TIME,

@@ -20,7 +20,7 @@ from rockframe.results.schema import build_dataset
 from rockframe.shared_arguments import takes
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
-from rockframe.simulation.run import outcome, run
+from rockframe.simulation.run import respond, run
 from rockframe.simulation.run_arguments import ComparedArguments
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
@@ -246,12 +246,12 @@ def _run_until_compiled(scene: System, plan: Plan) -> None:
     while not (has_machine_code(equations) or runs_as_python(equations)):
         if time.perf_counter() > deadline:
             return
-        outcome(scene.assembly, plan)
+        respond(scene.assembly, plan)
 
 
 def _timed(scene: System, plan: Plan) -> float:
     start = time.perf_counter()
-    outcome(scene.assembly, plan)
+    respond(scene.assembly, plan)
     return time.perf_counter() - start
 
 

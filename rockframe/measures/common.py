@@ -15,7 +15,7 @@ from rockframe.compiled import COMPILED
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import MOTION
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
 from rockframe.signals import Signal
 
 if TYPE_CHECKING:
@@ -86,10 +86,7 @@ class Inputs(Generic[Thing]):
         """Name several along their dimension."""
         if self.labels is None:
             return dataset
-        dataset = dataset.assign_coords({MOTION: (MOTION, self.labels, _LABEL)})
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
-        dataset[MOTION].encoding["_FillValue"] = None
-        return dataset
+        return without_fill_values(dataset.assign_coords({MOTION: (MOTION, self.labels, _LABEL)}))
 
 
 def read_inputs(given: object, component: object, *, owner: str) -> Inputs[Signal]:
@@ -153,6 +150,4 @@ def build_over(
     for name, (axis, meaning) in axes.items():
         labels = {**SCHEMA[name].attributes(), "long_name": meaning}
         dataset = dataset.assign_coords({name: (name, axis.copy(), labels)})
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
-        dataset[name].encoding["_FillValue"] = None
-    return dataset
+    return without_fill_values(dataset)

@@ -5,20 +5,16 @@ the manual.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockframe.results.along_steps import AlongSteps
+from rockframe.results.along_steps import AlongSteps, Values
 from rockframe.results.outcome import Generic, sines_cosines
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad
-
-Values = Mapping[str, Generic]
-
 
 STACKED: Final = "rotation_on_cap"
 """A column of scenes in which a block stands on a cap."""

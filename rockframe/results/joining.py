@@ -11,7 +11,7 @@ import xarray as xr
 from rockframe.arguments import checked_dataset, truth
 from rockframe.errors import SchemaError, shown
 from rockframe.proposals import hinted
-from rockframe.results.schema import SCHEMA, dated
+from rockframe.results.schema import SCHEMA, dated, without_fill_values
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
 
@@ -116,10 +116,8 @@ def concat(
         raise SchemaError(msg)
     _check_dimension(given, dim)
     truth(histories, owner=_OWNER, name="histories")
-    parts = [
-        _without(run, (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME))
-        for run in given
-    ]
+    left_out = (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME)
+    parts = [run.drop_dims(left_out, errors="ignore") for run in given]
     common = set[Any].intersection(*(set(part.data_vars) for part in parts))
     if not common:
         msg = (
@@ -147,10 +145,7 @@ def concat(
     joined.attrs["history"] = dated(f"{joined.sizes[dim]} joined along {dim!r}")
     if labels is not None:
         joined = _labelled(joined, dim, labels)
-    for name in joined.coords:
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
-        joined[name].encoding["_FillValue"] = None
-    return joined
+    return without_fill_values(joined)
 
 
 def _each(runs: object) -> Iterable[Any]:
@@ -171,10 +166,6 @@ def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
     if 0 < having < len(runs):
         msg = f"{_OWNER}: {having} of {len(runs)} datasets have the dimension {dim!r}; expected "
         raise SchemaError(msg + "all or none")
-
-
-def _without(run: xr.Dataset, dims: tuple[str, ...]) -> xr.Dataset:
-    return run.drop_dims([dim for dim in dims if dim in run.dims])
 
 
 def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any, Final, NamedTuple, cast
+from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
@@ -44,25 +44,8 @@ Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
 
 
-class Peak(NamedTuple):
-    """A peak rotation, its share of the overturning angle of its side, and that side."""
-
-    share: float
-    rotation: float
-    side: Direction
-
-
-def peak_of(run: Summary, angles: OverturningAngles) -> Peak:
-    """Give the rotation of a run that came closest to overturning."""
-    return max(
-        Peak(run.peak_right / angles.right, run.peak_right, Direction.RIGHT),
-        Peak(run.peak_left / angles.left, run.peak_left, Direction.LEFT),
-        key=lambda peak: peak.share,
-    )
-
-
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
-    """Give the share of the overturning angle in :func:`peak_of`; of several bodies the largest."""
+    """Give the largest share of a peak rotation in the overturning angle of its side and body."""
     own = largest(run.peak_right / angles.right, run.peak_left / angles.left)
     return largest(own, run.other_share)
 
@@ -78,11 +61,15 @@ def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic
 def body_histories(
     model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
 ) -> dict[str, Generic]:
-    """Give histories with the motion of all bodies in one array each, where there are several."""
+    """Give histories with those of all bodies, and of all restrainers, in one array each."""
     if not model.selects:
         return dict(values)
     kept = {name: each for name, each in values.items() if name in SCHEMA}
-    kept |= link_histories(model, values)
+    if model.links:
+        links = range(model.links)
+        kept |= {
+            name: np.array([values[column_of(name, i)] for i in links]) for name in OF_EACH_LINK
+        }
     if not model.shows_bodies:
         return kept
     bodies = range(model.system.bodies())
@@ -97,14 +84,6 @@ def body_histories(
     )
     found["body"] = np.array(bodies) + 1
     return kept | found
-
-
-def link_histories(model: ContactModel, values: Mapping[str, Generic]) -> dict[str, Generic]:
-    """Give histories of all restrainers in one array each, where there are some."""
-    if not model.links:
-        return {}
-    links = range(model.links)
-    return {name: np.array([values[column_of(name, i)] for i in links]) for name in OF_EACH_LINK}
 
 
 def broken_links(model: ContactModel, ending: Ending) -> list[int]:
@@ -166,13 +145,19 @@ def cap_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, 
     }
 
 
-def energy_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
-    """Give the energies at the output times by their names in the schema [J]."""
+def energy_histories(
+    model: ContactModel, run: Trajectory, displacement: Array, slope: Slope
+) -> dict[str, Generic]:
+    """Give the energies at the output times by their names in the schema [J].
+
+    The work of gravity along an inclined base, by the displacement along it, counts as potential
+    energy, and not as input, :eq:`eq-incline-energy`.
+    """
     stored = model.mass * energies_of(model, run)
     memory, row = memory_at_outputs(run)
     lost = model.mass * memory[row]
     work = model.mass * run.work
-    return {
+    found: dict[str, Generic] = {
         "kinetic_energy": stored[:, 0].copy(),
         "potential_energy": stored[:, 1].copy(),
         "elastic_energy": stored[:, 2].copy(),
@@ -181,6 +166,11 @@ def energy_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]
         "repinning_energy": lost[:, REPINNING_LOSS].copy(),
         "input_energy": work[:, 1] + lost[:, IMPULSIVE_INPUT],
     }
+    if not slope.level:
+        raised = model.mass * slope.along_gravity * (displacement + _of_carrier(model, run))
+        found["potential_energy"] = found["potential_energy"] + raised
+        found["input_energy"] = found["input_energy"] + (raised - raised[0])
+    return found
 
 
 def event_columns(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
@@ -280,14 +270,16 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
     of = " of body 1" if model.shows_bodies else ""
     broken = [setting.link_names[i] for i in broken_links(model, run.ending)]
     impacts = f"{run.impact_count} impact{'' if run.impact_count == 1 else 's'}"
-    nearest = peak_of(run, setting.overturning_angles)
-    peak = (
-        f"peak rotation {nearest.rotation:.4g} rad, "
-        f"{100.0 * nearest.share:.3g} % of the overturning angle{of}"
+    angles = setting.overturning_angles
+    share, rotation, side = max(
+        (run.peak_right / angles.right, run.peak_right, Direction.RIGHT),
+        (run.peak_left / angles.left, run.peak_left, Direction.LEFT),
+        key=lambda peak: peak[0],
     )
-    if setting.leans and nearest.rotation > 0.0:
-        peak += f" to the {nearest.side.name.lower()}"
-    if run.other_share > (1.0 + SAME) * nearest.share:
+    peak = f"peak rotation {rotation:.4g} rad, {100.0 * share:.3g} % of the overturning angle{of}"
+    if setting.leans and rotation > 0.0:
+        peak += f" to the {side.name.lower()}"
+    if run.other_share > (1.0 + SAME) * share:
         peak += f", a lower body {100.0 * run.other_share:.3g} % of its own"
     if run.passed:
         text = f"{_overturned(run, setting, model)}, after {impacts}"
@@ -381,24 +373,6 @@ def without_gravity(shown: Mapping[str, Generic], slope: Slope) -> dict[str, Gen
         name: values - slope.along_gravity if name in OF_WHAT_IT_STANDS_ON else values
         for name, values in shown.items()
     }
-
-
-def energies_on_slope(
-    energies: Mapping[str, Array],
-    model: ContactModel,
-    run: Trajectory,
-    displacement: Array,
-    slope: Slope,
-) -> dict[str, Generic]:
-    """Count the work of gravity along the base as gravity energy, and not as input.
-
-    By :eq:`eq-incline-energy`.
-    """
-    found = dict(energies)
-    raised = model.mass * slope.along_gravity * (displacement + _of_carrier(model, run))
-    found["potential_energy"] = energies["potential_energy"] + raised
-    found["input_energy"] = energies["input_energy"] + (raised - raised[0])
-    return found
 
 
 def _of_carrier(model: ContactModel, run: Trajectory) -> Array | float:

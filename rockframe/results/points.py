@@ -13,7 +13,7 @@ from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad
 from rockframe.system.geometry import Geometry
-from rockframe.system.options import Restraint, restraint_code
+from rockframe.system.options import RESTRAINT_CODES, Restraint
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ class Placement:
         if not (left or right):
             return 0.0
         rate = self.values.get("cap_angular_velocity", 0.0)
-        pivot = pivot_of(restraint_code(self.restraint), left, right, rotation, rate)
+        pivot = pivot_of(RESTRAINT_CODES[self.restraint], left, right, rotation, rate)
         return {PIVOT_LEFT: -1.0, PIVOT_RIGHT: 1.0}.get(pivot, 0.0)
 
     def _moved(

@@ -13,53 +13,15 @@ from numpy.typing import NDArray
 
 from rockframe.constants import CONVENTIONS, PAPER_TITLE
 from rockframe.errors import SchemaError
-from rockframe.results.variables.analyses import (
-    CLOUD,
-    DYNAMIC_ANALYSIS,
-    ENSEMBLE,
-    FRACTILES,
-    FRAGILITY,
-    HAZARD,
-    MEASURE_COMPARISON,
-    OVERTURNING_MAP,
-    PROBABILITY,
-    SEQUENCES,
-    SPECTRA,
-    SUBSETS,
+from rockframe.results.variables import (
+    analyses,
+    bodies,
+    motions,
+    requests,
+    runs,
+    studies,
+    suites,
 )
-from rockframe.results.variables.bodies import BODIES, RESTRAINER_SCALARS, RESTRAINERS
-from rockframe.results.variables.motions import DIRECTIONS, MEASURES
-from rockframe.results.variables.requests import (
-    ACCELERATIONS,
-    FORCE_SCALARS,
-    IMPULSES,
-    OTHERS,
-    POINT_PEAKS,
-    POINTS,
-    REACTIONS,
-    SLIPS,
-)
-from rockframe.results.variables.runs import (
-    CERTIFICATE,
-    ENERGY_HISTORIES,
-    EVENTS_AND_SCALARS,
-    HELD,
-    HISTORIES,
-    MODES,
-    MOTION_AFTER_END,
-    PROOF,
-    REST,
-)
-from rockframe.results.variables.studies import (
-    CASE,
-    COMPARISON,
-    CRITICAL_SCALE,
-    FREE_DECAY,
-    MESSAGE,
-    MOTION,
-    SWEEP,
-)
-from rockframe.results.variables.suites import RECORDS, TARGETS
 from rockframe.results.variables.variable import Variable
 from rockframe.version import __version__
 
@@ -67,46 +29,46 @@ if TYPE_CHECKING:
     from rockframe.results.outcome import Values
 
 _TABLES: Final = (
-    HISTORIES,
-    MOTION_AFTER_END,
-    ENERGY_HISTORIES,
-    BODIES,
-    RESTRAINERS,
-    RESTRAINER_SCALARS,
-    ACCELERATIONS,
-    REACTIONS,
-    OTHERS,
-    IMPULSES,
-    POINTS,
-    POINT_PEAKS,
-    SLIPS,
-    EVENTS_AND_SCALARS,
-    FORCE_SCALARS,
-    CERTIFICATE,
-    PROOF,
-    HELD,
-    REST,
-    MODES,
-    MEASURES,
-    DIRECTIONS,
-    RECORDS,
-    TARGETS,
-    COMPARISON,
-    CRITICAL_SCALE,
-    SWEEP,
-    CLOUD,
-    DYNAMIC_ANALYSIS,
-    FRACTILES,
-    FRAGILITY,
-    HAZARD,
-    MEASURE_COMPARISON,
-    OVERTURNING_MAP,
-    SPECTRA,
-    PROBABILITY,
-    SUBSETS,
-    ENSEMBLE,
-    SEQUENCES,
-    FREE_DECAY,
+    runs.HISTORIES,
+    runs.MOTION_AFTER_END,
+    runs.ENERGY_HISTORIES,
+    bodies.BODIES,
+    bodies.RESTRAINERS,
+    bodies.RESTRAINER_SCALARS,
+    requests.ACCELERATIONS,
+    requests.REACTIONS,
+    requests.OTHERS,
+    requests.IMPULSES,
+    requests.POINTS,
+    requests.POINT_PEAKS,
+    requests.SLIPS,
+    runs.EVENTS_AND_SCALARS,
+    requests.FORCE_SCALARS,
+    runs.CERTIFICATE,
+    runs.PROOF,
+    runs.HELD,
+    runs.REST,
+    runs.MODES,
+    motions.MEASURES,
+    motions.DIRECTIONS,
+    suites.RECORDS,
+    suites.TARGETS,
+    studies.COMPARISON,
+    studies.CRITICAL_SCALE,
+    studies.SWEEP,
+    analyses.CLOUD,
+    analyses.DYNAMIC_ANALYSIS,
+    analyses.FRACTILES,
+    analyses.FRAGILITY,
+    analyses.HAZARD,
+    analyses.MEASURE_COMPARISON,
+    analyses.OVERTURNING_MAP,
+    analyses.SPECTRA,
+    analyses.PROBABILITY,
+    analyses.SUBSETS,
+    analyses.ENSEMBLE,
+    analyses.SEQUENCES,
+    studies.FREE_DECAY,
 )
 
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
@@ -132,9 +94,9 @@ COORDINATES: Final = (
     "body",
     "restrainer",
     "scale",
-    CASE,
-    MOTION,
-    MESSAGE,
+    studies.CASE,
+    studies.MOTION,
+    studies.MESSAGE,
     "limit_state",
     "rotation_limit",
     "coefficient",
@@ -153,20 +115,20 @@ COORDINATES: Final = (
 )
 """Variables that label a dimension, or a case: arithmetic and means leave them alone."""
 
-ENERGIES: Final = tuple(row.name for row in ENERGY_HISTORIES)
+ENERGIES: Final = tuple(row.name for row in runs.ENERGY_HISTORIES)
 """Histories that are integrated only on request."""
 
 GROUPS: Final = {
     "energy": ENERGIES,
-    "acceleration": tuple(row.name for row in ACCELERATIONS),
-    "reaction": tuple(row.name for row in REACTIONS),
-    "impulse": tuple(row.name for row in IMPULSES),
+    "acceleration": tuple(row.name for row in requests.ACCELERATIONS),
+    "reaction": tuple(row.name for row in requests.REACTIONS),
+    "impulse": tuple(row.name for row in requests.IMPULSES),
 }
 """Names that ask for several variables."""
 
 ON_REQUEST: Final = (
     *(name for group in GROUPS.values() for name in group),
-    *(row.name for row in OTHERS),
+    *(row.name for row in requests.OTHERS),
 )
 """All variables that are given only on request."""
 
@@ -218,8 +180,20 @@ def build_dataset(
     # labelled in place, since xarray copies each variable that it is handed with attributes
     for name, label in labels.items():
         dataset.variables[name].attrs = label
-    for name in coordinates:
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
+    return without_fill_values(dataset)
+
+
+def with_variables(
+    dataset: xr.Dataset, values: "Values", *, over: tuple[str, ...] = ()
+) -> xr.Dataset:
+    """Add variables, labelled by the schema, to a dataset; its attributes stay."""
+    added = build_dataset(values, {}, over=over)
+    return dataset.assign(added.data_vars).assign_coords(added.coords)
+
+
+def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
+    """Tell that coordinates have no missing values, and so need no fill value (CF 2.5.1)."""
+    for name in dataset.coords:
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
 

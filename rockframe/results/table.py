@@ -143,8 +143,6 @@ def _of_one(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
 def _below_one_another(
     runs: Sequence[xr.Dataset], kind: Contents, labels: pd.Index
 ) -> pd.DataFrame:
-    import pandas as pd
-
     frames = [_rows(run, kind) for run in runs]
     dims = {_dimensions(run, _names(run, kind)) for run in runs}
     if len(dims) > 1:
@@ -159,8 +157,6 @@ def _below_one_another(
 
 
 def _keys(runs: Mapping[Any, xr.Dataset]) -> pd.Index:
-    import pandas as pd
-
     keys = list(runs)
     if keys and all(isinstance(key, tuple) for key in keys):
         return pd.MultiIndex.from_tuples(keys)
@@ -169,8 +165,6 @@ def _keys(runs: Mapping[Any, xr.Dataset]) -> pd.Index:
 
 def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
     """Tell runs apart by motions and scalar coordinates, or else by their number too."""
-    import pandas as pd
-
     levels: dict[str, list[Any]] = {}
     motions = [run.attrs.get(MOTION) for run in runs]
     if all(isinstance(name, str) for name in motions) and MOTION not in runs[0].coords:
@@ -188,8 +182,6 @@ def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
 
 def _rows(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
     """Give a dataset's own rows, without the labels that all of them share."""
-    import pandas as pd
-
     names = _names(run, kind)
     if not names:
         msg = f"{_OWNER}: the dataset holds no {kind}; {_MISSING[kind]}"
@@ -222,8 +214,6 @@ def _together(run: xr.Dataset, names: Sequence[str]) -> list[list[str]]:
 
 def _rows_of(run: xr.Dataset, kind: Contents, names: list[str]) -> pd.DataFrame:
     """Give the rows of variables that go together."""
-    import pandas as pd
-
     dims = _dimensions(run, names)
     variables = run.variables
     if not dims:
@@ -246,8 +236,6 @@ def _headed(
     frame: pd.DataFrame, variables: Mapping[Any, xr.Variable], names: Sequence[str]
 ) -> pd.DataFrame:
     """Give columns their units, and words for flags."""
-    import pandas as pd
-
     columns = {
         _head(name, variables[name]): _in_words(frame[name], variables[name]) for name in names
     }
@@ -282,16 +270,17 @@ def _variables(run: xr.Dataset) -> list[tuple[str, xr.Variable]]:
 
 
 def _head(name: Hashable, values: xr.Variable) -> str:
-    return _with_unit(str(name), values.attrs.get("units", str(Unit.ONE)))
+    return head(str(name), values.attrs.get("units", Unit.ONE))
 
 
 def head_of(name: str) -> str:
     """Give the head of the column of a variable of the schema."""
-    return _with_unit(name, SCHEMA[name].attributes().get("units", str(Unit.ONE)))
+    return head(name, SCHEMA[name].attributes().get("units", Unit.ONE))
 
 
-def _with_unit(name: str, unit: object) -> str:
-    return name if unit == str(Unit.ONE) else f"{name} [{unit}]"
+def head(name: str, unit: object) -> str:
+    """Give the head of a column: its name, and its unit where that is not 1."""
+    return name if unit == Unit.ONE else f"{name} [{unit}]"
 
 
 def _in_words(column: Any, values: xr.Variable) -> pd.Series:

@@ -27,7 +27,6 @@ from rockframe.results.outcome import (
     body_histories,
     cap_histories,
     contact_histories,
-    energies_on_slope,
     energy_histories,
     ground_histories,
     ground_on_slope,
@@ -83,8 +82,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     values |= cap_histories(values, setting)
     values = body_histories(system.model, run, values)
     values |= relative_histories(values, setting)
-    vertical = plan.motion is not None and plan.motion.si.vertical is not None
-    values |= ground_histories(ground, has_vertical_motion=vertical)
+    values |= ground_histories(ground, has_vertical_motion=plan.has_vertical_motion)
     values["time"] = run.time
     along, upright = _along(system, plan, run, columns, events), events
     if not along.steps.complete:
@@ -102,10 +100,12 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     if "slip" in values:
         scalars["residual_displacement"] = float(values["horizontal_displacement"][-1])
     if system.model.shows_bodies:
-        scalars["peak_body_rotation"] = _peak_rotations(system, along)
+        rotations = rotations_of(system.model.system.bodies())
+        scalars["peak_body_rotation"] = _peaks_of(rotations, along)
     places: dict[str, Generic] = {}
     if system.model.links:
-        scalars |= _of_links(system, along)
+        forces = forces_of_links(system.model.links)
+        scalars["peak_restrainer_force"] = _peaks_of(forces, along)
         places = {"restrainer": np.array(system.setting.link_names)}
     if plan.points:
         scalars |= point_peaks(plan.points, along, load)
@@ -115,7 +115,10 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     impulses = {name: each[shown] for name, each in events.impulses(load.body.mass).items()}
     if "slip" in values:
         impulses["event_slip"] = events.after["slip"][shown]
-    everything = values | impulses | _energies(system, plan, run, values)
+    everything = values | impulses
+    if plan.energies:
+        displacement = values["horizontal_displacement"]
+        everything |= energy_histories(system.model, run, displacement, system.options.slope)
     if plan.histories:
         own = _own_answers(system, everything, events.those(shown), missing)
         scalars |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
@@ -160,18 +163,6 @@ def _own_answers(
 def _peak_of(one: Diagnostic, along: AlongSteps) -> float:
     """Give the largest absolute value of a diagnostic along the steps."""
     return along.largest(lambda state: np.abs(one.of(state))[None])[0].item()
-
-
-def _energies(
-    system: Assembly, plan: Plan, run: Trajectory, values: dict[str, Generic]
-) -> dict[str, Generic]:
-    """Give the energies, if any are asked for."""
-    if not plan.energies:
-        return {}
-    found, slope = energy_histories(system.model, run), system.options.slope
-    if slope.level:
-        return found
-    return energies_on_slope(found, system.model, run, values["horizontal_displacement"], slope)
 
 
 def _everything_of(
@@ -260,11 +251,9 @@ def forces_of_links(links: int) -> tuple[str, ...]:
     return tuple(column_of("restrainer_force", i) for i in range(links))
 
 
-def _of_links(system: Assembly, along: AlongSteps) -> dict[str, Generic | float]:
-    """Give the largest force of each restrainer."""
-    names = forces_of_links(system.model.links)
-    peaks = along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
-    return {"peak_restrainer_force": peaks}
+def _peaks_of(names: tuple[str, ...], along: AlongSteps) -> Array:
+    """Give the greatest absolute values of columns."""
+    return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
 
 
 def _stops(run: Trajectory, events: EventStates) -> Integers:
@@ -276,12 +265,6 @@ def _stops(run: Trajectory, events: EventStates) -> Integers:
     for name in (one for one in events.after if one == "slip" or one.startswith("slip_of_")):
         changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < LEAST_SLIP
     return 1 + np.flatnonzero(changes)
-
-
-def _peak_rotations(system: Assembly, along: AlongSteps) -> Array:
-    """Give the greatest rotation of each body."""
-    names = rotations_of(system.model.system.bodies())
-    return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
 
 
 def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[str, Generic]:

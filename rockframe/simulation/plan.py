@@ -28,6 +28,7 @@ from rockframe.results.variables.variable import TIME as OVER_TIME
 from rockframe.simulation.run_arguments import PROVED, Certification, RunArguments
 from rockframe.simulation.soundness import has_limit
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, accuracy_of
+from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.system.assembly import Assembly
 from rockframe.system.options import Overturning, read_option
 from rockframe.units import LENGTH, POSITIVE, TIME, TIME_STEP, Measure, QuantityLike, to_si
@@ -53,36 +54,33 @@ def outputs_of(
     """
     wanted: set[str] = set()
     diagnostics: set[str] = set()
-    for name in listed(outputs):
-        if isinstance(name, str) and _has_dimensions(name, POINT_TIME):
+    for given in listed(outputs):
+        name = given if isinstance(given, str) else ""
+        dims = SCHEMA[name].dims if name in SCHEMA else ()
+        if dims == POINT_TIME:
             if not points:
                 faults.append(f"{name!r} is of points, and there are none; give {EXAMPLE}")
-        elif isinstance(name, str) and name in GROUPS:
+        elif name in GROUPS:
             wanted.update(GROUPS[name])
-        elif isinstance(name, str) and name in DIAGNOSTICS:
+        elif name in DIAGNOSTICS:
             diagnostics.add(name)
-        elif isinstance(name, str) and (name in ON_REQUEST or _has_dimensions(name, OVER_TIME)):
+        elif name in ON_REQUEST or dims == OVER_TIME:
             wanted.add(name)
         else:
             known = (*GROUPS, *ON_REQUEST, *DIAGNOSTICS)
             words = ", ".join(map(repr, known))
-            if isinstance(name, str) and name in SCHEMA and "time" in SCHEMA[name].dims:
+            found = (
+                f"outputs has no {shown(given)}; every run has its response, and on request "
+                f"{words}{nearest(given, known)}"
+            )
+            if "time" in dims:
                 found = (
                     f"outputs need not name {name!r}: a single run has it anyway, if its scene "
                     f"has; on request there are {words}"
                 )
-            else:
-                found = (
-                    f"outputs has no {shown(name)}; every run has its response, and on request "
-                    f"{words}{nearest(name, known)}"
-                )
             faults.append(found)
     requested = tuple(name for name in ON_REQUEST if name in wanted)
     return requested, tuple(one for name, one in DIAGNOSTICS.items() if name in diagnostics)
-
-
-def _has_dimensions(name: str, dims: tuple[str, ...]) -> bool:
-    return name in SCHEMA and SCHEMA[name].dims == dims
 
 
 NEEDED: Final = {
@@ -195,7 +193,7 @@ def ending_as_json(ending: Ending) -> dict[str, Any]:
 
 MOST_SAMPLES = 1e8
 """Samples of the histories beyond which a run is refused: some ten gigabytes."""
-STILL_GROUND_OUTPUT_STEP = 0.005
+_STILL_GROUND_OUTPUT_STEP: Final = 0.005
 """Spacing of the histories of a run without a ground motion [s]."""
 _REST: Final = InitialState()
 
@@ -265,6 +263,16 @@ class Plan(_Requested):
     def energies(self) -> tuple[str, ...]:
         """Energies among what is requested."""
         return tuple(name for name in self.requested if name in ENERGIES)
+
+    @property
+    def interval(self) -> float:
+        """Time between samples of the motion, or between steps of a still ground [s]."""
+        return STILL_INTERVAL if self.motion is None else self.motion.si.time_step
+
+    @property
+    def has_vertical_motion(self) -> bool:
+        """Whether the ground moves vertically, too."""
+        return self.motion is not None and self.motion.si.vertical is not None
 
     def bare(self) -> "Plan":
         """Give the same run without samples."""
@@ -339,7 +347,7 @@ def fit_plan(
     if arguments.histories or arguments.points or has_limit(system):
         step = arguments.output_step
         if step is None:
-            step = STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
+            step = usual_output_step(motion)
         if length / step > MOST_SAMPLES:
             faults.append(
                 f"the histories would have {length / step:.3g} samples ({length:.6g} s in steps of "
@@ -398,6 +406,11 @@ def _beginning(
             f"{theta:.6g} rad"
         )
     return given
+
+
+def usual_output_step(motion: GroundMotion | None) -> float:
+    """Give the spacing that histories have where none is asked for [s]."""
+    return _STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
 
 
 def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:

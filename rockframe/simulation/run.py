@@ -126,32 +126,18 @@ class Response:
             ),
             None, "whether another run agrees with this one", missing,
         )  # fmt: skip
-        others = [
-            or_missing(
-                lambda: list(
-                    _leaving(
-                        self.system, plan.motion, self.answers.values, summary.overturning_time
-                    )
-                ),
-                [], _LEAVING, missing,
-            ),
-            or_missing(
-                lambda: [(ModelWarning, text) for text in slips(self.answers.slidings)],
-                [], _FRICTION, missing,
-            ),
-        ]  # fmt: skip
+        values, falls = self.answers.values, summary.overturning_time
+        leaving = or_missing(
+            lambda: list(_leaving(self.system, plan.motion, values, falls)), [], _LEAVING, missing
+        )
+        slipping = or_missing(lambda: list(slips(self.answers.slidings)), [], _FRICTION, missing)
         _ = self.scalars  # what is missing of them is said, too
+        cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
+        unique = self.uniqueness or NOT_LOOKED_AT
+        of_model = [*unique.cautions, *setting.beyond_edges(summary.ending), *leaving, *slipping]
         return [
-            *(
-                []
-                if summary.status.finished
-                else [(SolverWarning, verdict(summary, setting, self.system.model))]
-            ),
-            *((SolverWarning, text) for text in moving),
-            *([] if audit is None else [(SolverWarning, audit)]),
-            *((ModelWarning, text) for text in (self.uniqueness or NOT_LOOKED_AT).cautions),
-            *((ModelWarning, text) for text in setting.beyond_edges(summary.ending)),
-            *(caution for found in others for caution in found),
+            *((SolverWarning, text) for text in (*cut_off, *moving, *filter(None, [audit]))),
+            *((ModelWarning, text) for text in of_model),
             *((SolverWarning, text) for text in missing),
         ]
 
@@ -243,14 +229,9 @@ def run(
 
 def _looked_again(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
     """Give the error of the peak that a second run with more steps shows, and its doubts."""
-    second = outcome(system, second_look(system, plan))
+    second = respond(system, second_look(system, plan)).trajectory
     found = doubts(system.setting, plan, summary, second)
     return peak_error(summary, second), [(SolverWarning, text) for text in found]
-
-
-def outcome(system: Assembly, plan: Plan) -> Summary:
-    """Integrate as planned, and give only what became of the run."""
-    return respond(system, plan).trajectory
 
 
 def summary_of(system: Assembly, plan: Plan) -> RunSummary:
@@ -321,7 +302,7 @@ def _leaving(
     motion: GroundMotion | None,
     values: Mapping[str, Generic],
     overturning_time: float,
-) -> Iterator[Caution]:
+) -> Iterator[str]:
     """Warn of a block that would leave ground which the equations do not let it leave."""
     slope = system.options.slope
     if system.setting.flies:
@@ -332,7 +313,7 @@ def _leaving(
         if lowest < -slope.normal_gravity:
             which = "vertical" if slope.level else "normal"
             found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
-            yield ModelWarning, f"{found}: {_LEAVES}"
+            yield f"{found}: {_LEAVES}"
     if "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # how a block falls is another matter
@@ -344,4 +325,4 @@ def _leaving(
             f"the ground would have to pull at the bearing corner, with {-lowest:.4g} N at "
             f"{when:.4g} s"
         )
-        yield ModelWarning, f"{found}: {_LEAVES}"
+        yield f"{found}: {_LEAVES}"

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
 from rockframe.dynamics.events import (
@@ -175,35 +176,32 @@ def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
     held = events.kind == SILENT
     held &= sets == 0.0
     rigid = [k for k in range(model.system.bodies()) if model.system.is_rigid(k)]
-    cautions = list[str]()
-    if several.any():
-        i = int(np.argmax(several))
-        cautions.append(
-            f"at {events.time[i]:.6g} s an impact has {int(sets[i])} modes: taken is that which "
-            f"loses the least energy, {_named(int(taken[i]), rigid)}; the next is "
-            f"{_named(int(other[i]), rigid)}; of such impacts there are {several.sum()}: {_ONE_OF}"
-        )
-    if none.any():
-        i = int(np.argmax(none))
-        cautions.append(
-            f"at {events.time[i]:.6g} s an impact has no mode, and is computed with every closed "
-            f"contact held along itself: {_named(int(taken[i]), rigid)}; of such impacts there are "
-            f"{none.sum()}: {_ONE_OF}"
-        )
     unsure = slips & (sets != 1.0)
-    if unsure.any():
-        i = int(np.argmax(unsure))
-        cautions.append(
-            f"at {events.time[i]:.6g} s a slip begins or ends, and there are "
-            f"{int(sets[i]) or 'no'} ways to bear and to slip then: taken is one with "
-            f"{_named(int(taken[i]), rigid)}; of such changes there are {unsure.sum()}: {_ONE_OF}"
-        )
-    if held.any():
-        i = int(np.argmax(held))
-        cautions.append(
-            f"at {events.time[i]:.6g} s a corner is held though it does not press, since it would "
-            f"come back at once if it were let go; this happens {held.sum()} times"
-        )
+    cautions = list[str]()
+
+    def tell(which: NDArray[np.bool_], words: Callable[[int], str]) -> None:
+        """Tell of the first of some events."""
+        for i in np.flatnonzero(which)[:1].tolist():
+            cautions.append(f"at {events.time[i]:.6g} s {words(i)}")
+
+    tell(several, lambda i: (
+        f"an impact has {int(sets[i])} modes: taken is that which loses the least energy, "
+        f"{_named(int(taken[i]), rigid)}; the next is {_named(int(other[i]), rigid)}; of such "
+        f"impacts there are {several.sum()}: {_ONE_OF}"
+    ))  # fmt: skip
+    tell(none, lambda i: (
+        "an impact has no mode, and is computed with every closed contact held along itself: "
+        f"{_named(int(taken[i]), rigid)}; of such impacts there are {none.sum()}: {_ONE_OF}"
+    ))  # fmt: skip
+    tell(unsure, lambda i: (
+        f"a slip begins or ends, and there are {int(sets[i]) or 'no'} ways to bear and to slip "
+        f"then: taken is one with {_named(int(taken[i]), rigid)}; of such changes there are "
+        f"{unsure.sum()}: {_ONE_OF}"
+    ))  # fmt: skip
+    tell(held, lambda _: (
+        "a corner is held though it does not press, since it would come back at once if it were "
+        f"let go; this happens {held.sum()} times"
+    ))  # fmt: skip
     return Uniqueness(int(several.sum()), int(none.sum()), int(held.sum()), tuple(cautions))
 
 

@@ -1,7 +1,7 @@
 """Cloud analysis: a straight line in logarithms, with runs that overturn apart."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
@@ -12,14 +12,15 @@ from rockframe.arguments import whole_number
 from rockframe.errors import StudyError
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import Arrangement, Means, with_stripes
 from rockframe.studies.fragility.likelihood import Bands
-from rockframe.studies.fragility.trials import motion_numbers
+from rockframe.studies.fragility.trials import laid_out, motion_numbers
 from rockframe.studies.intensities import (
     PERIOD_OF,
     PeriodLike,
@@ -27,10 +28,16 @@ from rockframe.studies.intensities import (
     measure_words,
     told_period,
 )
-from rockframe.studies.limit_states import OVERTURNING, check_runs, listed_limits, scalar_of
+from rockframe.studies.limit_states import (
+    OVERTURNING,
+    check_runs,
+    listed_limits,
+    read_in_unit,
+    scalar_of,
+)
 from rockframe.studies.logistic import Logistic, fit_logistic
 from rockframe.studies.sweeps.motions import MotionsLike
-from rockframe.units import POSITIVE, Measure, RatioLike, Unit, to_ratio, to_si
+from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"
 _FEWEST: Final = 4
@@ -243,17 +250,18 @@ def cloud_analysis(
     values = scalar_of(runs, response, label or "", owner=_OWNER)
     asked = _levels(limits, values)
     floor = read_least(least, values, owner=_OWNER)
-    cloud, kept, repeated = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
-    return _labelled(
-        cloud, asked, _names(asked, response, label, values), measure, level,
-        {
-            "left_out": int((~kept).sum()), "repeated": repeated, "seed": seed,
-            "response": response if label is None else f"{response} {label}",
-            "unit": str(values.attrs.get("units", "1")),
-            "told": told_period(runs, [intensity], period, owner=_OWNER),
-            "kept": {key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs},
-        },
+    found = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
+    dataset = _labelled(
+        found, asked, _names(asked, response, label, values), measure, level, seed,
+        unit=str(values.attrs.get("units", "1")),
     )  # fmt: skip
+    dataset.attrs |= {
+        **{key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs},
+        **told_period(runs, [intensity], period, owner=_OWNER),
+        "intensity": str(measure.name),
+        "response": response if label is None else f"{response} {label}",
+    }
+    return dataset.assign_attrs(verdict=_sentence(dataset, found.repeated))
 
 
 class CloudOfRuns(NamedTuple):
@@ -271,8 +279,11 @@ def cloud_of(
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without motions; expected those of many motions"
         raise StudyError(msg)
-    along, response = laid_out(runs, measure), np.abs(laid_out(runs, values))
-    fell = laid_out(runs, overturns(runs))
+    along, response, fell = (
+        laid_out(one, runs["status"]).astype(np.float64)
+        for one in (measure, values, overturns(runs))
+    )
+    response = np.abs(response)
     response = np.where(fell == 1.0, np.inf, np.where(response < least, 0.0, response))
     known = ~np.isnan(fell) & (along > 0.0) & np.isfinite(along) & ~np.isnan(response)
     if known.sum() < _FEWEST:
@@ -284,24 +295,14 @@ def cloud_of(
     return CloudOfRuns(made, known, len(np.unique(used)) < len(used))
 
 
-def laid_out(runs: xr.Dataset, values: xr.DataArray) -> Array:
-    """Lay numbers of runs out in a row."""
-    status = runs["status"]
-    laid = values.broadcast_like(status).transpose(*status.dims)
-    return laid.to_numpy().ravel().astype(np.float64)
-
-
 def read_least(given: Any, values: xr.DataArray, *, owner: str) -> float:
     """Read the response below which nothing is taken to have moved, in its own unit."""
     return 0.0 if given is None else _read_level(given, values, owner, "least")
 
 
 def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> float:
-    unit = str(values.attrs.get("units", "1"))
-    if unit == Unit.ONE:
-        return to_ratio(given, owner=owner, name=name, condition=POSITIVE, example="0.5")
-    kind = Measure(str(values.name).replace("_", " "), Unit(unit), f"1 {unit}")
-    return to_si(given, kind, owner=owner, name=name, condition=POSITIVE)
+    unit, words = str(values.attrs.get("units", "1")), str(values.name).replace("_", " ")
+    return read_in_unit(given, unit, words, owner=owner, name=name, condition=POSITIVE)
 
 
 def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
@@ -314,12 +315,9 @@ def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
 def _names(
     levels: Sequence[float], response: str, label: str | None, values: xr.DataArray
 ) -> list[str]:
-    unit = str(values.attrs.get("units", "1"))
     words = " ".join(filter(None, [response.replace("_", " "), label]))
-    return [
-        OVERTURNING if math.isinf(one) else f"{words} {one:g}{'' if unit == '1' else f' {unit}'}"
-        for one in levels
-    ]
+    unit = unit_behind(values.attrs)
+    return [OVERTURNING if math.isinf(one) else f"{words} {one:g}{unit}" for one in levels]
 
 
 @dataclass(frozen=True, eq=False)
@@ -332,22 +330,21 @@ class _Curve:
     dispersion: Array
 
 
-def _curve(cloud: Cloud, level: float, along: Array, about: "_Bounds") -> _Curve:
+def _curve(cloud: Cloud, level: float, along: Array, bounds: "_Bounds") -> _Curve:
     status = _status(cloud, level)
     wide = np.linspace(cloud.logs.min() - _BEYOND, cloud.logs.max() + _BEYOND, _WIDE)
     middle, spread = _parameters(cloud.probabilities(wide, level)[None], wide)
     points = np.full((3, len(along)), np.nan)
+    points[0] = cloud.probabilities(along, level)
     medians, spreads = np.full((2, 3), np.nan)
     if status not in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
-        points[0] = cloud.probabilities(along, level)
         return _Curve(status, points, medians, spreads)
-    points[0] = cloud.probabilities(along, level)
     medians[0], spreads[0] = np.exp(middle[0]), spread[0]
     if status is FragilityStatus.SEPARATED:
         medians[0], spreads[0] = np.exp(cloud.overturning.coefficients[0]), 0.0
-    elif not math.isnan(about.confidence):
-        tails = 0.5 * (1.0 - about.confidence), 0.5 * (1.0 + about.confidence)
-        rng = np.random.default_rng(about.seed)
+    elif not math.isnan(bounds.confidence):
+        tails = 0.5 * (1.0 - bounds.confidence), 0.5 * (1.0 + bounds.confidence)
+        rng = np.random.default_rng(bounds.seed)
         drawn = cloud.drawn(np.concatenate([along, wide]), level, rng, _DRAWS)
         points[1:] = np.quantile(drawn[:, : len(along)], tails, axis=0)
         each = _parameters(drawn[:, len(along) :], wide)
@@ -404,15 +401,17 @@ def _crossing(eta: Array, logs: Array, level: float) -> Array:
 
 
 def _labelled(
-    cloud: Cloud,
+    runs: CloudOfRuns,
     levels: Sequence[float],
     names: Sequence[str],
     measure: xr.DataArray,
     confidence: float,
-    about: Mapping[str, Any],
+    seed: int,
+    *,
+    unit: str,
 ) -> xr.Dataset:
-    """Label a cloud and its fragility."""
-    bounds = _Bounds(math.nan if about["repeated"] else confidence, about["seed"])
+    """Label a cloud and its fragility; the responses have a unit."""
+    cloud, bounds = runs.cloud, _Bounds(math.nan if runs.repeated else confidence, seed)
     along = np.linspace(cloud.logs.min(), cloud.logs.max(), _POINTS)
     curves = [_curve(cloud, level, along, bounds) for level in levels]
     name, over = str(measure.name), ("limit_state",)
@@ -448,18 +447,16 @@ def _labelled(
         of_states[f"dispersion{end}"] = np.array([one.dispersion[k] for one in curves])
     counts = {
         "trial_count": np.full(len(levels), len(cloud.logs)),
-        "left_out_count": np.full(len(levels), about["left_out"]),
+        "left_out_count": np.full(len(levels), int((~runs.kept).sum())),
     }
     points = {
         f"exceedance_probability{end}": np.stack([one.points[k] for one in curves])
         for k, end in enumerate(ends)
     }
-    found = found.assign(build_dataset({**of_states, **counts}, {}, over=over).data_vars)
-    found = found.assign(build_dataset(points, {}, over=(*over, name)).data_vars)
+    found = with_variables(found, {**of_states, **counts}, over=over)
+    found = with_variables(found, points, over=(*over, name))
     found = found.assign_coords({name: (name, np.exp(along), measure.attrs)})
-    found = found.assign_coords(
-        build_dataset({"limit_state": np.array(list(names), dtype=object)}, {}).coords
-    )
+    found = with_variables(found, {"limit_state": np.array(list(names), dtype=object)})
     counted = [
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
         for level in levels
@@ -468,14 +465,8 @@ def _labelled(
     found = with_stripes(found, counted, layout, Means(Bands.PROFILE, confidence))
     for one in _OF_INTENSITY:
         found[one].attrs["units"] = measure.attrs.get("units", "1")
-    found["cloud_response"].attrs["units"] = found["response_limit"].attrs["units"] = about["unit"]
-    found.attrs |= {
-        **about["kept"],
-        **about["told"],
-        "intensity": name,
-        "response": about["response"],
-    }
-    return found.assign_attrs(verdict=_sentence(found, about["repeated"]))
+    found["cloud_response"].attrs["units"] = found["response_limit"].attrs["units"] = unit
+    return found
 
 
 def _sentence(found: xr.Dataset, repeated: bool) -> str:

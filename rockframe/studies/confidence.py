@@ -1,4 +1,4 @@
-"""Confidence of statements about chances: the level that is asked for, and exact bounds."""
+"""Shares and chances: their range, the confidence that is asked for, and exact bounds."""
 
 from typing import Final
 
@@ -8,6 +8,7 @@ from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.units import Condition, to_ratio
 
+SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.9999)
 
 

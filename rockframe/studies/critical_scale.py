@@ -14,7 +14,7 @@ from rockframe.comparison.models import check_system
 from rockframe.components import InitialState
 from rockframe.errors import ComponentError, SolverWarning, warn
 from rockframe.motion import GroundMotion
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import Outcome
 from rockframe.shared_arguments import takes
 from rockframe.signals.motion import turning_points
@@ -295,12 +295,8 @@ def _labelled(
         title="Critical scale of a ground motion",
         source="scan and bisection of event-driven runs",
     )
-    of_runs = build_dataset(
-        {
-            "peak_rotation": np.array([one.peak for one in shown]) + 0.0,  # no negative zeros
-            "status": np.array([one.status for one in shown]),
-        },
-        {},
-        over=("scale",),
-    )
-    return dataset.assign(of_runs.data_vars)
+    of_runs = {
+        "peak_rotation": np.array([one.peak for one in shown]) + 0.0,  # no negative zeros
+        "status": np.array([one.status for one in shown]),
+    }
+    return with_variables(dataset, of_runs, over=("scale",))

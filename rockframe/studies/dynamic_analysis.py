@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.errors import ModelWarning, StudyError, warn
 from rockframe.results.outcome import overturns
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -45,7 +45,6 @@ from rockframe.system.options import PointsLike
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
-_MOST_SCALES: Final = 100_000
 _ARGUMENTS: Final = (
     *SweepArguments.__annotations__, "scale", "limits", "intensity", "period", "resolution",
     "bracket_width",
@@ -157,7 +156,7 @@ def incremental_dynamic_analysis(
     scene = scene_of(system)
     line_axes = read_line_axes(axes, scene, owner=_OWNER, others=_ARGUMENTS)
     states = limit_states(limits, owner=_OWNER)
-    scales = read_scales(scale, owner=_OWNER, most=_MOST_SCALES)
+    scales = read_scales(scale, owner=_OWNER)
     share = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
     measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)
@@ -193,13 +192,12 @@ def incremental_dynamic_analysis(
         over=("limit_state", *over),
         source="scan and bisection of event-driven runs",
     )
-    censored = build_dataset(
+    found = with_variables(
+        scan.assign(narrow.data_vars),
         {"censored_count": np.isinf(capacity).sum(axis=-1)},
-        {},
         over=("limit_state", *line_axes.sizes),
     )
-    labels = labels_of_states(states)
-    found = scan.assign(narrow.data_vars).assign(censored.data_vars).assign_coords(labels)
+    found = found.assign_coords(labels_of_states(states))
     if measure is not None:
         found = found.assign({measure.name: intensity_in(scan, measure, given, owner=_OWNER)})
         found.attrs |= of_study(measure.name, measure.period)

@@ -12,12 +12,11 @@ from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.confidence import clopper_pearson, read_level
+from rockframe.studies.confidence import SHARE, clopper_pearson, read_level
 from rockframe.studies.probability import SAMPLED
-from rockframe.units import Condition, RatioLike, to_ratio
+from rockframe.units import RatioLike, to_ratio
 
 _OWNER: Final = "ensemble_statistics"
-_SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 
 
 @hinted()
@@ -85,7 +84,7 @@ def ensemble_statistics(
     asked = read_level(confidence, owner=_OWNER)
     shares = np.array(
         [
-            to_ratio(one, owner=_OWNER, name="quantiles", condition=_SHARE, example="0.5")
+            to_ratio(one, owner=_OWNER, name="quantiles", condition=SHARE, example="0.5")
             for one in several(quantiles, owner=_OWNER, name="quantiles", of="numbers")
         ]
     )

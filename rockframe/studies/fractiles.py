@@ -12,17 +12,18 @@ from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
+from rockframe.studies.confidence import SHARE
 from rockframe.studies.intensities import PeriodLike, measure_in, told_period
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.motions import MotionsLike
-from rockframe.units import Condition, Measure, RatioLike, Unit, to_ratio, to_si_values
+from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
-_SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _POINTS: Final = 201
 """Intensities, and levels of the response, at which curves are given unless told otherwise."""
 _LEVEL: Final = "response_level"
@@ -105,7 +106,7 @@ def fractile_curves(
     runs = check_runs(runs, owner=_OWNER)
     shares = np.array(
         [
-            to_ratio(one, owner=_OWNER, name="fractiles", condition=_SHARE, example="0.5")
+            to_ratio(one, owner=_OWNER, name="fractiles", condition=SHARE, example="0.5")
             for one in several(fractiles, owner=_OWNER, name="fractiles", of="numbers")
         ]
     )
@@ -141,7 +142,7 @@ def fractile_curves(
     ]
     found = xr.merge([part.drop_attrs(deep=False) for part in parts], join="exact", compat="equals")
     found = found.assign_coords({**labels.coords, name: (name, along, measure.attrs)})
-    found = found.assign_coords(build_dataset({_LEVEL: asked}, {}).coords)
+    found = with_variables(found, {_LEVEL: asked})
     unit = values.attrs.get("units", "1")
     for one in ("motion_response", "response_fractile", _LEVEL):
         found[one].attrs["units"] = unit
@@ -318,8 +319,7 @@ def _words(response: str, label: str | None) -> str:
 def _sentence(lines: Sequence[_Line], along: Array, responses: Array, measure: xr.DataArray) -> str:
     """Tell how many motions overturned, and by which intensity half of them."""
     fell = np.isinf(responses)
-    unit = str(measure.attrs.get("units", "1"))
-    unit = "" if unit == "1" else f" {unit}"
+    unit = unit_behind(measure.attrs)
     text = f"Of {len(lines)} motions {int(fell.any(axis=1).sum())} overturned at some "
     text += f"{str(measure.name).replace('_', ' ')} from {along[0]:.4g} to {along[-1]:.4g}{unit}"
     half = np.flatnonzero(fell.sum(axis=0) >= 0.5 * len(lines))

@@ -12,8 +12,9 @@ from numpy.polynomial.legendre import leggauss
 from rockframe.arguments import checked_dataset, function_of
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, UnitsError, shown, warn
 from rockframe.proposals import hinted
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.words import measures_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
@@ -147,17 +148,15 @@ def annual_rate(
         {}, over=dims, title="Annual rate of exceeding limit states",
         source="integral of a fragility over a hazard curve",
     )  # fmt: skip
-    shares = build_dataset(
-        {"rate_share": laid("shares"), "quantile_intensity": laid("quantiles")}, {}, over=dims
-    )
-    labels = build_dataset(
-        {"contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
-         "quantile": np.array(_SHARES)}, {},
-    )  # fmt: skip
+    shares = {"rate_share": laid("shares"), "quantile_intensity": laid("quantiles")}
+    labels = {
+        "contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
+        "quantile": np.array(_SHARES),
+    }
     kept = [str(name) for name in given.coords if set(given[name].dims) <= set(dims)]
-    found = scalars.assign(shares.data_vars).assign_coords(
-        {**{name: given[name].variable for name in kept}, **labels.coords}
-    )
+    found = with_variables(scalars, shares, over=dims)
+    found = found.assign_coords({name: given[name].variable for name in kept})
+    found = with_variables(found, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
         found[name].attrs["units"] = given[measure].attrs.get("units", "1")
     told = {key: given.attrs[key] for key in (PERIOD_OF, "model") if key in given.attrs}
@@ -384,8 +383,7 @@ def _of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve
 
 def _say_what_lacks(found: xr.Dataset, curve: HazardCurve) -> None:
     """Warn where the hazard curve ends where the integrand does not."""
-    unit = str(found["quantile_intensity"].attrs["units"])
-    unit = "" if unit == "1" else f" {unit}"
+    unit = unit_behind(found["quantile_intensity"].attrs)
     ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}
     lacking: list[str] = []
     for side, end in ends.items():
@@ -413,8 +411,7 @@ def _sentence(found: xr.Dataset) -> str:
     if not len(known):
         return f"There is no fragility against {state}, and so no rate."
     measure = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
-    unit = str(found["quantile_intensity"].attrs["units"])
-    unit = "" if unit == "1" else f" {unit}"
+    unit = unit_behind(found["quantile_intensity"].attrs)
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
     low, _, high = last["quantile_intensity"].to_numpy().ravel()

@@ -16,14 +16,14 @@ from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
-from rockframe.results.variables.variable import TIME
+from rockframe.results.variables.variable import TIME, unit_behind
+from rockframe.studies.confidence import SHARE
 from rockframe.units import Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
 OVERTURNING: Final = "overturning"
 STATES: Final = "limits_json"
 """Attribute by which a dynamic analysis keeps its limit states."""
-_SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _OF_SAMPLES: Final = {"residual_displacement", *(row.name for row in FORCE_SCALARS)} | {
     row.name for row in (*BODIES, *RESTRAINERS) if row.name.startswith("peak_")
 }
@@ -53,8 +53,8 @@ class LimitState:
             return named.get(self.rotation, f"rotation {self.rotation:g}")
         words = [self.variable.replace("_", " "), self.label]
         if not math.isnan(self.value):
-            unit = SCHEMA[self.variable].attributes().get("units", "1")
-            words += [f"{self.value:g}", "" if unit == "1" else unit]
+            unit = unit_behind(SCHEMA[self.variable].attributes())
+            words.append(f"{self.value:g}{unit}")
         return " ".join(filter(None, words))
 
 
@@ -91,7 +91,7 @@ def _share(given: Any, owner: str, name: str) -> float:
         )
         msg = f"{words}, got {shown(given)}{nearest(given, (UPLIFT, OVERTURNING))}"
         raise ComponentError(msg)
-    return to_ratio(given, owner=owner, name=name, condition=_SHARE, example="0.5")
+    return to_ratio(given, owner=owner, name=name, condition=SHARE, example="0.5")
 
 
 def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
@@ -113,12 +113,20 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
         )
         raise ComponentError(msg)
     row, least = SCHEMA[name], math.nan
-    if value is not None and row.unit in (None, Unit.ONE):
-        least = to_ratio(value, owner=owner, name=name, example="0.5")
-    elif value is not None:
-        measure = Measure(row.long_name, Unit(row.unit or Unit.ONE), f"1 {row.unit}")
-        least = to_si(value, measure, owner=owner, name=name)
+    if value is not None:
+        unit = str(row.unit or Unit.ONE)
+        least = read_in_unit(value, unit, row.long_name, owner=owner, name=name)
     return LimitState(math.nan, name, least, "" if label is None else str(label))
+
+
+def read_in_unit(
+    given: Any, unit: str, words: str, *, owner: str, name: str, condition: Condition | None = None
+) -> float:
+    """Read a number of something that has a unit; where that is 1, a ratio."""
+    if unit == Unit.ONE:
+        return to_ratio(given, owner=owner, name=name, condition=condition, example="0.5")
+    measure = Measure(words, Unit(unit), f"1 {unit}")
+    return to_si(given, measure, owner=owner, name=name, condition=condition)
 
 
 def labels_of_states(states: Sequence[LimitState]) -> dict[str, xr.Variable]:

@@ -12,7 +12,7 @@ from rockframe.errors import RockframeError, StudyError, nearest, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE
 from rockframe.studies.sweeps.arguments import OF_A_SWEEP
-from rockframe.studies.sweeps.axes import Axis, Changes
+from rockframe.studies.sweeps.axes import Axis, Changes, faults_of_values
 from rockframe.studies.sweeps.scenes import SweptScene
 from rockframe.units import Unit
 
@@ -113,9 +113,5 @@ def _faults(axes: Iterable[Axis]) -> list[str]:
     for axis in axes:
         if axis.changes is Changes.MOTION:
             faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")
-        kept, counts = np.unique(axis.values, return_counts=True)
-        if not len(kept):
-            faults.append(f"axis {axis.name!r} has no values")
-        elif (counts > 1).any():
-            faults.append(f"axis {axis.name!r} has the value {kept[counts > 1][0]!s} twice")
+        faults += faults_of_values(axis.name, axis.values)
     return faults

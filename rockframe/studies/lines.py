@@ -21,6 +21,7 @@ from rockframe.errors import (
 )
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
+from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.limit_states import interrupted
@@ -28,7 +29,7 @@ from rockframe.studies.rounds import Rounds, rounds_of
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.motions import TARGETS
-from rockframe.units import Condition, Unit, to_ratio
+from rockframe.units import Condition, Measure, to_ratio
 
 if TYPE_CHECKING:
     from rockframe.simulation.system import System
@@ -209,6 +210,7 @@ _SCAN: Final = "scan"
 INTERRUPTED: Final = "; interrupted."
 """Ends the verdict of an analysis whose brackets are wider than asked."""
 _WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
+_MOST_SCALES: Final = 100_000
 _RESOLUTION: Final = Condition("from 1e-4 to 1", lambda value: 1e-4 <= value <= 1.0)
 
 LabelledVerdicts = Callable[[xr.Dataset], xr.DataArray]
@@ -337,11 +339,21 @@ def read_resolution(given: object, *, owner: str) -> float:
     return to_ratio(given, owner=owner, name="resolution", condition=_RESOLUTION, example="0.02")
 
 
-def read_scales(given: object, *, owner: str, most: int) -> Array:
+def read_rising(given: object, measure: Measure, name: str, *, owner: str) -> Array:
+    """Read values above zero; those that are alike are one."""
+    values = np.unique(numbers_of(given, measure, name))
+    if not len(values) or values[0] <= 0.0:
+        msg = f"{owner}: {name} must be above zero, got {shown(given)}"
+        raise ComponentError(msg)
+    return values
+
+
+def read_scales(given: object, *, owner: str) -> Array:
     """Read the scales of a scan."""
     values = np.unique(numbers_of(given, TARGETS[SCALE].measure, SCALE))
-    if not 2 <= len(values) <= most or values[0] <= 0.0:
-        msg = f"{owner}: scale needs 2 to {most} different numbers above zero, got {shown(given)}"
+    if not 2 <= len(values) <= _MOST_SCALES or values[0] <= 0.0:
+        wanted = f"2 to {_MOST_SCALES} different numbers above zero"
+        msg = f"{owner}: scale needs {wanted}, got {shown(given)}"
         raise ComponentError(msg)
     return values
 
@@ -349,8 +361,3 @@ def read_scales(given: object, *, owner: str, most: int) -> Array:
 def read_width(given: object, *, owner: str) -> float:
     """Read the relative width of brackets."""
     return to_ratio(given, owner=owner, name="bracket_width", condition=_WIDTH, example="0.001")
-
-
-def head(name: str, unit: str) -> str:
-    """Give the head of a column in a table of cases."""
-    return name if unit == Unit.ONE else f"{name} [{unit}]"

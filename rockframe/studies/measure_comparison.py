@@ -12,10 +12,11 @@ from rockframe.arguments import several
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.cloud import Cloud, cloud_of, laid_out, read_least
+from rockframe.studies.cloud import Cloud, cloud_of, read_least
+from rockframe.studies.fragility.trials import laid_out
 from rockframe.studies.intensities import (
     PERIOD_OF,
     PeriodLike,
@@ -139,7 +140,8 @@ def compare_intensities(
         msg = f"{_OWNER}: measures are named twice: {', '.join(named)}"
         raise ComponentError(msg)
     beside = {
-        name: laid_out(runs, one)[kept[0]] for name, one in _covariates(runs, against).items()
+        name: laid_out(one, runs["status"]).astype(np.float64)[kept[0]]
+        for name, one in _covariates(runs, against).items()
     }
     about = build_dataset({}, {}, title="Comparison of intensity measures", source=_SOURCE).attrs
     found = _compared(named, clouds, beside).assign_attrs(about)
@@ -228,7 +230,7 @@ def _compared(
     found = build_dataset(
         {name: np.array(one) for name, one in values.items()}, {}, over=("measure",)
     )
-    return found.assign_coords(build_dataset(names, {}).coords)
+    return with_variables(found, names)
 
 
 def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:

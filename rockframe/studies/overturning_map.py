@@ -11,15 +11,14 @@ from rockframe.arguments import function_of, whole_number
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.schema import SCHEMA, build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import SCALE, VERDICT, Lines, bracket_arrays, read_width
+from rockframe.studies.lines import SCALE, VERDICT, Lines, bracket_arrays, read_rising, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.system.options import Overturning
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import ACCELERATION, FREQUENCY, RatioLike, quantity
@@ -101,8 +100,8 @@ def overturning_map(
     {'amplitude': 3, 'frequency': 2}
     """
     check_system(system, _OWNER)
-    levels = _rising(amplitude, ACCELERATION, "amplitude")
-    frequencies = _rising(frequency, FREQUENCY, "frequency")
+    levels = read_rising(amplitude, ACCELERATION, "amplitude", owner=_OWNER)
+    frequencies = read_rising(frequency, FREQUENCY, "frequency", owner=_OWNER)
     told = whole_number(impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS)
     share = read_width(bracket_width, owner=_OWNER)
     motions = {f"{one!r} {FREQUENCY.unit}": _made(pulse, one) for one in frequencies.tolist()}
@@ -118,9 +117,9 @@ def overturning_map(
     )
     below, above, before, after = (one[0] for one in bracket_arrays(brackets, (1, len(motions))))
     counted = ways(scan)
-    of_cases = build_dataset(
+    found = with_variables(
+        scan,
         {"impacts_before_overturning": _without_stands(counted.to_numpy())},
-        {},
         over=tuple(map(str, counted.dims)),
     )
     of_frequencies = build_dataset(
@@ -135,8 +134,9 @@ def overturning_map(
         over=(MOTION,),
         source="scan and bisection of event-driven runs",
     )
-    found = scan.assign(of_cases.data_vars).assign(of_frequencies.data_vars)
-    found = found.assign_coords(_labels(system, levels, frequencies))
+    found = found.assign(of_frequencies.data_vars).assign_coords(
+        _labels(system, levels, frequencies)
+    )
     found = found.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
     found.attrs |= {
         "title": "Overturning by pulses",
@@ -145,14 +145,6 @@ def overturning_map(
         "impacts_told_apart": told,
     }
     return found
-
-
-def _rising(given: object, measure: Any, name: str) -> Array:
-    values = np.unique(numbers_of(given, measure, name))
-    if not len(values) or values[0] <= 0.0:
-        msg = f"{_OWNER}: {name} must be above zero, got {shown(given)}"
-        raise ComponentError(msg)
-    return values
 
 
 def _made(pulse: object, frequency: float) -> GroundMotion:

@@ -11,19 +11,19 @@ import xarray as xr
 from rockframe.arguments import one_of_words, whole_number
 from rockframe.errors import ComponentError, RockframeError, StudyError, collected_warnings, shown
 from rockframe.results.outcome import Generic
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import with_variables
+from rockframe.results.table import head
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import head
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis
-from rockframe.studies.sweeps.motions import MotionsLike, full_name, named_motions
+from rockframe.studies.sweeps.motions import MotionsLike, full_name
 from rockframe.studies.sweeps.planning import check_memory
-from rockframe.studies.sweeps.scenes import SweptScene, own_motion, scene_of
+from rockframe.studies.sweeps.scenes import SweptScene, motions_of_study, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio, to_si
 
@@ -344,8 +344,7 @@ def probability_of_overturning(
     way = one_of_words(Sampling, sampling, owner=_OWNER, name="sampling")
     first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     level = read_level(confidence, owner=_OWNER)
-    own = own_motion(scene) if motions is None else motions
-    named = None if own is None else named_motions(own)
+    named = motions_of_study(motions, scene)
     wrong = check_memory(
         {"numbers that are drawn": 1.0 + len(spreads)}, count, "draw fewer cases", owner=_OWNER
     )
@@ -391,19 +390,16 @@ def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: fl
         columns[MOTION] = runs[MOTION].to_numpy()[known].astype(str)
     order = ranked(columns, verdict[known])
     share = falls / count if count else np.nan
-    added = build_dataset(
-        {
-            "overturning_probability": share,
-            "overturning_probability_lower_bound": lower,
-            "overturning_probability_upper_bound": upper,
-            "verdict_count": count,
-            "parameter": np.array(list(order), dtype=object),
-            "first_order_index": np.array([one.first_order for one in order.values()]),
-            "verdict_distance": np.array([one.distance for one in order.values()]),
-            "chance_probability": np.array([one.chance for one in order.values()]),
-        },
-        {},
-    )
+    added = {
+        "overturning_probability": share,
+        "overturning_probability_lower_bound": lower,
+        "overturning_probability_upper_bound": upper,
+        "verdict_count": count,
+        "parameter": np.array(list(order), dtype=object),
+        "first_order_index": np.array([one.first_order for one in order.values()]),
+        "verdict_distance": np.array([one.distance for one in order.values()]),
+        "chance_probability": np.array([one.chance for one in order.values()]),
+    }
     most = next(iter(order), "")
     said = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"
     said += f" with confidence {level:g}, by {count} cases"
@@ -415,4 +411,4 @@ def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: fl
         said += f"; {lacking} without a verdict are left out"
     if most and not np.isnan(order[most].first_order):
         said += f"; {most} matters most"
-    return runs.assign(added.data_vars).assign_coords(added.coords).assign_attrs(verdict=f"{said}.")
+    return with_variables(runs, added).assign_attrs(verdict=f"{said}.")

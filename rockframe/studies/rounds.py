@@ -3,18 +3,17 @@
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from rockframe.errors import StudyError, shown
+from rockframe.errors import StudyError
 from rockframe.motion import GroundMotion
 from rockframe.studies.sweeps.arguments import ExecutionArguments
 from rockframe.studies.sweeps.execution import ProgressBar, bar_of
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.running import run_study
+from rockframe.studies.sweeps.running import folder_of, run_study
 
 if TYPE_CHECKING:
     from rockframe.simulation.system import System
@@ -59,10 +58,7 @@ def _store(given: object, owner: str) -> Path | None:
     """Read the folder of an analysis, and make it."""
     if given is None:
         return None
-    if not isinstance(given, str | PathLike):
-        msg = f"{owner}: store must be the path of a folder, got {shown(given)}"
-        raise StudyError(msg)
-    folder = Path(given)  # pyright: ignore[reportUnknownArgumentType]
+    folder = folder_of(given, owner=owner)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:

@@ -15,7 +15,7 @@ from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals import Motion, Signal
@@ -108,16 +108,14 @@ def earthquake_sequences(
         (row, number) for row, each in enumerate(joined.values()) for number in range(len(each))
     ]
     arranged = _arranged(runs, places, (len(joined), longest))
-    labels = build_dataset(
-        {
-            "sequence": np.array(list(joined), dtype=object),
-            NUMBER: np.arange(1, longest + 1),
-            "overturning_earthquake": _first(arranged),
-        },
-        {},
-    )
-    found = arranged.assign(labels.data_vars).assign_coords(labels.coords)
-    falls = int((labels["overturning_earthquake"] > 0).sum())
+    overturning = _first(arranged)
+    labels = {
+        "sequence": np.array(list(joined), dtype=object),
+        NUMBER: np.arange(1, longest + 1),
+        "overturning_earthquake": overturning,
+    }
+    found = with_variables(arranged, labels)
+    falls = int((overturning > 0).sum())
     count = len(joined)
     verdict = f"Of {'1 sequence' if count == 1 else f'all {count} sequences'} {falls} overturned."
     return found.assign_attrs(title="Earthquakes in sequence", pause=rest, verdict=verdict)

@@ -9,12 +9,12 @@ import xarray as xr
 
 from rockframe.comparison.models import check_system
 from rockframe.components import Block
-from rockframe.errors import ComponentError, StudyError, collected_warnings, shown
+from rockframe.errors import ComponentError, StudyError, collected_warnings
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import build_dataset
+from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
-from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.intensities import POWERS, Intensity, of_motions, of_study, unscaled_motions
 from rockframe.studies.limit_states import overturns
@@ -25,14 +25,13 @@ from rockframe.studies.lines import (
     VERDICT,
     Lines,
     bracket_arrays,
-    head,
     least_exceeding,
     read_resolution,
+    read_rising,
     read_scales,
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.motions import MotionsLike, named_motions
 from rockframe.studies.sweeps.scenes import scene_of
 from rockframe.studies.sweeps.sweep import sweep
@@ -55,10 +54,10 @@ class BlockSizes:
     ) -> None:
         self.system = _by_shape_factor(system, _block(system, owner))
         si = self.system.parts.the_block
-        self.periods = _above_zero(periods, PERIOD, "periods", owner)
+        self.periods = read_rising(periods, PERIOD, "periods", owner=owner)
         ratio = si.height / si.width
         given = [ratio] if slenderness is None else slenderness
-        self.slenderness = _above_zero(given, _SLENDER, "slenderness", owner)
+        self.slenderness = read_rising(given, _SLENDER, "slenderness", owner=owner)
         # omega^2 = mu g / ((1 + mu) R0), Eq. (6)
         scale = si.frequency_at(system.options.gravity) ** 2 * si.radius
         radius = scale * (0.5 * self.periods / math.pi) ** 2
@@ -100,15 +99,8 @@ def _by_shape_factor(system: System, block: Block) -> System:
     with collected_warnings():  # block and system have warned when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
         others = [part for part in system.parts.structural() if part is not block]
-        return System(
-            scaling,
-            *others,
-            restraint=system.restraint,
-            rotation=system.rotation,
-            gravity=system.gravity,
-            inclination=system.inclination,
-            sliding=system.sliding,
-        )
+        options: dict[str, Any] = system.options.to_dict()
+        return System(scaling, *others, **options)
 
 
 def _block(system: System, owner: str) -> Block:
@@ -132,17 +124,8 @@ def _in_the_middle(block: Block) -> bool:
     return si.eccentricity == 0.0 and above <= _ROUNDING * si.height
 
 
-def _above_zero(given: Any, measure: Measure, name: str, owner: str) -> Array:
-    values = np.unique(numbers_of(given, measure, name))
-    if not len(values) or values[0] <= 0.0:
-        msg = f"{owner}: {name} must be above zero, got {shown(given)}"
-        raise ComponentError(msg)
-    return values
-
-
 _ROCKING: Final = "rocking_spectrum"
 _OVERTURNING: Final = "overturning_spectrum"
-_MOST_SCALES: Final = 100_000
 _ARGUMENTS: Final = (
     *SweepArguments.__annotations__, "periods", "slenderness", "scale", "intensity", "period",
     "resolution", "bracket_width",
@@ -289,7 +272,7 @@ def overturning_spectrum(
     """
     check_system(system, _OVERTURNING)
     sizes = BlockSizes(system, periods, slenderness, axes, owner=_OVERTURNING)
-    scales = read_scales(scale, owner=_OVERTURNING, most=_MOST_SCALES)
+    scales = read_scales(scale, owner=_OVERTURNING)
     share = read_width(bracket_width, owner=_OVERTURNING)
     finest = read_resolution(resolution, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)

@@ -18,7 +18,8 @@ from rockframe.errors import (
 )
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import concat
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
+from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -42,14 +43,13 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_json,
 )
-from rockframe.studies.lines import INTERRUPTED, head
+from rockframe.studies.lines import INTERRUPTED
 from rockframe.studies.probability import SAMPLED, Spread, read_correlation, read_spread
 from rockframe.studies.rounds import Rounds, rounds_of
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.case import remember, remembered
-from rockframe.studies.sweeps.motions import named_motions
 from rockframe.studies.sweeps.planning import check_memory
-from rockframe.studies.sweeps.scenes import own_motion, scene_of
+from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
 from rockframe.system.options import PointsLike
 from rockframe.units import Condition, RatioLike, to_ratio
 
@@ -182,8 +182,7 @@ def subset_simulation(
     most = whole_number(levels, owner=_OWNER, name="levels", lowest=1, highest=_MOST_LEVELS)
     first = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     trust = read_level(confidence, owner=_OWNER)
-    own = own_motion(scene) if motions is None else motions
-    named = None if own is None else named_motions(own)
+    named = motions_of_study(motions, scene)
     wrong = check_memory(
         {"samples": 2.0 + len(spreads)}, count * most, "draw fewer cases", owner=_OWNER
     )
@@ -340,24 +339,15 @@ def _labelled(
         {},
         source="subset simulation by event-driven runs",
     )
-    of_samples = build_dataset(
-        {
-            "demand": np.concatenate([one.demands for one in found]),
-            "sample_level": np.repeat(
-                of_levels["sampling_level"], [len(one.demands) for one in found]
-            ),
-            "sample_weight": np.concatenate(weights_of(found)),
-        },
-        {},
-        over=(CASE,),
-    )
+    of_samples = {
+        "demand": np.concatenate([one.demands for one in found]),
+        "sample_level": np.repeat(of_levels["sampling_level"], [len(one.demands) for one in found]),
+        "sample_weight": np.concatenate(weights_of(found)),
+    }
     known = {name: first.attrs[name] for name in _TOLD}
-    return (
-        samples.assign(of_levels.data_vars)
-        .assign_coords(of_levels.coords)
-        .assign(of_samples.data_vars)
-        .assign_attrs({**known, "source": of_levels.attrs["source"]})
-    )
+    samples = samples.assign(of_levels.data_vars).assign_coords(of_levels.coords)
+    samples = with_variables(samples, of_samples, over=(CASE,))
+    return samples.assign_attrs({**known, "source": of_levels.attrs["source"]})
 
 
 def _say_what_is_lacking(found: xr.Dataset) -> None:

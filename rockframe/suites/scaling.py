@@ -10,7 +10,7 @@ from rockframe.errors import ComponentError, SchemaError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.joining import MOTION
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
 from rockframe.suites.columns import column
 from rockframe.suites.target import TargetSpectrum
@@ -152,10 +152,7 @@ def scaled_set(
             "period": ("period", candidates.seconds, meaning),
         }
     )
-    for name in (MOTION, "period"):
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
-        dataset[name].encoding["_FillValue"] = None
-    return dataset
+    return without_fill_values(dataset)
 
 
 def compared_target(found: xr.Dataset) -> TargetSpectrum | None:

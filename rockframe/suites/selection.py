@@ -11,7 +11,7 @@ from rockframe.arguments import whole_number
 from rockframe.errors import ComponentError
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import with_variables
 from rockframe.suites.candidates import Combination, candidates_of
 from rockframe.suites.scaling import USUAL_BOUNDS, scaled_set
 from rockframe.suites.target import TargetSpectrum
@@ -148,7 +148,7 @@ def selection_for(
         spread_weight=weight,
         references=_REFERENCES,
     )
-    return dataset.assign(build_dataset({"set_misfit": search.misfit(chosen)}, {}).data_vars)
+    return with_variables(dataset, {"set_misfit": search.misfit(chosen)})
 
 
 @dataclass(frozen=True)

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
-from rockframe.components import Component
 from rockframe.errors import AssemblyError
 from rockframe.many import isnan
-from rockframe.system.fitting import SMALL_SLIDING, BaseFriction, friction_under
+from rockframe.system.fitting import BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Statics, static_values
 from rockframe.system.support import Support
 from rockframe.system.words import SLIPS, Words, angle_words
 
@@ -104,8 +103,7 @@ class AloneSetting(Setting):
         """Give settlement, reactions and moment at uplift, by their names in the schema."""
         found = self.upright()
         if self.rest_rotation != 0.0:
-            shown = self.statics(self.rest_rotation).reactions
-            found |= {f"static_{name}": value for name, value in shown.items()}
+            found |= static_values(self.statics(self.rest_rotation).reactions)
         return found
 
 
@@ -136,9 +134,8 @@ class SlidingAloneSetting(AloneSetting):
             left_out=[one for one in base.left_out if one != "sliding"],
         )  # fmt: skip
 
-    @cached_property
-    def _model(self) -> "ContactModel":
-        """The equations of a body that slips on its base: those of a chain of one."""
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of slip, rotation and rise: those of a chain of one."""
         from rockframe.dynamics.chain.model import AtRest, ChainBody, chain
 
         body, rest = self.load.rigid_body, None
@@ -148,21 +145,7 @@ class SlidingAloneSetting(AloneSetting):
         one = ChainBody(body, self.support.base_numbers, 1.0, 0.0, 0.0)
         return chain([one], self.body.mass, rest, frictions=[self.friction])
 
-    def contact_model(self) -> "ContactModel":
-        """Give the equations of slip, rotation and rise."""
-        return self._model
-
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the body slipped."""
-        system = cast("SlippingBodies", self._model.system)
+        system = cast("SlippingBodies", self.compile().system)
         return (SlipRange(*system.slips(0, ending)),)
-
-
-def alone_on(part: Component, held: AloneSetting) -> AloneSetting:
-    """Give the setting of a body on a base: of one that slips on it where that has friction."""
-    found = friction_under(part, held.options)
-    if found is None:
-        return held
-    if held.options.small:
-        raise AssemblyError([SMALL_SLIDING])
-    return SlidingAloneSetting(held.load, held.support, found, cap_offset=held.cap_offset)

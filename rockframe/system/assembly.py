@@ -8,9 +8,16 @@ from typing import TYPE_CHECKING, Final
 
 from rockframe.components import Component, RigidGround
 from rockframe.errors import AssemblyError
-from rockframe.system.alone import AloneSetting, alone_on
+from rockframe.system.alone import AloneSetting, SlidingAloneSetting
 from rockframe.system.bodies import BaseLoad, load_of, one_body
-from rockframe.system.fitting import contradictions, misfits, missizes, unused
+from rockframe.system.fitting import (
+    SMALL_SLIDING,
+    contradictions,
+    friction_under,
+    misfits,
+    missizes,
+    unused,
+)
 from rockframe.system.options import (
     Coupling,
     Options,
@@ -27,10 +34,9 @@ from rockframe.system.rear_wall import rear_wall_setting
 from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
 from rockframe.system.sliding_ground import rigid_ground_setting
-from rockframe.system.sliding_stack import stack_on
+from rockframe.system.sliding_stack import stack_on, tied_on_ground
 from rockframe.system.stack import StackSetting, block_setting, stack_setting
 from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
-from rockframe.system.tied_sliding import tied_on_ground
 from rockframe.system.words import describe
 
 if TYPE_CHECKING:
@@ -61,27 +67,24 @@ class Scene:
 
 
 def _held(slot: str, parts: Parts, options: Options) -> AloneSetting:
-    """Put a block on the base in a slot, which holds it."""
-    load = load_of(parts.the_block, options)
-    return AloneSetting(load, support_of(parts[slot], load))
-
-
-def _held_with_cap(parts: Parts, options: Options) -> AloneSetting:
-    """Put block and cap as one body on the soil, which holds it."""
+    """Put a block on the base in a slot, which holds it; on soil with its cap as one body."""
+    if slot != "soil" or parts.cap is None:
+        load = load_of(parts.the_block, options)
+        return AloneSetting(load, support_of(parts[slot], load))
     cap = parts.the_cap
     load = BaseLoad(one_body(parts.the_block, cap), options)
     offset = cap.half_height - load.body.centre_height
-    return AloneSetting(load, support_of(parts["soil"], load), cap_offset=offset)
+    return AloneSetting(load, support_of(parts[slot], load), cap_offset=offset)
 
 
 def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
-    """Put a block on the base in a slot."""
-    return alone_on(parts[slot], _held(slot, parts, options))
-
-
-def _with_cap(parts: Parts, options: Options) -> AloneSetting:
-    """Put block and cap as one body on the soil."""
-    return alone_on(parts["soil"], _held_with_cap(parts, options))
+    """Put a block on the base in a slot, on which it slips where that has friction."""
+    held, friction = _held(slot, parts, options), friction_under(parts[slot], options)
+    if friction is None:
+        return held
+    if options.small:
+        raise AssemblyError([SMALL_SLIDING])
+    return SlidingAloneSetting(held.load, held.support, friction, cap_offset=held.cap_offset)
 
 
 def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
@@ -98,10 +101,9 @@ def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> Non
 
 def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> StackedSetting:
     """Put a block on pads on a cap on soil."""
-    upper, lower = _held("pads", parts, options), _held_with_cap(parts, options)
+    upper, lower = (_held(slot, parts, options) for slot in ("pads", "soil"))
     _refuse_twins(parts, upper, lower)
-    cap = parts.the_cap
-    return kind(upper.load, upper, lower, cap)
+    return kind(upper.load, upper, lower, parts.the_cap)
 
 
 def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
@@ -130,7 +132,7 @@ _SHIPPED: Final = (
     Scene(
         "Block + CushionCap + WinklerSoil (block and cap as one body)",
         frozenset({"block", "cap", "soil"}),
-        _with_cap,
+        partial(_alone, "soil"),
     ),
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='coupled'",

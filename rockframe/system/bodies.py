@@ -9,8 +9,7 @@ from rockframe.components.cap import CushionCapSI
 from rockframe.dynamics.body import Body
 from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
-from rockframe.signals.motion import Slope
-from rockframe.system.options import Options, restraint_code
+from rockframe.system.options import RESTRAINT_CODES, Options
 
 ROUNDING = 1e-12
 """Excess over the greatest restitution that is taken for rounding."""
@@ -106,11 +105,6 @@ class OverturningAngles(NamedTuple):
         """Give that of the side to which a body is rotated."""
         return self.left if rotation < 0.0 else self.right
 
-    def on_slope(self, slope: Slope, *, small: bool) -> "OverturningAngles":
-        """Give those relative to a base line that rises, :eq:`eq-incline-overturning`."""
-        i = tan(slope.inclination) if small else slope.inclination
-        return OverturningAngles(self.left - i, self.right + i)
-
 
 @dataclass(frozen=True)
 class Cap:
@@ -130,18 +124,14 @@ def body_of_block(block: BlockSI) -> SupportedBody:
     )  # fmt: skip
 
 
+_Mass = tuple[float, float, float, float]
+"""A mass, its inertia, and where its centre is, from the middle of the base; in SI units."""
+
+
 def with_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
     """Give a body with one more mass at a point, from the middle of its base."""
-    whole = body.mass + mass
-    height = (body.mass * body.centre_height + mass * y) / whole
-    beside = (body.mass * body.eccentricity + mass * x) / whole
-    inertia = (
-        body.inertia
-        + body.mass * ((body.centre_height - height) ** 2 + (body.eccentricity - beside) ** 2)
-        + mass * ((y - height) ** 2 + (x - beside) ** 2)
-    )
-    shape_factor = whole * (body.half_width**2 + height**2) / inertia
-    return SupportedBody(body.half_width, height, whole, inertia, shape_factor, beside)
+    own = (body.mass, body.inertia, body.eccentricity, body.centre_height)
+    return _two_as_one(body.half_width, own, (mass, 0.0, x, y))
 
 
 def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
@@ -152,18 +142,20 @@ def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
 
 def one_body(block: BlockSI, cap: Cap) -> SupportedBody:
     """Give block and cap as one body, :eq:`eq-one-body`."""
-    mass = block.mass + cap.mass
     block_height = 2.0 * cap.half_height + block.centre_height
-    height = (block.mass * block_height + cap.mass * cap.half_height) / mass
-    beside = block.mass * block.eccentricity / mass
-    inertia = (
-        block.inertia
-        + block.mass * ((block_height - height) ** 2 + (block.eccentricity - beside) ** 2)
-        + cap.inertia
-        + cap.mass * ((height - cap.half_height) ** 2 + beside**2)
-    )
-    shape_factor = mass * (cap.half_width**2 + height**2) / inertia
-    return SupportedBody(cap.half_width, height, mass, inertia, shape_factor, beside)
+    upper = (block.mass, block.inertia, block.eccentricity, block_height)
+    return _two_as_one(cap.half_width, upper, (cap.mass, cap.inertia, 0.0, cap.half_height))
+
+
+def _two_as_one(half_width: float, one: _Mass, other: _Mass) -> SupportedBody:
+    """Give two masses that move as one as a body on a base."""
+    (m1, own1, x1, y1), (m2, own2, x2, y2) = one, other
+    mass = m1 + m2
+    height, beside = (m1 * y1 + m2 * y2) / mass, (m1 * x1 + m2 * x2) / mass
+    inertia = own1 + m1 * ((y1 - height) ** 2 + (x1 - beside) ** 2)
+    inertia = inertia + own2 + m2 * ((y2 - height) ** 2 + (x2 - beside) ** 2)
+    shape_factor = mass * (half_width**2 + height**2) / inertia
+    return SupportedBody(half_width, height, mass, inertia, shape_factor, beside)
 
 
 _KEPT: Final = 64
@@ -197,8 +189,10 @@ class BaseLoad:
 
     @cached_property
     def overturning_angles(self) -> OverturningAngles:
-        """Rotations at which the centre of mass stands above an end of the base."""
-        return self.body.overturning_angles.on_slope(self.options.slope, small=self.options.small)
+        """Those of the body relative to its base line, :eq:`eq-incline-overturning`."""
+        (left, right), i = self.body.overturning_angles, self.options.inclination
+        i = tan(i) if self.options.small else i
+        return OverturningAngles(left - i, right + i)
 
     @cached_property
     def rigid_body(self) -> Body:
@@ -214,7 +208,7 @@ class BaseLoad:
             right=self.body.right,
             height=self.body.centre_height,
             inertia=self.body.inertia / mass,
-            restraint=restraint_code(self.options.restraint),
+            restraint=RESTRAINT_CODES[self.options.restraint],
             small_rotation=self.options.small,
             gravity=self.options.slope.normal_gravity,
         )

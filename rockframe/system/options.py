@@ -7,6 +7,7 @@ from enum import StrEnum
 from typing import Final, Literal, TypeAlias, TypeVar
 
 from rockframe.constants import STANDARD_GRAVITY
+from rockframe.dynamics.body import BY_CONTACT, CENTRE, LEADING_CORNER
 from rockframe.errors import RockframeError, nearest, shown
 from rockframe.signals.motion import Slope
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel
@@ -165,12 +166,9 @@ def restraint_words(options: Options, end: str = "corner") -> str:
     return _WORDS[options.restraint].format(end=end, ends=f"{end}s")
 
 
-def restraint_code(restraint: Restraint) -> int:
-    """Give the equations' code of a rule."""
-    from rockframe.dynamics import body as rules
-
-    return {
-        Restraint.CONTACT_STATE: rules.BY_CONTACT,
-        Restraint.LEADING_CORNER: rules.LEADING_CORNER,
-        Restraint.CENTRE: rules.CENTRE,
-    }[restraint]
+RESTRAINT_CODES: Final = {
+    Restraint.CONTACT_STATE: BY_CONTACT,
+    Restraint.LEADING_CORNER: LEADING_CORNER,
+    Restraint.CENTRE: CENTRE,
+}
+"""The equations' codes of the rules."""

@@ -27,7 +27,7 @@ from rockframe.errors import LabelError, nearest, shown
 from rockframe.motion import GroundMotion
 from rockframe.system.bodies import BaseLoad, Cap, cap_under
 from rockframe.system.own_base import OwnBase
-from rockframe.system.rigid_base import rigid_under
+from rockframe.system.rigid_base import RigidBase
 from rockframe.system.support import Support, bed_under, pads_under
 
 
@@ -48,7 +48,7 @@ _KINDS: Final[dict[type, Kind]] = {
     TwoSpringSupport: Kind("pads", pads_under),
     CushionCap: Kind("cap"),
     WinklerSoil: Kind("soil", bed_under),
-    RigidGround: Kind("ground", rigid_under),
+    RigidGround: Kind("ground", lambda _, load: RigidBase(load)),
     RearWall: Kind("wall"),
     Restrainer: Kind("restrainer"),
     Tendon: Kind("restrainer"),
@@ -253,20 +253,6 @@ class Parts:
         if self.block is None:
             raise TypeError
         return self.block.si
-
-    @property
-    def the_frame(self) -> RockingFrame:
-        """Columns under a beam, in a scene that has them."""
-        if self.frame is None:
-            raise TypeError
-        return self.frame
-
-    @property
-    def the_wall(self) -> RearWall:
-        """The wall behind the block, in a scene that has one."""
-        if self.wall is None:
-            raise TypeError
-        return self.wall
 
     @property
     def the_cap(self) -> Cap:

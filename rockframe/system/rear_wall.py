@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 from rockframe.components import RearWall
 from rockframe.components.block_numbers import BlockSI
@@ -134,7 +134,7 @@ class RearWallSetting(RigidGroundSetting):
 
 def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
     """Resolve the parts of a block before a wall."""
-    load, wall = load_of(parts.the_block, options), parts.the_wall
+    load, wall = load_of(parts.the_block, options), cast("RearWall", parts.wall)
     given = None if parts.ground is None else parts.ground.si.restitution
     restitution = resolve_restitution(given, load.body.maximum_restitution)
     if not load.options.slope.level:

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
-from rockframe.components import RigidGround
 from rockframe.dynamics.following import Path
-from rockframe.system.bodies import BaseLoad
 from rockframe.system.statics import Statics, work_against
 from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import uplift_words
@@ -81,12 +79,7 @@ class RigidBase(Support):
         )
 
 
-def rigid_under(part: RigidGround, load: BaseLoad) -> RigidBase:
-    """Give a rigid base under a body."""
-    return RigidBase(load)
-
-
-REACTIONS = ("left_reaction", "right_reaction")
+REACTIONS: tuple[str, ...] = ("left_reaction", "right_reaction")
 
 
 class Pressed(NamedTuple):

@@ -8,16 +8,13 @@ from typing import TYPE_CHECKING, ClassVar
 from rockframe.errors import AssemblyError
 from rockframe.many import atan, cos, hypot, sin, sqrt, tan
 from rockframe.system.bodies import Restitutions, restitution_cautions
-from rockframe.system.rigid_base import NO_VERTICAL_START
+from rockframe.system.rigid_base import REACTIONS
 from rockframe.system.setting import Setting
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Statics, static_values
 from rockframe.system.words import Words, angle_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
-
-
-_REACTIONS = ("left_reaction", "right_reaction")
 
 
 @dataclass(frozen=True)
@@ -73,10 +70,6 @@ class RigidGroundSetting(Setting):
         """Give warnings about the restitution."""
         return restitution_cautions(self.restitution, self.body.maximum_restitution)
 
-    def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Refuse a vertical start: the ground leaves no vertical freedom."""
-        return [NO_VERTICAL_START] if has_vertical_start else []
-
     def contact_model(self) -> "ContactModel":
         """Give Housner's equations."""
         from rockframe.dynamics.rigid_ground import corner_of, rigid_ground
@@ -111,7 +104,7 @@ class RigidGroundSetting(Setting):
                 body.base_ratio * moment,
                 0.0,
                 "full",
-                dict(zip(_REACTIONS, self.shares, strict=True)),
+                dict(zip(REACTIONS, self.shares, strict=True)),
             )
         side = math.copysign(1.0, rotation)
         theta, lean = body.overturning_angles.on_side_of(rotation), abs(rotation)
@@ -132,14 +125,14 @@ class RigidGroundSetting(Setting):
             base_moment=body.base_ratio * (moment + side * weight * weight_arm),
             restoring_moment=moment + thrust * thrust_arm,
             contact_state="right" if side > 0.0 else "left",
-            reactions=dict(zip(_REACTIONS, reactions, strict=True)),
+            reactions=dict(zip(REACTIONS, reactions, strict=True)),
         )
 
     def equilibrium(self) -> dict[str, float]:
         """Give the reactions at rest and the moment at uplift, by their names in the schema."""
         uplift = self.load.weight * self.body.half_width * self.body.base_ratio
-        shares = zip(_REACTIONS, self.shares, strict=True)
-        return {"uplift_moment": uplift} | {f"static_{name}": force for name, force in shares}
+        shares = dict(zip(REACTIONS, self.shares, strict=True))
+        return {"uplift_moment": uplift, **static_values(shares)}
 
     @property
     def shares(self) -> tuple[float, float]:

@@ -3,11 +3,11 @@
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
-from rockframe.components import Tendon
+from rockframe.components import RockingFrame, Tendon
 from rockframe.components.rocking_frame import RockingFrameSI
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
@@ -234,7 +234,8 @@ class TiedFrameSetting(RockingFrameSetting):
 
 def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting:
     """Resolve the parts of a frame on rigid ground."""
-    load = BaseLoad(body_of_frame(parts.the_frame.si), options)
+    frame = cast("RockingFrame", parts.frame).si
+    load = BaseLoad(body_of_frame(frame), options)
     greatest = load.body.maximum_restitution
     if greatest.left <= 0.0:
         raise AssemblyError([
@@ -243,10 +244,10 @@ def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting
         ])  # fmt: skip
     given = parts.ground.si.restitution if parts.ground is not None else None
     restitution = resolve_restitution(given, greatest)
-    setting = RockingFrameSetting(load, restitution, parts.the_frame.si)
+    setting = RockingFrameSetting(load, restitution, frame)
     refuse_fall(setting)
     if not parts.links:
         return setting
     refuse_options("a RockingFrame with tendons", options, small=False)
     tendons = tuple(one for one in parts.links if isinstance(one, Tendon))
-    return TiedFrameSetting(load, restitution, parts.the_frame.si, tendons)
+    return TiedFrameSetting(load, restitution, frame, tendons)

@@ -11,6 +11,7 @@ from rockframe.many import largest
 from rockframe.signals.motion import Slope
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
+from rockframe.system.rigid_base import NO_VERTICAL_START
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, least_overturning_energy, required_states
 from rockframe.system.support import Support
@@ -161,8 +162,10 @@ class Setting(ABC):
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give the faults that the base of the body finds in an initial state.
 
-        Rigid ground, which is no support, finds its own.
+        Rigid ground, which is no support, leaves no vertical freedom.
         """
+        if not self.supports:
+            return [NO_VERTICAL_START] if has_vertical_start else []
         return self.supports[0].start_faults(rotation, has_vertical_start)
 
     def cautions(self) -> list[str]:
@@ -199,6 +202,10 @@ class Setting(ABC):
     def contact_model(self) -> ContactModel:
         """Give the equations, with limits of the rotation as of a level base."""
 
-    def compile(self) -> ContactModel:
-        """Give the equations, ready for the integrator."""
+    @cached_property
+    def _model(self) -> ContactModel:
         return replace(self.contact_model(), rotation_limits=self.overturning_angles)
+
+    def compile(self) -> ContactModel:
+        """Give the equations, ready for the integrator, which leaves them as they are."""
+        return self._model

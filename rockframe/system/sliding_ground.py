@@ -13,7 +13,7 @@ from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
 from rockframe.system.setting import SlipRange
-from rockframe.system.words import Words
+from rockframe.system.words import HELD_BY_FRICTION, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel, Ending
@@ -39,15 +39,13 @@ class SlidingSetting(RigidGroundSetting):
         """Whether the block is so squat that it does not roll over."""
         return min(self.restitution) <= 0.0
 
-    def system(self) -> "SlideRock":
-        """Give the equations."""
-        return slide_rock_of(self.body, self.friction, self.restitution, self.slope.normal_gravity)
-
     def contact_model(self) -> "ContactModel":
         """Give the equations of slip, rotation and rise."""
         from rockframe.dynamics.slide_rock_model import slide_rock
 
-        return slide_rock(self.system(), mass=self.body.mass)
+        gravity = self.slope.normal_gravity
+        system = slide_rock_of(self.body, self.friction, self.restitution, gravity)
+        return slide_rock(system, mass=self.body.mass)
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the block slipped."""
@@ -63,11 +61,6 @@ class SlidingSetting(RigidGroundSetting):
             f"{along / self.slope.normal_gravity:.4g}, and has {self.friction.static:.4g}"
         )
         return [*super().cautions(), slides]
-
-    @property
-    def friction_to_roll_over(self) -> float:
-        """Coefficient from which no corner slips as it strikes, :eq:`eq-slide-housner`."""
-        return friction_to_roll_over(self.body)
 
     def words(self) -> Words:
         """Tell the block that slides."""
@@ -89,12 +82,11 @@ class SlidingSetting(RigidGroundSetting):
                 ("flight", "nothing bears: N = 0"),
                 ("impact", f"{self.impact}: {law}; {onto}"),
             ],
-            restraint="friction at the corner that bears, or on the whole base (the restraint "
-            "options make no difference)",
+            restraint=HELD_BY_FRICTION,
             numbers=[
                 *base.numbers[:-1],
                 ("friction at rest, and of slip", self.friction.words()),
-                ("friction to land without slip", f"{self.friction_to_roll_over:.6g}"),
+                ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
                 ("restitution eps", "lands flat" if self.lands_flat else self.restitution.words()),
             ],
             left_out=["elasticity of block and ground"],

@@ -1,18 +1,24 @@
-"""The scene of bodies upon one another that slip: its numbers, its words and its model."""
+"""The scenes of bodies upon one another that slip, and of a block with links on rigid ground."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from rockframe.components import Component, RigidGround, Tendon, TwoSpringSupport
+from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
-from rockframe.system.fitting import HELD, SMALL_SLIDING, friction_under
+from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Sliding
 from rockframe.system.setting import SlipRange
-from rockframe.system.sliding_ground import ill_posed
+from rockframe.system.sliding_ground import (
+    friction_to_roll_over,
+    ill_posed,
+    impact_words,
+    slide_rock_of,
+    slips_on_ground,
+)
 from rockframe.system.stack import StackSetting
-from rockframe.system.words import SLIPS, Words
+from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.slips import SlippingBodies
@@ -54,17 +60,9 @@ class SlidingStackSetting(StackSetting):
             left_out=[one for one in told.left_out if one != "sliding"],
         )
 
-    @cached_property
-    def _sliding_model(self) -> "ContactModel":
-        return super().contact_model()
-
-    def contact_model(self) -> "ContactModel":
-        """Give the equations of bodies that slip on what they stand on."""
-        return self._sliding_model
-
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far each body slipped."""
-        system = cast("SlippingBodies", self._sliding_model.system)
+        system = cast("SlippingBodies", self.compile().system)
         return tuple(SlipRange(*system.slips(k, ending)) for k in range(len(self.bodies)))
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
@@ -107,9 +105,13 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
     if faults:
         raise AssemblyError(faults)
     frictions = tuple(HELD if one is None else one for one in found)
-    return SlidingStackSetting(
-        held.load, held.bodies, held.tops, held.offsets, held.bases, held.ties, frictions
-    )
+    return SlidingStackSetting(**_same(held), frictions=frictions)
+
+
+def _same(held: StackSetting) -> dict[str, Any]:
+    """Give what all settings of the same bodies, bases and links have."""
+    names = ("load", "bodies", "tops", "offsets", "bases", "ties")
+    return {name: getattr(held, name) for name in names}
 
 
 def too_many_modes(bases: Sequence[Component], slips: bool) -> str | None:
@@ -140,3 +142,81 @@ def sheared(held: StackSetting) -> list[str]:
         for one in held.ties
         if isinstance(one.part, Tendon) and one.part.si.depth == 0.0
     ]
+
+
+@dataclass(frozen=True)
+class TiedSetting(StackSetting):
+    """A block with links on rigid ground, which holds it."""
+
+    @property
+    def friction(self) -> BaseFriction:
+        """Friction of the ground."""
+        return self.frictions[0] if self.frictions else HELD
+
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of slip, rotation and rise, with links."""
+        from rockframe.dynamics.slide_rock_model import slide_rock
+        from rockframe.dynamics.tied_slide_rock import tied_slide_rock
+
+        self._rest  # noqa: B018 - refuses a block that its links tip over
+        bare = slide_rock_of(self.body, self.friction, self.body.maximum_restitution, self.gravity)
+        if not self.chain_ties:  # of loads that are masses
+            return slide_rock(bare, mass=self.body.mass)
+        return tied_slide_rock(bare, self.chain_ties, mass=self.body.mass)
+
+
+@dataclass(frozen=True)
+class TiedSlidingSetting(TiedSetting):
+    """A block with links on rigid ground, on which it slides."""
+
+    impact: Impact = Impact.COULOMB  # law of its impacts
+    slides = True
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "rigid-restrained-sliding"
+
+    def cautions(self) -> list[str]:
+        """Give warnings, also of a block that its restrainers move at once."""
+        return [*super().cautions(), *self.slides_at_rest("the block")]
+
+    def words(self) -> Words:
+        """Tell the block, its links and its friction."""
+        told = super().words()
+        return Words(
+            equations=[
+                ("full", "at rest while friction holds the base, and until it tips; else it slides "
+                 "on its whole base"),
+                ("left, right", "it rocks about the corner that bears while friction holds that, "
+                 "and slips on it otherwise"),
+                SLIPS,
+                ("flight", "nothing bears: N = 0"),
+                ("impact", f"{self.impact}: {impact_words(self.impact)}; restrainers, whose forces "
+                 "are finite, have no part in it"),
+                *(one for one in told.equations if one[0] == "restrainers"),
+            ],
+            restraint=HELD_BY_FRICTION,
+            numbers=[
+                *told.numbers,
+                ("friction at rest, and of slip", self.friction.words()),
+                ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
+            ],
+            left_out=[one for one in told.left_out if one != "sliding"],
+        )  # fmt: skip
+
+    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+        """Tell how far the block slipped."""
+        return (slips_on_ground(ending),)
+
+
+def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
+    """Give the setting of a block with links: of one that slides where the ground has friction."""
+    found = friction_under(ground, held.options)
+    if found is None:
+        return TiedSetting(**_same(held))
+    faults = sheared(held)
+    faults += ill_posed(held.body, found.kinetic)
+    if faults:
+        raise AssemblyError(faults)
+    return TiedSlidingSetting(**_same(held), frictions=(found,), impact=ground.si.impact)

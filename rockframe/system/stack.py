@@ -25,7 +25,7 @@ from rockframe.system.rigid_base import (
 )
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, least_overturning_energy
+from rockframe.system.statics import Statics, least_overturning_energy, static_values
 from rockframe.system.support import StandingBodies, Support
 from rockframe.system.words import Words
 
@@ -322,15 +322,13 @@ class StackSetting(Setting):
             carried = pressed(self, 0, self._tied_at_rest)
             left, right = self.body.left, self.body.right
             reactions = (carried.to_right / (left + right), carried.to_left / (left + right))
-            found = {"uplift_moment": carried.force * self.body.half_width} | {
-                f"static_{name}": value for name, value in zip(REACTIONS, reactions, strict=True)
+            found = {
+                "uplift_moment": carried.force * self.body.half_width,
+                **static_values(dict(zip(REACTIONS, reactions, strict=True))),
             }
         elif len(self.bodies) == 1:
-            shown = self.standing.reactions(self._rest)
-            found = {
-                self.bases[0].settlement_name: self.bases[0].settlement,
-                **{f"static_{name}": value for name, value in shown.items()},
-            }
+            base, shown = self.bases[0], self.standing.reactions(self._rest)
+            found = {base.settlement_name: base.settlement, **static_values(shown)}
         return found | self.tied_at_rest()
 
     @cached_property

@@ -16,7 +16,7 @@ from rockframe.system.bodies import Cap
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting
 from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics
+from rockframe.system.statics import Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import Words
 
@@ -200,8 +200,7 @@ class CoupledSetting(StackedSetting):
         found = super().equilibrium()
         if not self.leans:
             return found
-        shown = self._moving.reactions(self._rest)
-        return found | {f"static_{name}": value for name, value in shown.items()}
+        return found | static_values(self._moving.reactions(self._rest))
 
     @property
     def cap_lean(self) -> float:

@@ -1,6 +1,6 @@
 """Bodies held at rotations: their states, and the work that it takes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
@@ -37,6 +37,11 @@ class Statics:
     restoring_moment: float
     contact_state: str
     reactions: dict[str, float] = field(default_factory=dict[str, float])
+
+
+def static_values(shown: Mapping[str, float]) -> dict[str, float]:
+    """Give what bases show at rest the names of the schema for that."""
+    return {f"static_{name}": value for name, value in shown.items()}
 
 
 def required_states(rotations: Sequence[float], states: Sequence[Statics | None]) -> list[Statics]:

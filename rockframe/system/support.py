@@ -22,7 +22,7 @@ from rockframe.system.bodies import (
     resolve_restitution,
     restitution_cautions,
 )
-from rockframe.system.statics import Statics, required_states
+from rockframe.system.statics import Statics, required_states, static_values
 from rockframe.system.words import uplift_words, vibration_words
 
 if TYPE_CHECKING:
@@ -186,10 +186,7 @@ class Support(ABC):
     def at_rest(self) -> dict[str, float]:
         """Give settlement and what the base shows at rest, by their names in the schema."""
         shown = self.standing.reactions(self.standing.upright)
-        return {
-            self.settlement_name: self.settlement,
-            **{f"static_{name}": value for name, value in shown.items()},
-        }
+        return {self.settlement_name: self.settlement, **static_values(shown)}
 
     @abstractmethod
     def words(self) -> BaseWords:

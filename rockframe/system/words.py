@@ -15,6 +15,11 @@ SLIPS = (
     "H = -s mu_k N at the point that would be held, s = sgn(slip'); held while |H| <= mu_s N",
 )
 """Of a base with friction, as an equation of :class:`Words`."""
+HELD_BY_FRICTION = (
+    "friction at the corner that bears, or on the whole base (the restraint options make no "
+    "difference)"
+)
+"""Of a block that slides on rigid ground, as the restraint of :class:`Words`."""
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from contextlib import contextmanager
 import numpy as np
 
 import rockframe as rf
-from rockframe.studies.sweeps import runs, side_by_side, study, together
+from rockframe.studies.sweeps import lanes, runs, study
 from rockframe.studies.sweeps.chunk import DRIVER, Driver, run_chunk
 from rockframe.studies.sweeps.planning import plan_study
 
@@ -149,7 +149,7 @@ def monte_carlo(motion, name, accuracy) -> str:
 def _loops_timed():
     """Give the processor time that is spent in lanes [s]."""
     inside = [0.0]
-    loops = side_by_side.integrate_lanes
+    loops = lanes.integrate_lanes
 
     def timed(*given):
         begun = time.thread_time()
@@ -158,11 +158,11 @@ def _loops_timed():
         finally:
             inside[0] += time.thread_time() - begun
 
-    side_by_side.integrate_lanes = together.integrate_lanes = timed
+    lanes.integrate_lanes = timed
     try:
         yield inside
     finally:
-        side_by_side.integrate_lanes = together.integrate_lanes = loops
+        lanes.integrate_lanes = loops
 
 
 def share(motion, axes) -> float:

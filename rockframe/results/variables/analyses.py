@@ -4,7 +4,16 @@ from enum import IntEnum
 from typing import Final
 
 from rockframe.results.variables.studies import PARAMETER
-from rockframe.results.variables.variable import FLIP, Variable, count, counting, flag
+from rockframe.results.variables.variable import (
+    FLIP,
+    Variable,
+    bounds,
+    count,
+    counting,
+    flag,
+    number,
+    whether,
+)
 from rockframe.units import Unit
 
 LIMIT_STATE: Final = ("limit_state",)
@@ -32,30 +41,23 @@ class FragilityStatus(IntEnum):
 
 DYNAMIC_ANALYSIS: Final = (
     Variable("limit_state", LIMIT_STATE, None, "limit state", dtype="str"),
-    Variable(
+    number(
         "rotation_limit",
-        LIMIT_STATE,
-        Unit.ONE,
         "peak rotation over the overturning angle that exceeds the limit state, 0 for uplift",
+        LIMIT_STATE,
     ),
-    Variable(
+    whether(
         "exceeds_above",
-        FLIP,
-        None,
         "whether the limit state is exceeded after the flip, and not before it",
-        dtype="bool",
+        FLIP,
     ),
     count("flip_count", "number of changes of the verdict that were found"),
-    Variable(
+    number(
         "capacity_scale",
-        (),
-        Unit.ONE,
         "least scale of the motion that was found to exceed the limit state, infinite if none",
     ),
-    Variable(
+    number(
         "capacity_resolution",
-        (),
-        Unit.ONE,
         "widest range of scales, over its upper end, that may exceed unseen below the capacity",
     ),
     count("censored_count", "number of motions under which no scale exceeded the limit state"),
@@ -63,24 +65,18 @@ DYNAMIC_ANALYSIS: Final = (
 """Of motions that are scaled until limit states are exceeded."""
 
 FRACTILES: Final = (
-    Variable(
+    number(
         "motion_response",
-        (),
-        Unit.ONE,
         "response under a motion, infinite where the block overturns, in its own unit",
     ),
-    Variable(
+    number(
         "response_fractile",
-        (),
-        Unit.ONE,
         "response that this share of the motions does not exceed at the intensity",
     ),
     count("overturned_count", "number of motions that overturn the block at the intensity"),
-    Variable("response_level", ("response_level",), Unit.ONE, "level of the response"),
-    Variable(
+    number("response_level", "level of the response", ("response_level",)),
+    number(
         "intensity_fractile",
-        (),
-        Unit.ONE,
         "intensity by which this share of the motions has first reached the level",
     ),
     count("unreached_count", "number of motions that never reach the level"),
@@ -89,86 +85,37 @@ FRACTILES: Final = (
 
 FRAGILITY: Final = (
     flag("fragility_status", (), "whether a lognormal capacity fits the trials", FragilityStatus),
-    Variable(
-        "median_intensity",
-        (),
-        Unit.ONE,
-        "median of the capacity, in the unit of the intensity",
-    ),
-    Variable(
-        "median_intensity_lower_bound",
-        (),
-        Unit.ONE,
-        "lower bound of the median, of nominal confidence",
-    ),
-    Variable(
-        "median_intensity_upper_bound",
-        (),
-        Unit.ONE,
-        "upper bound of the median, of nominal confidence",
-    ),
-    Variable(
+    number("median_intensity", "median of the capacity, in the unit of the intensity"),
+    *bounds("median_intensity", "{} bound of the median, of nominal confidence"),
+    number(
         "separation_lower_intensity",
-        (),
-        Unit.ONE,
         "greatest intensity of a trial that does not exceed, where trials are separated",
     ),
-    Variable(
+    number(
         "separation_upper_intensity",
-        (),
-        Unit.ONE,
         "least intensity of a trial that exceeds, where trials are separated",
     ),
-    Variable("log_median_error", (), Unit.ONE, "standard error of the logarithm of the median"),
-    Variable("dispersion", (), Unit.ONE, "standard deviation of the logarithm of the capacity"),
-    Variable(
-        "dispersion_lower_bound",
-        (),
-        Unit.ONE,
-        "lower bound of the dispersion, of nominal confidence",
-    ),
-    Variable(
-        "dispersion_upper_bound",
-        (),
-        Unit.ONE,
-        "upper bound of the dispersion, of nominal confidence",
-    ),
-    Variable("dispersion_error", (), Unit.ONE, "standard error of the dispersion"),
+    number("log_median_error", "standard error of the logarithm of the median"),
+    number("dispersion", "standard deviation of the logarithm of the capacity"),
+    *bounds("dispersion", "{} bound of the dispersion, of nominal confidence"),
+    number("dispersion_error", "standard error of the dispersion"),
     count("trial_count", "number of runs, or of capacities, that count"),
     count("left_out_count", "number of those left out, without a result that counts"),
     count("independent_count", "number of motions, or of trials, that are independent"),
     count("below_scan_count", "number of capacities at or below the least scale of the scan"),
-    Variable(
-        "exceedance_probability", (), Unit.ONE, "probability that the limit state is exceeded"
-    ),
-    Variable(
-        "exceedance_probability_lower_bound",
-        (),
-        Unit.ONE,
-        "lower bound of the probability, confidence nominal",
-    ),
-    Variable(
-        "exceedance_probability_upper_bound",
-        (),
-        Unit.ONE,
-        "upper bound of the probability, confidence nominal",
-    ),
+    number("exceedance_probability", "probability that the limit state is exceeded"),
+    *bounds("exceedance_probability", "{} bound of the probability, confidence nominal"),
     Variable(
         "coefficient", COEFFICIENT, None, "what a coefficient of the fit stands before", dtype="str"
     ),
-    Variable(
+    number(
         "fitted_coefficient",
-        COEFFICIENT,
-        Unit.ONE,
         "coefficient before the logarithm of an intensity in SI units, or the intercept",
+        COEFFICIENT,
     ),
-    Variable(
-        "fitted_coefficient_error", COEFFICIENT, Unit.ONE, "standard error of the coefficient"
-    ),
+    number("fitted_coefficient_error", "standard error of the coefficient", COEFFICIENT),
     # what was counted
-    Variable(
-        "stripe_intensity", STRIPE, Unit.ONE, "intensity of a group of trials, in its own unit"
-    ),
+    number("stripe_intensity", "intensity of a group of trials, in its own unit", STRIPE),
     Variable("stripe_trials", STRIPE, Unit.ONE, "number of trials in the group", dtype="int64"),
     Variable(
         "stripe_exceedances",
@@ -177,13 +124,8 @@ FRAGILITY: Final = (
         "number of trials in the group that exceeded the limit state",
         dtype="int64",
     ),
-    Variable("stripe_fraction", STRIPE, Unit.ONE, "share of the group that exceeded"),
-    Variable(
-        "stripe_fraction_lower_bound", STRIPE, Unit.ONE, "lower confidence bound of the share"
-    ),
-    Variable(
-        "stripe_fraction_upper_bound", STRIPE, Unit.ONE, "upper confidence bound of the share"
-    ),
+    number("stripe_fraction", "share of the group that exceeded", STRIPE),
+    *bounds("stripe_fraction", "{} confidence bound of the share", STRIPE),
     Variable(
         "velocity_to_acceleration_ratio",
         (),
@@ -194,118 +136,74 @@ FRAGILITY: Final = (
 """Of lognormal capacities."""
 
 CLOUD: Final = (
-    Variable(
-        "regression_intercept",
-        (),
-        Unit.ONE,
-        "logarithm of the response at an intensity of one, both in SI units",
+    number(
+        "regression_intercept", "logarithm of the response at an intensity of one, both in SI units"
     ),
-    Variable(
-        "regression_slope", (), Unit.ONE, "power of the intensity with which the response grows"
+    number("regression_slope", "power of the intensity with which the response grows"),
+    number("regression_slope_error", "standard error of that power"),
+    number(
+        "residual_dispersion", "standard deviation of the logarithm of the response at an intensity"
     ),
-    Variable("regression_slope_error", (), Unit.ONE, "standard error of that power"),
-    Variable(
-        "residual_dispersion",
-        (),
-        Unit.ONE,
-        "standard deviation of the logarithm of the response at an intensity",
-    ),
-    Variable(
-        "determination", (), Unit.ONE, "share of the variance of the logarithms that the line tells"
-    ),
-    Variable("logistic_intercept", (), Unit.ONE, "intercept of the logistic curve of overturning"),
-    Variable(
+    number("determination", "share of the variance of the logarithms that the line tells"),
+    number("logistic_intercept", "intercept of the logistic curve of overturning"),
+    number(
         "logistic_slope",
-        (),
-        Unit.ONE,
         "slope of the logistic curve of overturning over the logarithm of the intensity",
     ),
-    Variable("logistic_slope_error", (), Unit.ONE, "standard error of that slope"),
+    number("logistic_slope_error", "standard error of that slope"),
     count("cloud_overturned_count", "number of runs that overturned"),
     count("resting_count", "number of runs in which nothing moved"),
-    Variable("response_limit", (), Unit.ONE, "level of the response, infinite for overturning"),
-    Variable("cloud_intensity", RUN, Unit.ONE, "intensity of a run, in the unit of the measure"),
-    Variable(
-        "cloud_response", RUN, Unit.ONE, "response of a run, infinite where the block overturned"
-    ),
+    number("response_limit", "level of the response, infinite for overturning"),
+    number("cloud_intensity", "intensity of a run, in the unit of the measure", RUN),
+    number("cloud_response", "response of a run, infinite where the block overturned", RUN),
 )
 """Of many motions, each at one scale."""
 
 MEASURE_COMPARISON: Final = (
     Variable("measure", ("measure",), None, "intensity measure", dtype="str"),
     Variable("covariate", ("covariate",), None, "what a response may depend on too", dtype="str"),
-    Variable(
-        "efficiency_ratio", (), Unit.ONE, "dispersion of the response over the power it grows with"
-    ),
-    Variable(
-        "sufficiency_slope",
-        COVARIATE,
-        Unit.ONE,
-        "slope of the residuals, per unit of the covariate",
-    ),
-    Variable(
+    number("efficiency_ratio", "dispersion of the response over the power it grows with"),
+    number("sufficiency_slope", "slope of the residuals, per unit of the covariate", COVARIATE),
+    number(
         "sufficiency_p_value",
-        COVARIATE,
-        Unit.ONE,
         "probability of a slope as great if the response did not depend on the covariate",
+        COVARIATE,
     ),
-    Variable(
+    number(
         "relative_sufficiency",
-        (),
-        Unit.ONE,
         "information that the measure gives on the runs more than the first, in bits a run",
     ),
-    Variable("relative_sufficiency_error", (), Unit.ONE, "standard error of that information"),
+    number("relative_sufficiency_error", "standard error of that information"),
     count("line_count", "number of runs that moved and did not overturn"),
 )
 """Of measures side by side."""
 
 HAZARD: Final = (
-    Variable(
-        "annual_rate",
-        (),
-        Unit.ONE,
-        "number of times a year that the limit state is exceeded on average",
-    ),
-    Variable(
-        "annual_rate_lower_bound", (), Unit.ONE, "the same of the lower bound of the fragility"
-    ),
-    Variable(
-        "annual_rate_upper_bound", (), Unit.ONE, "the same of the upper bound of the fragility"
-    ),
-    Variable(
+    number("annual_rate", "number of times a year that the limit state is exceeded on average"),
+    *bounds("annual_rate", "the same of the {} bound of the fragility"),
+    number(
         "unreached_rate_below",
-        (),
-        Unit.ONE,
         "annual rate that arises below the hazard curve, if it goes on as it ends",
     ),
-    Variable(
+    number(
         "unreached_rate_above",
-        (),
-        Unit.ONE,
         "annual rate that arises above the hazard curve, if it goes on as it ends",
     ),
-    Variable(
+    number(
         "outside_trials_share",
-        (),
-        Unit.ONE,
         "share of the annual rate that arises at intensities beyond those of all trials",
     ),
-    Variable(
+    number(
         "contributing_intensity",
-        ("contributing_intensity",),
-        Unit.ONE,
         "middle of a range of intensities, in the unit of the measure",
-    ),
-    Variable(
-        "rate_share",
         ("contributing_intensity",),
-        Unit.ONE,
+    ),
+    number(
+        "rate_share",
         "share of the rate that arises in the range of intensities",
+        ("contributing_intensity",),
     ),
-    Variable(
-        "quantile_intensity", QUANTILE, Unit.ONE, "intensity below which that share of it arises"
-    ),
+    number("quantile_intensity", "intensity below which that share of it arises", QUANTILE),
 )
 """Of limit states at a site."""
 
@@ -316,10 +214,8 @@ OVERTURNING_MAP: Final = (
         Unit.METRE_PER_SECOND_SQUARED,
         "amplitude of the ground acceleration",
     ),
-    Variable(
+    number(
         "impacts_before_overturning",
-        (),
-        Unit.ONE,
         "number of impacts before the block overturns, NaN if it does not",
     ),
     Variable(
@@ -334,17 +230,15 @@ OVERTURNING_MAP: Final = (
         Unit.METRE_PER_SECOND_SQUARED,
         "least amplitude tried above the boundary",
     ),
-    Variable(
+    number(
         "impacts_below",
-        BOUNDARY,
-        Unit.ONE,
         "number of impacts before overturning below the boundary, NaN if the block stands",
-    ),
-    Variable(
-        "impacts_above",
         BOUNDARY,
-        Unit.ONE,
+    ),
+    number(
+        "impacts_above",
         "number of impacts before overturning above the boundary, NaN if the block stands",
+        BOUNDARY,
     ),
     Variable("boundary_count", (), Unit.ONE, "number of boundaries", dtype="int64"),
 )
@@ -357,77 +251,56 @@ SPECTRA: Final = (
         Unit.SECOND,
         "2 pi over the frequency parameter of the block",
     ),
-    Variable("slenderness", ("slenderness",), Unit.ONE, "height over width of the block"),
-    Variable(
+    number("slenderness", "height over width of the block", ("slenderness",)),
+    number(
         "capacity_intensity",
-        (),
-        Unit.ONE,
         "least intensity of the motion that was found to overturn the block, in its own unit",
     ),
 )
 """Of blocks of all sizes."""
 
 PROBABILITY: Final = (
-    Variable("overturning_probability", (), Unit.ONE, "share of the cases that overturned"),
-    Variable(
-        "overturning_probability_lower_bound", (), Unit.ONE, "lower confidence bound of that share"
-    ),
-    Variable(
-        "overturning_probability_upper_bound", (), Unit.ONE, "upper confidence bound of that share"
-    ),
+    number("overturning_probability", "share of the cases that overturned"),
+    *bounds("overturning_probability", "{} confidence bound of that share"),
     count("verdict_count", "number of cases with a verdict"),
     Variable("parameter", PARAMETER, None, "what is spread", dtype="str"),
-    Variable(
+    number(
         "first_order_index",
-        PARAMETER,
-        Unit.ONE,
         "share of the verdict's variance that knowing the parameter takes away",
+        PARAMETER,
     ),
-    Variable(
+    number(
         "verdict_distance",
-        PARAMETER,
-        Unit.ONE,
         "greatest difference of the parameter's distributions in cases that overturn and stand",
-    ),
-    Variable(
-        "chance_probability",
         PARAMETER,
-        Unit.ONE,
+    ),
+    number(
+        "chance_probability",
         "probability of shares as uneven if the parameter did not matter",
+        PARAMETER,
     ),
 )
 """Of overturning, where parameters are spread."""
 
 SUBSETS: Final = (
     counting("sampling_level", "number of the level"),
-    Variable(
+    number(
         "demand_threshold",
-        LEVEL,
-        Unit.ONE,
         "demand from which on samples count; of the last level that of the limit state",
-    ),
-    Variable(
-        "conditional_probability", LEVEL, Unit.ONE, "share of the samples that reach the threshold"
-    ),
-    Variable(
-        "acceptance_rate",
         LEVEL,
-        Unit.ONE,
+    ),
+    number("conditional_probability", "share of the samples that reach the threshold", LEVEL),
+    number(
+        "acceptance_rate",
         "share of the candidates of the chains that were accepted, NaN where there are no chains",
+        LEVEL,
     ),
     Variable("chain_count", LEVEL, Unit.ONE, "number of chains, or of samples", dtype="int64"),
-    Variable(
-        "demand",
-        (),
-        Unit.ONE,
-        "response over its limit, infinite where the block overturns",
-    ),
+    number("demand", "response over its limit, infinite where the block overturns"),
     Variable("sample_level", (), Unit.ONE, "level that the sample is of", dtype="int64"),
-    Variable("sample_weight", (), Unit.ONE, "probability that the sample stands for"),
-    Variable(
+    number("sample_weight", "probability that the sample stands for"),
+    number(
         "coefficient_of_variation",
-        (),
-        Unit.ONE,
         "standard deviation of the estimated probability over it, infinite where it is 0",
     ),
     count("run_count", "number of runs"),
@@ -439,40 +312,13 @@ SUBSETS: Final = (
 """Of subset simulation."""
 
 ENSEMBLE: Final = (
-    Variable("ordered_value", RANK, Unit.ONE, "value of the ensemble, in order and its own unit"),
-    Variable("cumulative_probability", RANK, Unit.ONE, "share of the ensemble up to the value"),
-    Variable(
-        "cumulative_probability_lower_bound",
-        RANK,
-        Unit.ONE,
-        "lower confidence bound of the distribution at the value",
-    ),
-    Variable(
-        "cumulative_probability_upper_bound",
-        RANK,
-        Unit.ONE,
-        "upper confidence bound of the distribution at the value",
-    ),
-    Variable(
-        "simultaneous_lower_bound",
-        RANK,
-        Unit.ONE,
-        "lower bound of a band that holds the whole distribution",
-    ),
-    Variable(
-        "simultaneous_upper_bound",
-        RANK,
-        Unit.ONE,
-        "upper bound of a band that holds the whole distribution",
-    ),
-    Variable("quantile", QUANTILE, Unit.ONE, "share of the distribution below"),
-    Variable("quantile_value", QUANTILE, Unit.ONE, "value below which that share lies"),
-    Variable(
-        "quantile_value_lower_bound", QUANTILE, Unit.ONE, "lower confidence bound of the quantile"
-    ),
-    Variable(
-        "quantile_value_upper_bound", QUANTILE, Unit.ONE, "upper confidence bound of the quantile"
-    ),
+    number("ordered_value", "value of the ensemble, in order and its own unit", RANK),
+    number("cumulative_probability", "share of the ensemble up to the value", RANK),
+    *bounds("cumulative_probability", "{} confidence bound of the distribution at the value", RANK),
+    *bounds("simultaneous", "{} bound of a band that holds the whole distribution", RANK),
+    number("quantile", "share of the distribution below", QUANTILE),
+    number("quantile_value", "value below which that share lies", QUANTILE),
+    *bounds("quantile_value", "{} confidence bound of the quantile", QUANTILE),
     count("member_count", "number of members of the ensemble"),
 )
 """Of ensembles."""

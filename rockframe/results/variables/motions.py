@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from rockframe.results.variables.variable import FREQUENCY, OSCILLATOR, TIME, Variable
+from rockframe.results.variables.variable import FREQUENCY, OSCILLATOR, TIME, Variable, number
 from rockframe.units import Unit
 
 MEASURES: Final = (
@@ -80,27 +80,16 @@ MEASURES: Final = (
         Unit.SECOND,
         "time during which the ground acceleration exceeds that of uplift",
     ),
-    Variable(
-        "relative_peak_ground_acceleration",
-        (),
-        Unit.ONE,
-        "peak ground acceleration over that of uplift",
-    ),
-    Variable(
+    number("relative_peak_ground_acceleration", "peak ground acceleration over that of uplift"),
+    number(
         "relative_peak_ground_velocity",
-        (),
-        Unit.ONE,
         "peak ground velocity times the block's frequency over the acceleration of uplift",
     ),
-    Variable(
+    number(
         "relative_predominant_frequency",
-        (),
-        Unit.ONE,
         "angular frequency of the peak of the pseudo-velocity spectrum over the block's",
     ),
-    Variable(
-        "relative_pulse_frequency", (), Unit.ONE, "angular frequency of the pulse over the block's"
-    ),
+    number("relative_pulse_frequency", "angular frequency of the pulse over the block's"),
     Variable(
         "spectral_displacement", OSCILLATOR, Unit.METRE, "greatest absolute relative displacement"
     ),
@@ -172,11 +161,10 @@ DIRECTIONS: Final = (
         Unit.METRE_PER_SECOND_SQUARED,
         "pseudo-spectral acceleration of the vertical component",
     ),
-    Variable(
+    number(
         "vertical_to_horizontal_ratio",
-        OSCILLATOR,
-        Unit.ONE,
         "vertical over median horizontal pseudo-spectral acceleration",
+        OSCILLATOR,
     ),
     Variable(
         "major_axis_angle", (), Unit.RADIAN, "direction of the major axis, from the first component"

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from rockframe.results.variables.variable import EVENT, TIME, Variable
+from rockframe.results.variables.variable import EVENT, TIME, Variable, number, whether
 from rockframe.units import Unit
 
 POINT: Final = ("point",)
@@ -84,17 +84,15 @@ OTHERS: Final = (
         Unit.METRE_PER_SECOND,
         "horizontal velocity of the centre of mass relative to the ground, to the right",
     ),
-    Variable(
+    number(
         "friction_demand",
-        TIME,
-        Unit.ONE,
         "coefficient of friction that keeps the body from sliding on its base",
-    ),
-    Variable(
-        "soil_friction_demand",
         TIME,
-        Unit.ONE,
+    ),
+    number(
+        "soil_friction_demand",
         "coefficient of friction that keeps the cap from sliding on the soil",
+        TIME,
     ),
     Variable(
         "toe_pressure",
@@ -165,7 +163,7 @@ SLIPS: Final = (
 """Of scenes in which a body slides; the slip is that of the corner that bears."""
 
 FORCE_SCALARS: Final = (
-    Variable("peak_friction_demand", (), Unit.ONE, "largest friction demand up to overturning"),
+    number("peak_friction_demand", "largest friction demand up to overturning"),
     Variable("peak_friction_demand_time", (), Unit.SECOND, "time of the largest friction demand"),
     Variable(
         "peak_friction_demand_duration",
@@ -173,10 +171,8 @@ FORCE_SCALARS: Final = (
         Unit.SECOND,
         "time in all with a friction demand above half its peak, or above 1 where that is less",
     ),
-    Variable(
+    number(
         "peak_impulsive_friction_demand",
-        (),
-        Unit.ONE,
         "largest ratio of horizontal and vertical impulses of impacts",
     ),
     Variable("peak_base_shear", (), Unit.NEWTON, "largest absolute base shear up to overturning"),
@@ -193,12 +189,8 @@ FORCE_SCALARS: Final = (
         Unit.METRE,
         "how much lower than at rest the middle of the base stands at most, up to overturning",
     ),
-    Variable(
-        "would_slide",
-        (),
-        None,
-        "whether the friction demand exceeds the coefficient that a base was given",
-        dtype="bool",
+    whether(
+        "would_slide", "whether the friction demand exceeds the coefficient that a base was given"
     ),
     Variable("sliding_time", (), Unit.SECOND, "time from which on it does, NaN if it never does"),
     Variable("sliding_duration", (), Unit.SECOND, "time in all for which it does"),

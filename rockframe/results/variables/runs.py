@@ -14,6 +14,8 @@ from rockframe.results.variables.variable import (
     count,
     counting,
     flag,
+    number,
+    whether,
 )
 from rockframe.solve.workspace import Status
 from rockframe.units import Unit
@@ -58,12 +60,11 @@ HISTORIES: Final = (
         Unit.METRE,
         "horizontal displacement of the centre of mass relative to the ground, to the right",
     ),
-    Variable("relative_rotation", TIME, Unit.ONE, "rotation over the overturning angle"),
-    Variable(
+    number("relative_rotation", "rotation over the overturning angle", TIME),
+    number(
         "relative_vertical_displacement",
-        TIME,
-        Unit.ONE,
         "vertical displacement over the settlement under the weight",
+        TIME,
     ),
     flag("contact_state", TIME, "corner that bears", ContactState),
     Variable(
@@ -175,25 +176,19 @@ EVENTS_AND_SCALARS: Final = (
         "rate of the rotation after the event",
     ),
     # scalars
-    Variable(
-        "overturned", (), None, "whether the rotation reached the overturning angle", dtype="bool"
-    ),
+    whether("overturned", "whether the rotation reached the overturning angle"),
     Variable("overturning_time", (), Unit.SECOND, "time of overturning, NaN if none"),
     flag("overturning_direction", (), "side towards which the block overturned", Direction),
     Variable("peak_rotation", (), Unit.RADIAN, "largest absolute rotation"),
-    Variable(
+    number(
         "peak_relative_rotation",
-        (),
-        Unit.ONE,
         "largest rotation over the overturning angle of its side, of the body that came closest",
     ),
     Variable("first_uplift_time", (), Unit.SECOND, "time contact is first lost, NaN if never"),
     count("impact_count", "number of impacts, those that end in rest among them"),
     Variable("flight_time", (), Unit.SECOND, "time without any contact"),
     count("flight_count", "number of flights"),
-    Variable(
-        "energy_residual", (), Unit.ONE, "largest energy imbalance over the largest energy term"
-    ),
+    number("energy_residual", "largest energy imbalance over the largest energy term"),
     flag("status", (), "how the run ended", RunStatus),
     Variable(
         "overturning_angle",
@@ -216,30 +211,19 @@ EVENTS_AND_SCALARS: Final = (
 """Over events, and one for the run."""
 
 CERTIFICATE: Final = (
-    Variable(
+    whether(
         "verdict_converged",
-        (),
-        None,
         "whether runs by finer means have the same verdict, by more than they differ",
-        dtype="bool",
     ),
-    Variable(
-        "verdict_robust",
-        (),
-        None,
-        "whether runs with a parameter or the scale nudged have the same verdict",
-        dtype="bool",
+    whether(
+        "verdict_robust", "whether runs with a parameter or the scale nudged have the same verdict"
     ),
-    Variable(
+    number(
         "verdict_margin",
-        (),
-        Unit.ONE,
         "largest relative change of the motion's scale up to which no other verdict was found",
     ),
-    Variable(
+    number(
         "verdict_flip_scale",
-        (),
-        Unit.ONE,
         "scale of the motion nearest to 1 that was found to change the verdict, NaN if none",
     ),
     Variable(
@@ -258,7 +242,7 @@ CERTIFICATE: Final = (
 """How sure the verdict is, on request."""
 
 PROOF: Final = (
-    Variable("verdict_proved", (), None, "whether the verdict is proved", dtype="bool"),
+    whether("verdict_proved", "whether the verdict is proved"),
     Variable(
         "proved_overturning_earliest",
         (),
@@ -332,24 +316,14 @@ MODES: Final = (
     Variable("angular_frequency", MODE, Unit.RADIAN_PER_SECOND, "angular frequency, undamped"),
     Variable("frequency", MODE, Unit.HERTZ, "cyclic frequency, undamped"),
     Variable("period", MODE, Unit.SECOND, "period, undamped"),
-    Variable("damping_ratio", MODE, Unit.ONE, "damping ratio"),
-    Variable(
-        "vertical_displacement_shape", MODE, Unit.ONE, "share of the vertical displacement [m]"
-    ),
-    Variable("rotation_shape", MODE, Unit.ONE, "share of the rotation [rad]"),
-    Variable("cap_vertical_displacement_shape", MODE, Unit.ONE, "share of the cap's rise [m]"),
-    Variable("cap_rotation_shape", MODE, Unit.ONE, "share of the cap's rotation [rad]"),
-    Variable(
-        "body_rotation_shape",
-        MODE_BODY,
-        Unit.ONE,
-        "share of each body's rotation on its base [rad]",
-    ),
-    Variable(
-        "body_vertical_displacement_shape",
-        MODE_BODY,
-        Unit.ONE,
-        "share of each body's rise on its base [m]",
+    number("damping_ratio", "damping ratio", MODE),
+    number("vertical_displacement_shape", "share of the vertical displacement [m]", MODE),
+    number("rotation_shape", "share of the rotation [rad]", MODE),
+    number("cap_vertical_displacement_shape", "share of the cap's rise [m]", MODE),
+    number("cap_rotation_shape", "share of the cap's rotation [rad]", MODE),
+    number("body_rotation_shape", "share of each body's rotation on its base [rad]", MODE_BODY),
+    number(
+        "body_vertical_displacement_shape", "share of each body's rise on its base [m]", MODE_BODY
     ),
 )
 """Modes of small motion."""

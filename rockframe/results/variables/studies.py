@@ -3,7 +3,17 @@
 from enum import IntEnum
 from typing import Final
 
-from rockframe.results.variables.variable import FLIP, SCALE, TIME, Variable, count, counting, flag
+from rockframe.results.variables.variable import (
+    FLIP,
+    SCALE,
+    TIME,
+    Variable,
+    count,
+    counting,
+    flag,
+    number,
+    whether,
+)
 from rockframe.units import Unit
 
 CASE: Final = "case"
@@ -25,41 +35,31 @@ class Outcome(IntEnum):
 
 
 CRITICAL_SCALE: Final = (
-    Variable(
+    number(
         "critical_scale",
-        (),
-        Unit.ONE,
         "least scale of the motion that was found to overturn the block, NaN if none",
     ),
-    Variable(
+    number(
         "followed_scale",
-        (),
-        Unit.ONE,
         "scale of the motion up to which no gap between runs is wider than the resolution",
     ),
-    Variable(
+    number(
         "largest_gap",
-        (),
-        Unit.ONE,
         "largest distance between neighbouring scales with a verdict: pairs of flips that are "
         "closer together may be missed",
     ),
-    Variable(
+    number(
         "uplift_scale",
-        (),
-        Unit.ONE,
         "scale of the motion up to which the block stays at rest, NaN if that needs runs",
     ),
-    Variable("scale_below", FLIP, Unit.ONE, "greatest scale of the motion tried before the flip"),
-    Variable("scale_above", FLIP, Unit.ONE, "least scale of the motion tried after the flip"),
-    Variable(
+    number("scale_below", "greatest scale of the motion tried before the flip", FLIP),
+    number("scale_above", "least scale of the motion tried after the flip", FLIP),
+    whether(
         "overturns_above",
-        FLIP,
-        None,
         "whether the block overturns after the flip, and stands before it, or the other way round",
-        dtype="bool",
+        FLIP,
     ),
-    Variable("scale", SCALE, Unit.ONE, "factor of the ground motion"),
+    number("scale", "factor of the ground motion", SCALE),
     flag("outcome", SCALE, "verdict of the run", Outcome),
 )
 """Of a motion that is scaled until a block overturns."""
@@ -68,14 +68,11 @@ SWEEP: Final = (
     counting(CASE, "number of the row in the table of cases"),
     Variable(MOTION, (MOTION,), None, "ground motion", dtype="str"),
     Variable(MESSAGE, (), None, "what is said of the case, none if nothing", dtype="str"),
-    Variable(
+    whether(
         REPEATED,
-        (),
-        None,
         "whether the case was run again by tolerance, its verdict at fixed steps being in doubt",
-        dtype="bool",
     ),
-    Variable(VERDICT_CHANGED, (), None, "whether the case then had another verdict", dtype="bool"),
+    whether(VERDICT_CHANGED, "whether the case then had another verdict"),
 )
 """Of a sweep, beside the scalars of its runs."""
 
@@ -84,16 +81,12 @@ COMPARISON: Final = (
     Variable("run_time", (), Unit.SECOND, "wall time of a run, median of the repetitions"),
     Variable("run_time_least", (), Unit.SECOND, "least wall time of a run"),
     Variable("run_time_greatest", (), Unit.SECOND, "greatest wall time of a run"),
-    Variable(
+    number(
         "numerical_peak_error",
-        (),
-        Unit.ONE,
         "relative error of the peak rotation, against the same model at a tight tolerance",
     ),
-    Variable(
+    number(
         "numerical_history_error",
-        (),
-        Unit.ONE,
         "largest error of the rotation over its peak, against the same model at a tight tolerance",
     ),
     Variable(
@@ -102,22 +95,11 @@ COMPARISON: Final = (
         Unit.SECOND,
         "largest error of an event's time, NaN if the events are others",
     ),
-    Variable(
-        "peak_error", (), Unit.ONE, "relative error of the peak rotation, against the scene itself"
+    number("peak_error", "relative error of the peak rotation, against the scene itself"),
+    number(
+        "history_error", "largest error of the rotation over its peak, against the scene itself"
     ),
-    Variable(
-        "history_error",
-        (),
-        Unit.ONE,
-        "largest error of the rotation over its peak, against the scene itself",
-    ),
-    Variable(
-        "verdict_agrees",
-        (),
-        None,
-        "whether the verdict is that of the scene itself",
-        dtype="bool",
-    ),
+    whether("verdict_agrees", "whether the verdict is that of the scene itself"),
 )
 """One for each rung."""
 
@@ -138,13 +120,11 @@ class FitStatus(IntEnum):
 
 FREE_DECAY: Final = (
     # the parameters
-    Variable(
-        "fitted_value", PARAMETER, Unit.ONE, "value for which the squared residuals are least"
-    ),
-    Variable("standard_error", PARAMETER, Unit.ONE, "standard error of the value"),
-    Variable("lower_confidence_bound", PARAMETER, Unit.ONE, "lower end of the confidence interval"),
-    Variable("upper_confidence_bound", PARAMETER, Unit.ONE, "upper end of the confidence interval"),
-    Variable("start_value", PARAMETER, Unit.ONE, "value in the system that was given"),
+    number("fitted_value", "value for which the squared residuals are least", PARAMETER),
+    number("standard_error", "standard error of the value", PARAMETER),
+    number("lower_confidence_bound", "lower end of the confidence interval", PARAMETER),
+    number("upper_confidence_bound", "upper end of the confidence interval", PARAMETER),
+    number("start_value", "value in the system that was given", PARAMETER),
     # the test itself
     Variable("initial_rotation", (), Unit.RADIAN, "rotation from which the block was let go"),
     Variable("initial_rotation_error", (), Unit.RADIAN, "standard error of the initial rotation"),
@@ -152,11 +132,8 @@ FREE_DECAY: Final = (
     Variable("release_time_error", (), Unit.SECOND, "standard error of the release time"),
     Variable("gauge_offset", (), Unit.RADIAN, "reading of the gauge where the block is upright"),
     Variable("gauge_offset_error", (), Unit.RADIAN, "standard error of the gauge's offset"),
-    Variable(
-        "correlation",
-        ("unknown", "other_unknown"),
-        Unit.ONE,
-        "correlation of the errors of two unknowns",
+    number(
+        "correlation", "correlation of the errors of two unknowns", ("unknown", "other_unknown")
     ),
     # measured and fitted
     Variable("measured_rotation", TIME, Unit.RADIAN, "rotation as measured"),
@@ -174,11 +151,8 @@ FREE_DECAY: Final = (
         "rotation_rms_residual", (), Unit.RADIAN, "root mean square of the rotations' residuals"
     ),
     Variable("time_rms_residual", (), Unit.SECOND, "root mean square of the times' residuals"),
-    Variable(
-        "residual_autocorrelation",
-        (),
-        Unit.ONE,
-        "correlation of each residual of the rotation with the next",
+    number(
+        "residual_autocorrelation", "correlation of each residual of the rotation with the next"
     ),
     flag("fit_status", (), "why the fit ended", FitStatus),
     count("trial_count", "number of trials of the last fit, without those for derivatives"),

@@ -2,16 +2,16 @@
 
 from typing import Final
 
-from rockframe.results.variables.variable import PERIOD, Variable, count
+from rockframe.results.variables.variable import PERIOD, Variable, count, number
 from rockframe.units import Unit
 
 RECORDS: Final = (
     Variable("record", (), None, "components of one name were recorded together", dtype="str"),
     Variable("axis", (), None, "place in the record: H1, H2 or V", dtype="str"),
-    Variable("record_sequence_number", (), Unit.ONE, "number of the record in the NGA databases"),
+    number("record_sequence_number", "number of the record in the NGA databases"),
     Variable("event", (), None, "earthquake", dtype="str"),
-    Variable("year", (), Unit.ONE, "year of the earthquake"),
-    Variable("magnitude", (), Unit.ONE, "magnitude of the earthquake"),
+    number("year", "year of the earthquake"),
+    number("magnitude", "magnitude of the earthquake"),
     Variable("mechanism", (), None, "mechanism of the rupture", dtype="str"),
     Variable("station", (), None, "station", dtype="str"),
     Variable("component", (), None, "component by the name in its file", dtype="str"),
@@ -33,23 +33,14 @@ RECORDS: Final = (
     Variable("time_step", (), Unit.SECOND, "time between samples"),
     Variable("duration", (), Unit.SECOND, "time from the first to the last sample"),
     count("sample_count", "number of samples"),
-    Variable("scale_factor", (), Unit.ONE, "factor by which the motion was scaled"),
-    Variable(
-        "spectral_misfit",
-        (),
-        Unit.ONE,
-        "root mean square of the logarithm of scaled spectrum over target",
-    ),
-    Variable(
+    number("scale_factor", "factor by which the motion was scaled"),
+    number("spectral_misfit", "root mean square of the logarithm of scaled spectrum over target"),
+    number(
         "largest_spectral_misfit",
-        (),
-        Unit.ONE,
         "greatest distance of the matched spectrum from the target, over the target",
     ),
-    Variable(
+    number(
         "mean_spectral_misfit",
-        (),
-        Unit.ONE,
         "mean distance of the matched spectrum from the target, over the target",
     ),
     *(
@@ -70,10 +61,8 @@ RECORDS: Final = (
         )
         for when in ("before", "after")
     ),
-    Variable(
+    number(
         "spectral_growth_beyond_range",
-        (),
-        Unit.ONE,
         "greatest ratio of matched to scaled spectrum beyond the range of periods",
     ),
     Variable("period_of_spectral_growth", (), Unit.SECOND, "period of that ratio"),
@@ -87,11 +76,10 @@ TARGETS: Final = (
         Unit.METRE_PER_SECOND_SQUARED,
         "pseudo-spectral acceleration that is aimed at",
     ),
-    Variable(
+    number(
         "target_standard_deviation",
-        PERIOD,
-        Unit.ONE,
         "standard deviation of the logarithm of the spectrum that is aimed at",
+        PERIOD,
     ),
     Variable(
         "scaled_spectral_acceleration",
@@ -105,14 +93,11 @@ TARGETS: Final = (
         Unit.METRE_PER_SECOND_SQUARED,
         "geometric mean over the set of the scaled pseudo-spectral accelerations",
     ),
-    Variable(
+    number(
         "set_standard_deviation",
-        PERIOD,
-        Unit.ONE,
         "standard deviation over the set of the logarithm of the scaled spectra",
+        PERIOD,
     ),
-    Variable(
-        "set_misfit", (), Unit.ONE, "root mean square of the misfit of the set, with its spread"
-    ),
+    number("set_misfit", "root mean square of the misfit of the set, with its spread"),
 )
 """Of a set of motions beside a target spectrum."""

@@ -1,5 +1,6 @@
 """A row of the table of variables, and the shapes that rows have."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, Final
@@ -80,9 +81,25 @@ class Variable:
         return attributes
 
 
+def unit_behind(attributes: Mapping[Any, Any]) -> str:
+    """Write the unit of values as it stands behind a number of them; nothing where it is 1."""
+    unit = str(attributes.get("units", Unit.ONE))
+    return "" if unit == Unit.ONE else f" {unit}"
+
+
 def flag(name: str, dims: tuple[str, ...], words: str, kind: type[IntEnum]) -> Variable:
     """Make the row of a flag."""
     return Variable(name, dims, None, words, kind, "int8")
+
+
+def number(name: str, words: str, dims: tuple[str, ...] = ()) -> Variable:
+    """Make the row of a pure number, or of one whose unit is that of what a dataset is of."""
+    return Variable(name, dims, Unit.ONE, words)
+
+
+def whether(name: str, words: str, dims: tuple[str, ...] = ()) -> Variable:
+    """Make the row of a truth value."""
+    return Variable(name, dims, None, words, dtype="bool")
 
 
 def count(name: str, words: str) -> Variable:
@@ -93,3 +110,9 @@ def count(name: str, words: str) -> Variable:
 def counting(name: str, words: str) -> Variable:
     """Make the row of a coordinate that counts."""
     return Variable(name, (name,), Unit.ONE, words, dtype="int64")
+
+
+def bounds(name: str, words: str, dims: tuple[str, ...] = ()) -> tuple[Variable, ...]:
+    """Make the rows of a lower and an upper bound of a ratio, whose words say which at ``{}``."""
+    ends = ("lower", "upper")
+    return tuple(number(f"{name}_{end}_bound", words.format(end), dims) for end in ends)

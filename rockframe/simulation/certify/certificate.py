@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -106,7 +106,7 @@ class Certificate:
     @property
     def sentence(self) -> str:
         """All this in words."""
-        return certificate_sentence(self, self.values())
+        return certificate_sentence(self)
 
     def values(self) -> dict[str, float | bool]:
         """Give the scalars by their names in the schema."""
@@ -211,16 +211,16 @@ NEAR_WORDS: Final = "Near the boundary"
 """How the sentence of such a verdict begins."""
 
 
-def certificate_sentence(found: "Certificate", values: Mapping[str, float | bool]) -> str:
+def certificate_sentence(found: Certificate) -> str:
     """Say what was tried and what was found."""
     if not found.finished:
         return "No certificate: the run was not finished."
     ends = _Ends(found)
-    near, flip = _near(found, values, ends), _nearest(found, values)
-    doubts = [*_unsettled(found, values, ends), *_fragile(found, ends), *near]
+    near, flip = _near(found, ends), _nearest(found)
+    doubts = [*_unsettled(found, ends), *_fragile(found, ends), *near]
     if doubts:
         text = f"{NEAR_WORDS}: the body {ends.verdict}, but {'; '.join(doubts)}."
-        said = near and _scaled_a_little(found, values)
+        said = near and _scaled_a_little(found)
         return text if said or not flip else f"{text} {flip.capitalize()}."
     means = [tolerance_words(found.plan.accuracy), f"steps {SHORTER:g} times shorter"]
     if found.plan.motion is not None:
@@ -232,14 +232,14 @@ def certificate_sentence(found: "Certificate", values: Mapping[str, float | bool
         f"{body} {ends.verdict} also with {', '.join(means[:-1])} and {means[-1]}, and with every "
         f"parameter up to {100.0 * found.wanted.nudge:g} % larger or smaller"
     )
-    scales = "; ".join(filter(None, [_tried(found, values), flip]))
+    scales = "; ".join(filter(None, [_tried(found), flip]))
     return f"{text}. {scales}." if scales else f"{text}."
 
 
 class _Ends:
     """How runs end, in words, in the sense in which they were asked."""
 
-    def __init__(self, found: "Certificate") -> None:
+    def __init__(self, found: Certificate) -> None:
         stops = found.plan.stop_at_overturning
         self._words = {
             True: "overturns" if stops else "falls flat",
@@ -255,11 +255,9 @@ class _Ends:
         return f"it {self._words[shown.overturned]}"
 
 
-def _unsettled(
-    found: "Certificate", values: Mapping[str, float | bool], ends: _Ends
-) -> Iterator[str]:
+def _unsettled(found: Certificate, ends: _Ends) -> Iterator[str]:
     """Say which runs by finer means end otherwise, or come too near to it."""
-    if values["verdict_converged"]:
+    if found.converged:
         return
     verdict = found.base.overturned
     others = [(words, other) for words, other in found.finer if other.overturned != verdict]
@@ -270,12 +268,12 @@ def _unsettled(
         yield f"runs by finer means {ends.beyond} otherwise, or only just"
     else:
         yield (
-            f"its peak rotation is uncertain by {values['peak_error_estimate']:.2g} rad, about "
+            f"its peak rotation is uncertain by {found.peak_error:.2g} rad, about "
             "what is left to overturning"
         )
 
 
-def _fragile(found: "Certificate", ends: _Ends) -> Iterator[str]:
+def _fragile(found: Certificate, ends: _Ends) -> Iterator[str]:
     """Say which parameters change the verdict."""
     changed = [(words, scan) for words, scan in found.nudged if scan.flip is not None]
     if changed:
@@ -288,13 +286,13 @@ def _fragile(found: "Certificate", ends: _Ends) -> Iterator[str]:
         yield f"it depends on the {lost[0]}{_more(lost)} in too intricate a way to be followed"
 
 
-def _near(found: "Certificate", values: Mapping[str, float | bool], ends: _Ends) -> list[str]:
+def _near(found: Certificate, ends: _Ends) -> list[str]:
     """Say that a slightly other scale changes the verdict, or may."""
-    margin, along, what = values["verdict_margin"], found.along, _driver(found.plan)
+    margin, along, what = found.margin, found.along, _driver(found.plan)
     if not margin <= _little(found) or (along.followed and along.flip is None):
         return []
-    if along.ended is not None and _scaled_a_little(found, values):
-        change = values["verdict_flip_scale"] - 1.0
+    if along.ended is not None and _scaled_a_little(found):
+        change = found.flip - 1.0
         way = "up" if change > 0.0 else "down"
         return [f"with {what} scaled {way} by {_share(abs(change))} {ends.of(along.ended)}"]
     return [
@@ -303,19 +301,19 @@ def _near(found: "Certificate", values: Mapping[str, float | bool], ends: _Ends)
     ]
 
 
-def _little(found: "Certificate") -> float:
+def _little(found: Certificate) -> float:
     """Give the change of scale up to which a flip is near."""
     return max(NEAR, found.wanted.nudge)
 
 
-def _scaled_a_little(found: "Certificate", values: Mapping[str, float | bool]) -> bool:
+def _scaled_a_little(found: Certificate) -> bool:
     """Whether the flip that is known is near."""
-    return abs(values["verdict_flip_scale"] - 1.0) <= 2.0 * _little(found)
+    return abs(found.flip - 1.0) <= 2.0 * _little(found)
 
 
-def _tried(found: "Certificate", values: Mapping[str, float | bool]) -> str:
+def _tried(found: Certificate) -> str:
     """Say at which scales no other verdict was found; nothing where none was tried."""
-    margin, along, what = values["verdict_margin"], found.along, _driver(found.plan)
+    margin, along, what = found.margin, found.along, _driver(found.plan)
     if math.isnan(margin):
         return ""
     low, high = (f"{1.0 + sign * margin:.6g}" for sign in (-1.0, 1.0))
@@ -327,9 +325,9 @@ def _tried(found: "Certificate", values: Mapping[str, float | bool]) -> str:
     return text if along.followed else f"{text}{lost}"
 
 
-def _nearest(found: "Certificate", values: Mapping[str, float | bool]) -> str:
+def _nearest(found: Certificate) -> str:
     """Say at which scale another verdict is known; nothing where none is."""
-    flip = values["verdict_flip_scale"]
+    flip = found.flip
     if math.isnan(flip):
         return ""
     return f"the nearest scale of {_driver(found.plan)} with another verdict is {flip:.6g}"

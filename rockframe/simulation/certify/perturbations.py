@@ -11,8 +11,7 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.processing.samples import divided_signal
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import LEVELS, Accuracy, AccuracyLevel
-from rockframe.solve.integrate import STILL_INTERVAL
-from rockframe.system.assembly import Assembly, assemble
+from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.bodies import OverturningAngles
 from rockframe.system.links import link_labels
 
@@ -28,41 +27,30 @@ SceneAt = Callable[[float], Assembly | None]
 
 def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
     """Give every parameter of every part of a scene, and the scene with it changed."""
-    options = system.options.to_dict()
-    parts = system.parts.structural()
+    parts = system.parts
 
-    def changed(place: int, name: str) -> SceneAt:
+    def changed(slot: str, name: str) -> SceneAt:
         def at(change: float) -> Assembly | None:
             try:
-                part = parts[place].with_scaled(name, 1.0 + change)
-                return assemble([*parts[:place], part, *parts[place + 1 :]], **options)
+                part = parts[slot].with_scaled(name, 1.0 + change)
+                return assembly_of(parts.changed(**{slot: part}, motion=None), system.options)
             except RockframeError:
                 return None
 
         return at
 
-    links = system.parts.links
+    links = parts.links
     labels = dict(zip(map(id, links), link_labels(links), strict=True)) if len(links) > 1 else {}
-    for place, part in enumerate(parts):
+    for slot, part in parts.components.items():
         owner = labels.get(id(part), f"the {part.noun}")
         for name in part.parameters():
             if name == "friction" and not system.setting.slides:  # it changes no motion
                 continue
-            yield f"{name.replace('_', ' ')} of {owner}", changed(place, name)
+            yield f"{name.replace('_', ' ')} of {owner}", changed(slot, name)
 
 
 def scales(nudge: float, reach: float) -> list[float]:
-    """Give the changes of scale to be tried first, from near to far.
-
-    Parameters
-    ----------
-    nudge, reach : float
-        Between a share of the nudge and the reach [1].
-
-    Returns
-    -------
-    list of float
-    """
+    """Give the changes of scale to be tried first, from a share of the nudge up to the reach."""
     row = [share * nudge for share in QUARTERS if share * nudge < reach]
     place = min(nudge, reach)
     while place < reach:
@@ -107,28 +95,15 @@ MOST_PER_PERIOD: Final = 1e4
 
 
 def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str, Plan]]:
-    """Give the same run by finer means, each independent of the others.
+    """Give the same run by finer means, each independent of the others, and what is finer.
 
-    Parameters
-    ----------
-    system : Assembly
-        The scene.
-    plan : Plan
-        The run's arguments.
-    step : float
-        Average length of its steps [s].
-
-    Yields
-    ------
-    str, Plan
-        What is finer, in words, and the arguments.
+    `step` is the average length of its steps [s].
     """
     accuracy = plan.accuracy
-    interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
     yield tolerance_words(accuracy), replace(plan, accuracy=tightened(accuracy))
     yield (
         f"steps {SHORTER:g} times shorter",
-        replace(plan, accuracy=shortened(accuracy, system, step, interval)),
+        replace(plan, accuracy=shortened(accuracy, system, step, plan.interval)),
     )
     if plan.motion is None:
         return
@@ -157,22 +132,9 @@ def tightened(accuracy: Accuracy) -> Accuracy:
 
 
 def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float) -> Accuracy:
-    """Give settings whose longest step is shorter than the run's steps were on average.
+    """Give settings whose longest step is shorter than a run's steps were on average.
 
-    Parameters
-    ----------
-    accuracy : Accuracy
-        The run's settings.
-    system : Assembly
-        The scene.
-    step : float
-        Average length of the run's steps [s].
-    interval : float
-        Time between the motion's samples [s].
-
-    Returns
-    -------
-    Accuracy
+    `interval` is the time between the motion's samples [s].
     """
     wanted = step / SHORTER
     if accuracy.substeps is not None:

@@ -94,25 +94,7 @@ def run_summary(
     *,
     in_motion: bool,
 ) -> RunSummary:
-    """Tell what a run showed.
-
-    Parameters
-    ----------
-    summary : Summary
-        What became of it.
-    events : mapping of str to ndarray
-        Its events, by their names in the schema.
-    peak_share : float
-        Of the peak rotation in the overturning angle of its side [1].
-    duration : float
-        Length of the run [s].
-    in_motion : bool
-        Whether it stood with the energy to overturn later.
-
-    Returns
-    -------
-    RunSummary
-    """
+    """Tell what a run showed, also by its events, by their names in the schema."""
     rates = np.abs(events["angular_velocity_before"])
     if summary.overturned:
         rate = float(rates[events["event_kind"] == EventKind.OVERTURNING][0])

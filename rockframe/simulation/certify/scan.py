@@ -110,24 +110,8 @@ def scan(
 ) -> Scan:
     """Try changes to both sides, from near to far.
 
-    Parameters
-    ----------
-    look : callable
-        Makes the run with a change.
-    base : RunSummary
-        The run without one.
-    row : sequence of float
-        Sizes of the first changes, rising; the last is the reach.
-    most : int
-        Largest number of runs.
-    resolution : float
-        Length of an interval, over its far end, at which it is not halved again [1].
-    close_in : bool
-        Whether to find where the verdict changes, and not only that it does.
-
-    Returns
-    -------
-    Scan
+    `row` are the sizes of the first changes, the last of which is the reach. Intervals are halved
+    down to `resolution` over their far ends; where the verdict changes only if `close_in`.
     """
     sides = [Side(sign, {0.0: base}) for sign in (-1.0, 1.0)]
     tried: dict[float, RunSummary] = {}

@@ -10,7 +10,6 @@ from rockframe.results.variables.runs import Direction
 from rockframe.simulation.certify.certificate import SAFETY
 from rockframe.simulation.plan import Plan
 from rockframe.solve.accuracy import Accuracy, AccuracyLevel, substeps_of
-from rockframe.solve.integrate import STILL_INTERVAL
 from rockframe.solve.trajectory import Summary
 from rockframe.system.assembly import Assembly
 from rockframe.system.setting import Setting
@@ -58,8 +57,7 @@ def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
 
 def second_look(system: Assembly, plan: Plan) -> Plan:
     """Give the same run with more steps in each interval of the motion, by at least one."""
-    interval = STILL_INTERVAL if plan.motion is None else plan.motion.si.time_step
-    given = max(substeps_of(plan.accuracy, system.model, interval), 1)
+    given = max(substeps_of(plan.accuracy, system.model, plan.interval), 1)
     return replace(plan.bare(), accuracy=Accuracy(substeps=given + math.ceil(MORE * given)))
 
 

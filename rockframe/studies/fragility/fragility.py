@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.arguments import one_of_names
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.proposals import hinted
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
 from rockframe.studies.confidence import read_level
@@ -234,8 +234,7 @@ def fragility(
     if of_capacities:
         below = np.array([int((~one.trials.has_lower).sum()) for one in found])
         below = below.reshape((*over.values(), len(states)))
-        added = build_dataset({"below_scan_count": below}, {}, over=(*over, *LIMIT_STATE))
-        dataset = dataset.assign(added.data_vars)
+        dataset = with_variables(dataset, {"below_scan_count": below}, over=(*over, *LIMIT_STATE))
     dataset.attrs["verdict"] = f"{sentences(dataset)}{_sliding(runs, of_capacities=of_capacities)}"
     # a system that the sweep changed is not that of the runs
     told = ("model",) if structures.coordinates or together else ("model", "system_json")

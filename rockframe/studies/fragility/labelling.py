@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.results.outcome import Generic
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
@@ -145,7 +145,7 @@ def _with_parameters(
     """Add medians and dispersions."""
     rows = [_parameters(each, means) for each in every]
     values = {name: layout.arranged(np.array([row[name] for row in rows])) for name in rows[0]}
-    return dataset.assign(build_dataset(values, {}, over=layout.dims).data_vars)
+    return with_variables(dataset, values, over=layout.dims)
 
 
 def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
@@ -287,18 +287,13 @@ def _with_coefficients(
     """Add the coefficients of fits over several measures."""
     names = ["intercept", *(name for name, _ in measures)]
     errors = np.sqrt(np.stack([np.diag(one.fit.covariance) for one in every]))
-    added = build_dataset(
-        {
-            "fitted_coefficient": layout.arranged(
-                np.stack([one.fit.coefficients for one in every])
-            ),
-            "fitted_coefficient_error": layout.arranged(errors),
-        },
-        {},
-        over=layout.dims,
-    )
-    labels = build_dataset({"coefficient": np.array(names, dtype=object)}, {})
-    return dataset.assign(added.data_vars).assign_coords(labels.coords)
+    fitted = np.stack([one.fit.coefficients for one in every])
+    added = {
+        "fitted_coefficient": layout.arranged(fitted),
+        "fitted_coefficient_error": layout.arranged(errors),
+    }
+    dataset = with_variables(dataset, added, over=layout.dims)
+    return with_variables(dataset, {"coefficient": np.array(names, dtype=object)})
 
 
 def _probabilities(etas: Array, layout: Arrangement, *measures: str) -> dict[str, xr.Variable]:
@@ -344,9 +339,8 @@ def with_stripes(
         "stripe_fraction_upper_bound": upper,
     }
     arranged = {name: layout.arranged(value) for name, value in values.items()}
-    of_states = build_dataset(arranged, {}, over=layout.dims)
-    of_all = build_dataset({"stripe_intensity": np.exp(middles)}, {})
-    return dataset.assign(of_states.data_vars).assign(of_all.data_vars)
+    dataset = with_variables(dataset, arranged, over=layout.dims)
+    return with_variables(dataset, {"stripe_intensity": np.exp(middles)})
 
 
 def _decided(trials: Sequence[Trials]) -> list[tuple[Array, Array]]:

@@ -170,16 +170,29 @@ def log_likelihood(trials: Trials, coefficients: Array) -> Array:
 
 def scores(trials: Trials, coefficients: Array) -> Array:
     """Give the slope of each trial's share in the log-likelihood."""
-    upper, lower = _design(trials)
-    _, at_upper, _, at_lower = _ratios(trials, coefficients)
-    return trials.weight[:, None] * (at_upper[:, None] * upper - at_lower[:, None] * lower)
+    return trials.weight[:, None] * slopes_of_shares(*_ends(trials, coefficients))
 
 
 def information(trials: Trials, coefficients: Array) -> Array:
     """Give the observed information, the curvature of the log-likelihood with its sign changed."""
-    upper, lower = _design(trials)
-    eta_upper, at_upper, eta_lower, at_lower = _ratios(trials, coefficients)
-    weight = trials.weight
+    return curvature_of_shares(*_ends(trials, coefficients), trials.weight)
+
+
+def slopes_of_shares(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
+    """Give the slopes of the logarithms of shares between two ends by the coefficients.
+
+    From what these multiply at the ends, and eta there; an open end has zeros, and eta is infinite.
+    """
+    at_upper, at_lower = _densities(eta_upper, eta_lower)
+    return at_upper[:, None] * upper - at_lower[:, None] * lower
+
+
+def curvature_of_shares(
+    upper: Array, lower: Array, eta_upper: Array, eta_lower: Array, weight: Array | float = 1.0
+) -> Array:
+    """Give their curvature, summed up with weights, with its sign changed."""
+    at_upper, at_lower = _densities(eta_upper, eta_lower)
+    eta_upper, eta_lower = (np.where(np.isfinite(x), x, 0.0) for x in (eta_upper, eta_lower))
     of_upper = weight * at_upper * (eta_upper + at_upper)
     of_lower = weight * at_lower * (at_lower - eta_lower)
     of_both = weight * at_upper * at_lower
@@ -274,10 +287,8 @@ def gap(trials: Trials) -> tuple[float, float] | None:
 def _slopes_along(trials: Trials, coefficients: Array, rays: Array) -> Array:
     upper, lower = _design(trials)
     eta_upper, eta_lower = _etas(trials, coefficients)
-    share = log_shares(eta_upper, eta_lower)
-    along = np.exp(log_density(eta_upper) - share) * (upper @ rays)
-    along -= np.exp(log_density(eta_lower) - share) * (lower @ rays)
-    return trials.weight @ along
+    at_upper, at_lower = _densities(eta_upper, eta_lower)
+    return trials.weight @ (at_upper * (upper @ rays) - at_lower * (lower @ rays))
 
 
 def _without_maximum(trials: Trials) -> FragilityStatus | None:
@@ -318,15 +329,16 @@ def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
     return eta_upper, eta_lower
 
 
-def _ratios(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Array]:
-    """Give eta at both ends, 0 where one is open, and the density there over the share between."""
-    eta_upper, eta_lower = (eta[:, 0] for eta in _etas(trials, coefficients[:, None]))
-    share = log_shares(eta_upper, eta_lower)
-    at_upper = np.exp(log_density(eta_upper) - share)
-    at_lower = np.exp(log_density(eta_lower) - share)
-    finite_upper = np.where(trials.has_upper, eta_upper, 0.0)
-    finite_lower = np.where(trials.has_lower, eta_lower, 0.0)
-    return finite_upper, at_upper, finite_lower, at_lower
+def _ends(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Array]:
+    """Give what coefficients multiply at both ends, and eta there."""
+    eta_upper, eta_lower = _etas(trials, coefficients[:, None])
+    return *_design(trials), eta_upper[:, 0], eta_lower[:, 0]
+
+
+def _densities(upper: Array, lower: Array) -> tuple[Array, Array]:
+    """Give the densities at both ends over the share between."""
+    share = log_shares(upper, lower)
+    return np.exp(_log_density(upper) - share), np.exp(_log_density(lower) - share)
 
 
 def log_shares(upper: Array, lower: Array) -> Array:
@@ -341,7 +353,7 @@ def log_shares(upper: Array, lower: Array) -> Array:
         return high + np.log(-np.expm1(np.where(np.isneginf(low), -np.inf, low - high)))
 
 
-def log_density(eta: Array) -> Array:
+def _log_density(eta: Array) -> Array:
     """Give the logarithm of the density of the normal distribution."""
     return -0.5 * (eta * eta + math.log(2.0 * math.pi))
 

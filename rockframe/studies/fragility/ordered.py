@@ -17,9 +17,10 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import (
     Bands,
     Fit,
+    curvature_of_shares,
     jackknife,
-    log_density,
     log_shares,
+    slopes_of_shares,
 )
 
 
@@ -75,7 +76,10 @@ def _of_share(share: float) -> Fit:
 
 
 def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, Array]:
-    """Give eta and its derivatives at both ends of each verdict; an open end has zeros."""
+    """Give what coefficients multiply at both ends of each verdict, and eta there.
+
+    As :func:`rockframe.studies.fragility.likelihood.slopes_of_shares` takes them.
+    """
     states = len(at) - 1
     upper, lower = np.zeros((2, len(logs), len(at)))
     rows = np.arange(len(logs))
@@ -85,39 +89,23 @@ def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, 
     upper[over, -1], lower[under, -1] = logs[over], logs[under]
     eta_upper = np.where(over, upper @ at, np.inf)
     eta_lower = np.where(under, lower @ at, -np.inf)
-    return eta_upper, eta_lower, upper, lower
+    return upper, lower, eta_upper, eta_lower
 
 
 def _value(logs: Array, count: Generic, at: Array) -> float:
     """Give the log-likelihood, :eq:`eq-fragility-ordered`; minus infinity out of order."""
-    upper, lower, *_ = _ends(logs, count, at)
+    *_, upper, lower = _ends(logs, count, at)
     if np.any(upper <= lower):
         return -math.inf
     return float(log_shares(upper, lower).sum())
 
 
-def _ratios(logs: Array, count: Generic, at: Array) -> tuple[Array, ...]:
-    upper, lower, of_upper, of_lower = _ends(logs, count, at)
-    share = log_shares(upper, lower)
-    at_upper, at_lower = (np.exp(log_density(one) - share) for one in (upper, lower))
-    upper, lower = (np.where(np.isfinite(one), one, 0.0) for one in (upper, lower))
-    return upper, lower, of_upper, of_lower, at_upper, at_lower
-
-
 def _scores(logs: Array, count: Generic, at: Array) -> Array:
-    _, _, of_upper, of_lower, at_upper, at_lower = _ratios(logs, count, at)
-    return at_upper[:, None] * of_upper - at_lower[:, None] * of_lower
+    return slopes_of_shares(*_ends(logs, count, at))
 
 
 def _information(logs: Array, count: Generic, at: Array) -> Array:
-    upper, lower, of_upper, of_lower, at_upper, at_lower = _ratios(logs, count, at)
-    crossed = of_upper.T @ ((at_upper * at_lower)[:, None] * of_lower)
-    return (
-        of_upper.T @ ((at_upper * (upper + at_upper))[:, None] * of_upper)
-        + of_lower.T @ ((at_lower * (at_lower - lower))[:, None] * of_lower)
-        - crossed
-        - crossed.T
-    )
+    return curvature_of_shares(*_ends(logs, count, at))
 
 
 _STEPS = 100

@@ -140,19 +140,20 @@ def _in_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -
 
 def flat(first: xr.DataArray, others: Sequence[xr.DataArray]) -> tuple[Array, Array]:
     """Lay numbers of runs out in rows."""
-    rows = [
-        other.broadcast_like(first).transpose(*first.dims).to_numpy().ravel().astype(np.float64)
-        for other in others
-    ]
+    rows = [laid_out(other, first).astype(np.float64) for other in others]
     return np.column_stack(rows), first.to_numpy().ravel().astype(np.float64)
+
+
+def laid_out(values: xr.DataArray, like: xr.DataArray) -> Generic:
+    """Lay values out in a row, in the order of others, whose dimensions are theirs or more."""
+    return values.broadcast_like(like).transpose(*like.dims).to_numpy().ravel()
 
 
 def motion_numbers(runs: xr.DataArray) -> Generic:
     """Give the number of the motion of each run, laid out in a row."""
     if MOTION not in runs.coords:
         return np.zeros(runs.size, dtype=np.intp)
-    names = runs[MOTION].broadcast_like(runs).transpose(*runs.dims).to_numpy().ravel()
-    return np.unique(names.astype(str), return_inverse=True)[1]
+    return np.unique(laid_out(runs[MOTION], runs).astype(str), return_inverse=True)[1]
 
 
 def _at_scales(measure: Generic, known: Array, scales: Array) -> Array:

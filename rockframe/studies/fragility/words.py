@@ -9,6 +9,7 @@ import xarray as xr
 
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
+from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import Bands
 from rockframe.studies.intensities import PERIOD_OF, measure_words
@@ -107,26 +108,18 @@ def _fit(last: xr.Dataset, status: Generic, fitted: Generic) -> str:
     aside += [f"pooled over {last.attrs[POOLED]}"] if POOLED in last.attrs else []
     head = f"{state} ({'; '.join(aside)})" if aside else state
     if not fitted.any():
-        why = ", ".join(dict.fromkeys(_why(one) for one in status))
+        whys = (FragilityStatus(one).name.lower().replace("_", " ") for one in status)
+        why = ", ".join(dict.fromkeys(whys))
         return f"Against {head} no lognormal capacity fits over {over}: {why}.{_separation(last)}"
     rest = f"; to {int((~fitted).sum())} of them none fits" if not fitted.all() else ""
     if len(names) > 1:
         return f"Capacity against {head} fitted over {over}{rest}."
-    unit = _unit(last)
+    unit = unit_behind(last["median_intensity"].attrs)
     median, dispersion = (
         _range(last[name].to_numpy().ravel()[fitted], digits)
         for name, digits in zip(("median_intensity", "dispersion"), _DIGITS, strict=True)
     )
     return f"Capacity against {head}: median {over} {median}{unit}, dispersion {dispersion}{rest}."
-
-
-def _unit(last: xr.Dataset) -> str:
-    unit = str(last["median_intensity"].attrs.get("units", "1"))
-    return "" if unit == "1" else f" {unit}"
-
-
-def _why(status: int) -> str:
-    return FragilityStatus(status).name.lower().replace("_", " ")
 
 
 def _range(values: Array, digits: int) -> str:
@@ -142,7 +135,8 @@ def _separation(last: xr.Dataset) -> str:
     if list(status) != [FragilityStatus.SEPARATED] or "separation_lower_intensity" not in last:
         return ""
     low, high = (last[f"separation_{end}_intensity"].item() for end in ("lower", "upper"))
-    words = f" None exceeded up to {low:.4g}{_unit(last)}, all did from {high:.4g} on: so the "
+    unit = unit_behind(last["median_intensity"].attrs)
+    words = f" None exceeded up to {low:.4g}{unit}, all did from {high:.4g} on: so the "
     words += "dispersion is not known, only that it may be small"
     ends = [
         float(last[f"{name}_bound"].item())
@@ -154,7 +148,7 @@ def _separation(last: xr.Dataset) -> str:
     level = f"{100.0 * last.attrs['confidence']:g} %"
     return (
         f"{words}. By the likelihood of nominal {level} the median lies from {least:.4g} to "
-        f"{most:.4g}{_unit(last)}, the dispersion is at most {spread:.3g}."
+        f"{most:.4g}{unit}, the dispersion is at most {spread:.3g}."
     )
 
 

@@ -185,6 +185,15 @@ def _as_python(given: Any) -> Any:
     return given
 
 
+def faults_of_values(name: str, values: Generic) -> list[str]:
+    """Tell what is wrong with the values of an axis."""
+    kept, counts = np.unique(values, return_counts=True)
+    if not len(kept):
+        return [f"axis {name!r} has no values"]
+    twice = kept[counts > 1]
+    return [f"axis {name!r} has the value {twice[0]!s} twice"] if len(twice) else []
+
+
 Places: Final = NDArray[np.intp]
 MOST_CASES: Final = 1_000_000_000
 
@@ -275,6 +284,20 @@ class Grid:
         return places[MOTION]
 
 
-def chunks_of(count: int, size: int) -> Sequence[range]:
-    """Cut the cases into chunks of a size; the last may be shorter."""
-    return [range(first, min(first + size, count)) for first in range(0, count, size)]
+@dataclass(frozen=True)
+class Chunk:
+    """Some cases, by their numbers in the order of running."""
+
+    number: int
+    cases: range
+
+    @classmethod
+    def of(cls, number: int, count: int, size: int) -> "Chunk":
+        """Give a chunk of a size, of a number of cases; the last may be shorter."""
+        first = number * size
+        return cls(number, range(first, min(first + size, count)))
+
+
+def chunks_of(count: int, size: int) -> list[Chunk]:
+    """Cut cases into chunks of a size."""
+    return [Chunk.of(number, count, size) for number in range(-(-count // size))]

@@ -32,7 +32,6 @@ from rockframe.studies.sweeps.scenes import (
 )
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
-from rockframe.system.assembly import Assembly
 from rockframe.units import Measure, Unit, to_ratio, to_si
 
 _OWNER: Final = "case"
@@ -282,10 +281,7 @@ def _scene(
 def _system(scene: SweptScene, values: dict[Axis, Any]) -> System:
     if isinstance(scene, FunctionScene):
         return scene.system(values)
-    return _of_assembly(scene.assembled(values))
-
-
-def _of_assembly(assembly: Assembly) -> System:
+    assembly = scene.assembled(values)
     options: dict[str, Any] = assembly.options.to_dict()
     return System(*assembly.parts.structural(), **options)
 

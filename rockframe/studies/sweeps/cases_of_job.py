@@ -106,11 +106,6 @@ class CasesOfJob:
             return None
         return motion.si.time_step, motion.si.duration, motion.si.vertical is not None
 
-    def has_vertical(self, case: int) -> bool:
-        """Tell whether the ground moves vertically, too."""
-        motion = self.unscaled(case)
-        return motion is not None and motion.si.vertical is not None
-
     def ground(self, case: int) -> Motion | None:
         """Give the motion of a case as numbers alone, which takes less."""
         motion = self.unscaled(case)

@@ -19,14 +19,12 @@ from rockframe.simulation.certify.second_look import Look
 from rockframe.simulation.run import NONE, in_motion, scalars_of
 from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
+from rockframe.studies.sweeps.lanes import Failed, Finished, FinishedTogether
 from rockframe.studies.sweeps.runs import each_run, in_doubt, looks_of, repeated
-from rockframe.studies.sweeps.side_by_side import Failed, Finished
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
-from rockframe.studies.sweeps.together import FinishedTogether
 
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""
-_STATUS: Final = "status"
 DRIVER: Final = "driver"
 """Column that tells how cases were run; no result, and in no dataset."""
 
@@ -51,7 +49,7 @@ class CaseResults:
     texts: tuple[str, ...]  # what is said of cases, each once; the first says nothing
 
 
-def put_into(
+def _put_into(
     columns: dict[str, Generic], count: int, name: str, where: Any, values: Generic | float
 ) -> None:
     """Put what some of a number of cases have, or one, into a column.
@@ -68,6 +66,36 @@ def put_into(
             wider[(slice(None), *map(slice, there))] = columns[name]
         columns[name] = wider
     columns[name][(where, *map(slice, beside))] = values
+
+
+class CollectedResults:
+    """What cases show, put together; NaN, and no text, where nothing has been put."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
+        self._scalars: dict[str, Generic] = {}
+        self._histories: dict[str, Generic] = {}
+        self._message = np.full(count, NO_TEXT, dtype=np.int32)
+        self._texts: dict[str, int] = {NONE: NO_TEXT}
+
+    def put_rows(self, here: Any, rows: CaseResults, which: Any = slice(None)) -> None:
+        """Put some of the cases of a chunk into their places."""
+        self._status[here] = rows.status[which]
+        # texts in the order of their cases, however these were cut into chunks
+        message = rows.message[which]
+        for first in sorted(np.unique(message, return_index=True)[1]):
+            self._texts.setdefault(rows.texts[message[first]], len(self._texts))
+        places = np.array([self._texts.get(text, NO_TEXT) for text in rows.texts])
+        self._message[here] = places[message]
+        for kept, given in ((self._scalars, rows.scalars), (self._histories, rows.histories)):
+            for name, values in given.items():
+                _put_into(kept, self._count, name, here, values[which])
+
+    def rows(self) -> CaseResults:
+        """Give what has been put together."""
+        texts = tuple(self._texts)
+        return CaseResults(self._status, self._scalars, self._histories, self._message, texts)
 
 
 def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> CaseResults | None:
@@ -111,17 +139,12 @@ def _driver(run: Finished) -> Driver:
     return Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
 
 
-class _Collector:
-    """Collects what cases show."""
+class _Collector(CollectedResults):
+    """Collects what cases show as they are run."""
 
     def __init__(self, count: int, histories: Histories | None) -> None:
-        self._count = count
+        super().__init__(count)
         self._kept = histories
-        self._status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
-        self._scalars: dict[str, Generic] = {}
-        self._histories: dict[str, Generic] = {}
-        self._message = np.full(count, NO_TEXT, dtype=np.int32)
-        self._texts: dict[str, int] = {NONE: NO_TEXT}
 
     def put(self, run: Finished | FinishedTogether | Failed) -> None:
         """Note runs; of one without a verdict only what is said of it."""
@@ -146,8 +169,7 @@ class _Collector:
         if run.summary.overturned is None:
             self._clear(case)
             return
-        self._put_scalars(case, {DRIVER: _driver(run)})
-        self._put_scalars(case, {name: scalars[name] for name in scalars if name != _STATUS})
+        self._put_scalars(case, {DRIVER: _driver(run), **scalars})
         if self._kept is not None and response is not None and response.answers.values:
             self._put_histories(case, response.answers.values, self._kept)
 
@@ -156,9 +178,7 @@ class _Collector:
             self._clear(run.cases)
         self._say(run.cases, "; ".join(run.said) or NONE)
         self._status[run.cases] = run.status
-        self._put_scalars(run.cases, {DRIVER: Driver.IN_LANES})
-        kept = {name: each for name, each in run.scalars.items() if name != _STATUS}
-        self._put_scalars(run.cases, kept)
+        self._put_scalars(run.cases, {DRIVER: Driver.IN_LANES, **run.scalars})
 
     def screen(self, every: Iterable[int], doubtful: Iterable[int]) -> None:
         """Note which cases were screened, and whose verdict was in doubt."""
@@ -176,9 +196,11 @@ class _Collector:
 
     def _put_scalars(self, case: int | Places, values: Mapping[str, Generic | float]) -> None:
         for name, value in values.items():
+            if name == "status":  # which has a place of its own
+                continue
             # what is the same in all of several cases has no row for each
             row = value if np.ndim(value) else np.broadcast_to(value, np.shape(case))
-            put_into(self._scalars, self._count, name, case, row)
+            _put_into(self._scalars, self._count, name, case, row)
 
     def _put_histories(self, case: int, values: dict[str, Generic], kept: Histories) -> None:
         time = values[TIME[0]]
@@ -190,7 +212,7 @@ class _Collector:
             if name != TIME[0] and name in values and SCHEMA[name].dims in (TIME, POINT_TIME):
                 row = np.full((*values[name].shape[:-1], kept.count), np.nan)
                 row[..., :count] = values[name][..., :count]
-                put_into(self._histories, self._count, name, case, row)
+                _put_into(self._histories, self._count, name, case, row)
 
     def _refuse(self, case: int, problem: Exception) -> None:
         """Note why a case has no run."""
@@ -202,11 +224,6 @@ class _Collector:
     def _clear(self, case: int | Places) -> None:
         for column in (*self._scalars.values(), *self._histories.values()):
             column[case] = np.nan
-
-    def rows(self) -> CaseResults:
-        """Give what has been collected."""
-        texts = tuple(self._texts)
-        return CaseResults(self._status, self._scalars, self._histories, self._message, texts)
 
     def _say(self, case: int | Places, text: str) -> None:
         self._message[case] = self._texts.setdefault(text, len(self._texts))

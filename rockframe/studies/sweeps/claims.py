@@ -26,13 +26,7 @@ _PROCESSES: Final = Path("/proc")
 
 
 class Claims:
-    """The claims on chunks of a study, as one job sees and makes them.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the study.
-    """
+    """The claims on chunks of a study in a folder, as one job sees and makes them."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder / _CLAIMS

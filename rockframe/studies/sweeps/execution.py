@@ -12,14 +12,13 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import closing, contextmanager, nullcontext
 from functools import partial
 from threading import Event, Thread
 from typing import Any, Final, Protocol, runtime_checkable
 
 from rockframe.errors import ComponentError, RockframeError, StudyError, shown
-from rockframe.studies.sweeps.axes import OWNER
+from rockframe.studies.sweeps.axes import OWNER, Chunk
 from rockframe.studies.sweeps.chunk import CaseResults, run_chunk
 from rockframe.studies.sweeps.study import SweepJob, worker_count
 
@@ -47,6 +46,8 @@ class ProgressBar(Protocol):
 
 
 class _Silent:
+    """A bar that shows nothing."""
+
     def name(self, part: str) -> None:
         """Show nothing."""
 
@@ -54,6 +55,9 @@ class _Silent:
         """Show nothing."""
 
     def update(self, count: int) -> None:
+        """Show nothing."""
+
+    def close(self) -> None:
         """Show nothing."""
 
 
@@ -101,17 +105,14 @@ class _Bar:
 @contextmanager
 def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
     """Show a bar while something is done."""
-    bar = _made(given, owner, unit)
-    try:
-        yield bar
-    finally:
-        if isinstance(bar, _Bar):
-            bar.close()
-
-
-def _made(given: object, owner: str, unit: str) -> ProgressBar:
     if isinstance(given, ProgressBar):  # of the caller, who closes it
-        return given
+        yield given
+        return
+    with closing(_made(given, owner, unit)) as bar:
+        yield bar
+
+
+def _made(given: object, owner: str, unit: str) -> _Silent | _Bar:
     if given is not None and not isinstance(given, bool):
         msg = f"{owner}: progress must be True, False or None, got {shown(given)}"
         raise ComponentError(msg)
@@ -137,14 +138,6 @@ _MANY: Final = 128
 """Workers of an executor that does not tell how many it has."""
 _GLANCE: Final = 0.2
 """Longest wait in which an interrupt might go unheard [s]."""
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Some cases, by their numbers in the order of running."""
-
-    number: int
-    cases: range
 
 
 _END: Final = Chunk(-1, range(0))
@@ -183,7 +176,7 @@ def run_chunks(
     stop = Event()
     waiting = iter(chunks)
     going: dict[Future[CaseResults | None], Chunk] = {}
-    with _own_threads() if executor is None else _of_the_user(executor) as pool:
+    with _own_threads() if executor is None else nullcontext(executor) as pool:
         run = partial(run_chunk, stopped=stop.is_set) if executor is None else run_chunk
         try:
             some_left = True
@@ -281,8 +274,3 @@ def _own_threads() -> Generator[Executor]:
         return
     with ThreadPoolExecutor(worker_count(), thread_name_prefix="rockframe") as pool:
         yield pool
-
-
-@contextmanager
-def _of_the_user(executor: Executor) -> Generator[Executor]:
-    yield executor

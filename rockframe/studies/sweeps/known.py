@@ -9,12 +9,9 @@ import numpy as np
 
 from rockframe.errors import StudyError
 from rockframe.results.outcome import Generic
-from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MOTION
-from rockframe.simulation.run import NONE
-from rockframe.studies.sweeps.axes import Grid
-from rockframe.studies.sweeps.chunk import CaseResults, put_into
-from rockframe.studies.sweeps.execution import Chunk
+from rockframe.studies.sweeps.axes import Chunk, Grid
+from rockframe.studies.sweeps.chunk import CaseResults, CollectedResults
 from rockframe.studies.sweeps.identity import difference
 from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.store import Store
@@ -26,15 +23,7 @@ _NOBODY: Final = -1
 
 
 class KnownCases:
-    """The cases of a study that others have run.
-
-    Parameters
-    ----------
-    study : Study
-        The study that takes them.
-    folders : iterable of Path
-        Stores of the others; of a case that several have, the first one counts.
-    """
+    """The cases of a study that others have run; of several that have one the first counts."""
 
     def __init__(self, study: Study, folders: Iterable[Path]) -> None:
         self._grid = study.grid
@@ -52,16 +41,16 @@ class KnownCases:
         if run is not None and len(run.status) == len(chunk.cases):
             return run
         source, number = self._found(chunk)
-        whole = _Rows(len(chunk.cases))
+        whole = CollectedResults(len(chunk.cases))
         if run is not None:
-            whole.put(source == _NOBODY, run, slice(None))
+            whole.put_rows(source == _NOBODY, run)
         for k, one in enumerate(self._sources):
             of_chunk = number // one.kept.chunk
             for old in np.unique(of_chunk[source == k]).tolist():
                 here = (source == k) & (of_chunk == old)
-                rows = one.kept.get(one.chunk(old))
-                whole.put(here, rows, number[here] - old * one.kept.chunk)
-        return whole.results()
+                rows = one.kept.get(one.kept.chunk_at(old))
+                whole.put_rows(here, rows, number[here] - old * one.kept.chunk)
+        return whole.rows()
 
     def _found(self, chunk: Chunk) -> tuple[Generic, Generic]:
         """Give who has each case of a chunk, and its number there."""
@@ -113,14 +102,9 @@ class _Source:
         found = np.ravel_multi_index([np.maximum(one, 0) for one in each], shape)
         found[np.any(np.array(each) == _NOBODY, axis=0)] = _NOBODY
         for old in np.unique(found[found != _NOBODY] // self.kept.chunk).tolist():
-            if not self.kept.has(self.chunk(old)):  # not yet run
+            if not self.kept.has(self.kept.chunk_at(old)):  # not yet run
                 found[found // self.kept.chunk == old] = _NOBODY
         return found
-
-    def chunk(self, number: int) -> Chunk:
-        """Give a chunk by its number."""
-        first = number * self.kept.chunk
-        return Chunk(number, range(first, min(first + self.kept.chunk, self.kept.cases)))
 
 
 def _check_grid(grid: Grid, study: Study, folder: Path) -> None:
@@ -136,33 +120,3 @@ def _places(wanted: list[Any], there: list[Any]) -> Generic:
     """Give where values are among others."""
     place = {one: k for k, one in enumerate(there)}
     return np.array([place.get(one, _NOBODY) for one in wanted])
-
-
-class _Rows:
-    """What the cases of a chunk show, from several places."""
-
-    def __init__(self, count: int) -> None:
-        self._count = count
-        self._status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
-        self._message = np.zeros(count, dtype=np.int32)
-        self._texts: dict[str, int] = {NONE: 0}
-        self._scalars: dict[str, Generic] = {}
-        self._histories: dict[str, Generic] = {}
-
-    def put(self, here: Generic, rows: CaseResults, which: Any) -> None:
-        """Put some rows of a chunk into their places."""
-        self._status[here] = rows.status[which]
-        self._message[here] = [
-            self._texts.setdefault(rows.texts[k], len(self._texts)) for k in rows.message[which]
-        ]
-        for kept, given in (
-            (self._scalars, rows.scalars), (self._histories, rows.histories)
-        ):  # fmt: skip
-            for name, values in given.items():
-                put_into(kept, self._count, name, here, values[which])
-
-    def results(self) -> CaseResults:
-        """Give them all."""
-        return CaseResults(
-            self._status, self._scalars, self._histories, self._message, tuple(self._texts)
-        )

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -11,15 +11,19 @@ import xarray as xr
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint, point_labels
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.schema import (
+    SCHEMA,
+    build_dataset,
+    with_variables,
+    without_fill_values,
+)
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
-from rockframe.results.variables.runs import EVENTS_AND_SCALARS, RunStatus
+from rockframe.results.variables.runs import EVENTS_AND_SCALARS
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
-from rockframe.simulation.run import NONE
-from rockframe.studies.sweeps.axes import Axis, Grid
-from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, Driver, put_into
+from rockframe.studies.sweeps.axes import Grid
+from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, CollectedResults, Driver
 from rockframe.studies.sweeps.runs import SCREEN
 from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
 from rockframe.studies.sweeps.study import Histories, Study
@@ -52,11 +56,11 @@ class Labels:
 def sweep_labels(study: Study) -> Labels:
     """Give the labels of a sweep."""
     arguments = study.arguments
-    scene = study.scene
+    scene, grid = study.scene, study.grid
     attributes: dict[str, str | float | int] = {
         "accuracy": SCREEN if study.screened else arguments.accuracy_name,
         "run_json": json.dumps(arguments.to_dict()),
-        "axes_json": json.dumps([axis.to_dict() for axis in every_axis(study.grid)]),
+        "axes_json": json.dumps([axis.to_dict() for axis in (*grid.axes, *grid.columns)]),
         "motions_json": json.dumps(
             [None if motion is None else motion.to_dict() for motion in study.motions.values()]
         ),
@@ -72,12 +76,7 @@ def sweep_labels(study: Study) -> Labels:
         attributes["system_json"] = scene.assembly.json
     elif isinstance(scene, FunctionScene):
         attributes["function"] = scene.name
-    return Labels(study.grid, tuple(study.motions), study.histories, arguments.points, attributes)
-
-
-def every_axis(grid: Grid) -> tuple[Axis, ...]:
-    """Give all axes: those with a dimension, then the columns of the table."""
-    return (*grid.axes, *grid.columns)
+    return Labels(grid, tuple(study.motions), study.histories, arguments.points, attributes)
 
 
 def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
@@ -112,7 +111,7 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
             for name in SCHEMA
             if name in rows.histories
         }
-        dataset = dataset.assign(build_dataset(histories, {}, over=tuple(grid.sizes)).data_vars)
+        dataset = with_variables(dataset, histories, over=tuple(grid.sizes))
     return with_coordinates(dataset, labels, said)
 
 
@@ -141,33 +140,17 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
 def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
     """Add the axes, and what is said of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
-    dataset = dataset.assign_coords(_of_bodies(labels, dataset.sizes))
-    for name in dataset.coords:
-        # a coordinate has no missing values, so it needs no fill value (CF 2.5.1)
-        dataset[name].encoding["_FillValue"] = None
-    return dataset
+    return without_fill_values(dataset.assign_coords(_of_bodies(labels, dataset.sizes)))
 
 
 def _joined(count: int, found: Iterable[tuple[range, CaseResults]]) -> CaseResults:
     """Put chunks together, in the order of running, with gaps where there are none."""
-    scalars: dict[str, Generic] = {}
-    histories: dict[str, Generic] = {}
-    status = np.full(count, RunStatus.NOT_RUN, dtype=np.int8)
-    message = np.zeros(count, dtype=np.int64)
-    texts: dict[str, int] = {NONE: 0}
+    collected = CollectedResults(count)
     for cases, rows in found:
-        here = slice(cases.start, cases.stop)
-        status[here] = rows.status
-        # texts in the order of their cases, however these were cut into chunks
-        _, firsts = np.unique(rows.message, return_index=True)
-        for k in sorted(firsts):
-            texts.setdefault(rows.texts[rows.message[k]], len(texts))
-        message[here] = np.array([texts.get(text, 0) for text in rows.texts])[rows.message]
-        for kept, given in ((scalars, rows.scalars), (histories, rows.histories)):
-            for name, values in given.items():
-                put_into(kept, count, name, here, values)
-    few, message = summed_up(list(texts), message)
-    return CaseResults(status, scalars, histories, message, few)
+        collected.put_rows(slice(cases.start, cases.stop), rows)
+    whole = collected.rows()
+    few, message = summed_up(whole.texts, whole.message)
+    return replace(whole, message=message, texts=few)
 
 
 def _coordinates(labels: Labels) -> dict[str, xr.Variable]:

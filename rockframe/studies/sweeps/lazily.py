@@ -16,9 +16,8 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE
 from rockframe.simulation.run import NONE
-from rockframe.studies.sweeps.axes import Grid
+from rockframe.studies.sweeps.axes import Chunk, Grid
 from rockframe.studies.sweeps.chunk import CaseResults
-from rockframe.studies.sweeps.execution import Chunk
 from rockframe.studies.sweeps.labelling import around_cases, names_of_scalars, with_coordinates
 from rockframe.studies.sweeps.store import Store
 
@@ -102,14 +101,12 @@ class _Column(BackendArray):
         order = np.argsort(of_chunk, kind="stable")
         used, firsts = np.unique(of_chunk[order], return_index=True)
         for number, places in zip(used.tolist(), np.split(order, firsts)[1:], strict=True):
-            first = number * self._kept.chunk
-            cases = range(first, min(first + self._kept.chunk, self._grid.count))
-            chunk = Chunk(number, cases)
+            chunk = self._kept.chunk_at(number)
             if self._kept.has(chunk):
                 values = _values(_rows(self._kept, chunk), self._name)
                 if values is not None:
                     beside = map(slice, values.shape[1:])
-                    found[(places, *beside)] = values[numbers[places] - first]
+                    found[(places, *beside)] = values[numbers[places] - chunk.cases.start]
         return found
 
 

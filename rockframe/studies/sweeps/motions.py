@@ -10,7 +10,6 @@ from rockframe.arguments import by_words
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.motion.description import shown_name
-from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps.axes import OWNER
 from rockframe.units import ACCELERATION, TIME, VELOCITY, Measure, Unit
 
@@ -55,11 +54,6 @@ ABBREVIATIONS: Final = {
 def full_name(name: str) -> str:
     """Give the name of an axis that an abbreviation stands for."""
     return ABBREVIATIONS.get(name, name)
-
-
-def target_words(name: str) -> str:
-    """Tell what an axis that scales the motion is."""
-    return SCHEMA[name].long_name
 
 
 def motion_of_case(

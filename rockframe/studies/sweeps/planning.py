@@ -38,26 +38,25 @@ from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALAR
 from rockframe.results.variables.studies import MOTION, SWEEP
 from rockframe.results.variables.variable import EVENT, TIME
 from rockframe.simulation.plan import (
-    STILL_GROUND_OUTPUT_STEP,
     RunRequest,
     listed,
     read_arguments,
     run_length,
+    usual_output_step,
 )
-from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid
+from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid, faults_of_values
 from rockframe.studies.sweeps.motions import (
     NO_MOTION,
     OF_THE_SCENE,
     SPECTRAL,
     motion_number,
-    named_motions,
 )
 from rockframe.studies.sweeps.runs import AGAIN, FIRST, SCREEN
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,
     SystemScene,
-    own_motion,
+    motions_of_study,
     scene_of,
 )
 from rockframe.studies.sweeps.study import Histories, Study
@@ -84,10 +83,10 @@ _GROUPS: Final = (
 
 
 def check_memory(
-    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str, copies: float = _COPIES
+    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str
 ) -> list[str]:
     """Tell what cases need, and whether it is there."""
-    sizes = {what: _FLOAT * copies * each * cases for what, each in numbers.items()}
+    sizes = {what: _FLOAT * _COPIES * each * cases for what, each in numbers.items()}
     needed, there = sum(sizes.values()), available()
     parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
     told = (
@@ -185,10 +184,7 @@ def _at_common_times(
 
 def _time_steps(motions: Mapping[str, GroundMotion | None]) -> set[float]:
     """Give the spacings that histories have where none is asked for."""
-    return {
-        STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
-        for motion in motions.values()
-    }
+    return {usual_output_step(motion) for motion in motions.values()}
 
 
 Read = TypeVar("Read")
@@ -319,11 +315,9 @@ def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept
 
 
 def _motions(given: object, scene: SweptScene) -> dict[str, GroundMotion | None]:
-    if given is not None:
-        return dict(named_motions(given))
-    own = own_motion(scene)
-    if own is not None:
-        return {own.name: own}
+    named = motions_of_study(given, scene)
+    if named is not None:
+        return dict(named)
     return {OF_THE_SCENE if isinstance(scene, FunctionScene) else NO_MOTION: None}
 
 
@@ -373,13 +367,8 @@ def _read(
         if axis is None:
             continue
         found.append(axis)
-        if axis.values.size == 0:
-            faults.append(f"axis {name!r} has no values")
-        if repeats:
-            continue
-        kept, counts = np.unique(axis.values, return_counts=True)
-        if (counts > 1).any():
-            faults.append(f"axis {name!r} has the value {kept[counts > 1][0]!s} twice")
+        if not repeats or not len(axis.values):
+            faults += faults_of_values(name, axis.values)
     return found
 
 

@@ -15,12 +15,12 @@ from rockframe.arguments import whole_number
 from rockframe.compiled import COMPILED
 from rockframe.errors import SolverWarning, StudyError, shown, warn
 from rockframe.simulation.run import respond
-from rockframe.studies.sweeps.axes import OWNER, chunks_of
+from rockframe.studies.sweeps.axes import OWNER, Chunk, chunks_of
 from rockframe.studies.sweeps.case import remember
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
 from rockframe.studies.sweeps.chunk import CaseResults
 from rockframe.studies.sweeps.claims import Claims
-from rockframe.studies.sweeps.execution import Chunk, ProgressBar, run_chunks, workers_of
+from rockframe.studies.sweeps.execution import ProgressBar, run_chunks, workers_of
 from rockframe.studies.sweeps.known import KnownCases
 from rockframe.studies.sweeps.labelling import sweep_dataset, sweep_labels
 from rockframe.studies.sweeps.lazily import lazy_dataset
@@ -105,7 +105,6 @@ def _in_memory(
     study: Study, size: int, executor: Executor | None, bar: ProgressBar
 ) -> tuple[xr.Dataset, str]:
     """Give the results, and of an interrupted study how far it came."""
-    chunks = [Chunk(k, cases) for k, cases in enumerate(chunks_of(study.grid.count, size))]
     found: list[tuple[range, CaseResults]] = []
     bar.expect(study.grid.count)
 
@@ -113,6 +112,7 @@ def _in_memory(
         found.append((one.cases, rows))
         bar.update(len(one.cases))
 
+    chunks = chunks_of(study.grid.count, size)
     whole = run_chunks(chunks, lambda one: study.job(one.cases), take, executor)
     dataset = sweep_dataset(sweep_labels(study), sorted(found, key=lambda one: one[0].start))
     return dataset, "" if whole else cases_verdict(dataset)
@@ -196,9 +196,9 @@ def stored_dataset(kept: Store) -> xr.Dataset:
     return dataset.assign_attrs(kept.provenance())
 
 
-def folder_of(path: object) -> Path:
-    """Read the argument ``store``."""
+def folder_of(path: object, *, owner: str = "") -> Path:
+    """Read the argument ``store``, of a function that is named in messages, if there is one."""
     if isinstance(path, str | PathLike):
         return Path(path)  # pyright: ignore[reportUnknownArgumentType]
-    msg = f"store must be the path of a folder, got {shown(path)}"
-    raise StudyError(msg)
+    words = f"store must be the path of a folder, got {shown(path)}"
+    raise StudyError(f"{owner}: {words}" if owner else words)

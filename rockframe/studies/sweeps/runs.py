@@ -10,13 +10,14 @@ from rockframe.simulation.plan import Plan, run_length
 from rockframe.simulation.run import respond
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.side_by_side import (
+from rockframe.studies.sweeps.lanes import (
     Failed,
     Finished,
+    FinishedTogether,
     run_side_by_side,
+    run_together,
     when_compiled,
 )
-from rockframe.studies.sweeps.together import FinishedTogether, run_together
 from rockframe.system.assembly import Assembly
 
 

@@ -14,6 +14,7 @@ from rockframe.components.parameters import Choice, Count, Declared, Text
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import SCHEMA
 from rockframe.shared_arguments import suggestion
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.arguments import OF_A_SWEEP
@@ -26,7 +27,7 @@ from rockframe.studies.sweeps.axes import (
     words_of,
 )
 from rockframe.studies.sweeps.identity import name_of
-from rockframe.studies.sweeps.motions import TARGETS, full_name, target_words
+from rockframe.studies.sweeps.motions import TARGETS, full_name, named_motions
 from rockframe.system.assembly import Assembly, assembly_of
 from rockframe.system.links import link_labels
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
@@ -38,14 +39,6 @@ STARTS: Final = {
     if one.measure is not None
 }
 """Axes by their names: which parameter of an initial state each changes, and its kind."""
-
-
-def of_start(name: str, given: object) -> Axis:
-    """Read an axis that changes the initial state."""
-    parameter, measure = STARTS[name]
-    values = numbers_of(given, measure, name)
-    words = name.replace("_", " ")
-    return Axis(name, values, str(measure.unit), words, Changes.START, parameter)
 
 
 def started(initial: InitialState, values: Mapping[str, float]) -> InitialState:
@@ -91,10 +84,9 @@ class SystemScene:
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names the motion's scale, an option, or a parameter of a part."""
         name = full_name(name)
-        if name in TARGETS:
-            return _of_motion(name, given)
-        if name in STARTS:
-            return of_start(name, given)
+        of_run = _of_run(name, given)
+        if of_run is not None:
+            return of_run
         kind, _, parameter = name.rpartition(".")
         if parameter in _OPTIONS and kind in ("", _SYSTEM):
             return _of_option(name, parameter, given)
@@ -220,10 +212,9 @@ class FunctionScene:
         """Read an axis that names an argument, or else the motion's scale."""
         arguments = self._arguments()
         name = name if name in arguments else full_name(name)
-        if name in TARGETS and name not in arguments:
-            return _of_motion(name, given)
-        if name in STARTS and name not in arguments:
-            return of_start(name, given)
+        of_run = None if name in arguments else _of_run(name, given)
+        if of_run is not None:
+            return of_run
         values, unit = free_values(given, name)
         return Axis(name, values, unit, name.replace("_", " "), Changes.ARGUMENT, name)
 
@@ -276,6 +267,12 @@ def scene_of(given: object) -> SweptScene:
     raise StudyError(msg)
 
 
+def motions_of_study(given: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
+    """Read the argument ``motions``: unless given, the one of the scene; None where it has none."""
+    own = own_motion(scene) if given is None else given
+    return None if own is None else named_motions(own)
+
+
 def own_motion(scene: SweptScene) -> GroundMotion | None:
     """Give the motion among a system's parts."""
     return scene.assembly.parts.motion if isinstance(scene, SystemScene) else None
@@ -295,17 +292,29 @@ def _left_behind(part: Component, behind: tuple[str, ...], given: Mapping[str, s
     )
 
 
-def _of_motion(name: str, given: object) -> Axis:
-    measure = TARGETS[name].measure
+def _of_run(name: str, given: object) -> Axis | None:
+    """Read an axis that scales the motion, or changes where runs start; None of any other."""
+    if name in TARGETS:
+        words = SCHEMA[name].long_name
+        return _of_numbers(name, given, TARGETS[name].measure, words, Changes.MOTION, name)
+    if name in STARTS:
+        parameter, measure = STARTS[name]
+        words = name.replace("_", " ")
+        return _of_numbers(name, given, measure, words, Changes.START, parameter)
+    return None
+
+
+def _of_numbers(
+    name: str, given: object, measure: Measure, words: str, changes: Changes, parameter: str
+) -> Axis:
     values = numbers_of(given, measure, name)
-    return Axis(name, values, str(measure.unit), target_words(name), Changes.MOTION, name)
+    return Axis(name, values, str(measure.unit), words, changes, parameter)
 
 
 def _of_option(name: str, option: str, given: object) -> Axis:
     if option in MEASURED:
         one = MEASURED[option]
-        values = numbers_of(given, one.measure, name)
-        return Axis(name, values, str(one.measure.unit), one.words, Changes.OPTION, option)
+        return _of_numbers(name, given, one.measure, one.words, Changes.OPTION, option)
     kind, words = _CHOICES[option]
     values = words_of(given, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
     return Axis(name, values, None, words, Changes.OPTION, option)

@@ -22,9 +22,8 @@ from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint
 from rockframe.results.schema import SOURCE, dated
-from rockframe.studies.sweeps.axes import Axis, Grid, chunks_of
+from rockframe.studies.sweeps.axes import Axis, Chunk, Grid, chunks_of
 from rockframe.studies.sweeps.chunk import CaseResults
-from rockframe.studies.sweeps.execution import Chunk
 from rockframe.studies.sweeps.identity import difference
 from rockframe.studies.sweeps.labelling import Labels, sweep_labels
 from rockframe.studies.sweeps.study import Histories, Study
@@ -207,7 +206,11 @@ class Store:
 
     def chunks(self) -> list[Chunk]:
         """Give all chunks."""
-        return [Chunk(k, cases) for k, cases in enumerate(chunks_of(self.cases, self.chunk))]
+        return chunks_of(self.cases, self.chunk)
+
+    def chunk_at(self, number: int) -> Chunk:
+        """Give a chunk by its number."""
+        return Chunk.of(number, self.cases, self.chunk)
 
     def has(self, chunk: Chunk) -> bool:
         """Whether a chunk has been run."""

@@ -11,7 +11,7 @@ from rockframe.compiled import COMPILED
 from rockframe.errors import collected_warnings
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
-from rockframe.simulation.plan import STILL_GROUND_OUTPUT_STEP, RunRequest, run_length
+from rockframe.simulation.plan import RunRequest, run_length, usual_output_step
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Grid
 from rockframe.studies.sweeps.identity import description_of, digest_of
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene
@@ -195,8 +195,7 @@ class Study:
 
     def _length(self, motion: GroundMotion | None) -> float:
         """Give the number of intervals of a run."""
-        step = STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
-        return run_length(self.arguments, motion) / step
+        return run_length(self.arguments, motion) / usual_output_step(motion)
 
 
 def worker_count() -> int:

@@ -12,7 +12,7 @@ import xarray as xr
 from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import LEAST_SLIP, Generic, overturned_by
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import with_variables
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
 from rockframe.simulation.run import NONE
@@ -138,10 +138,10 @@ def not_screened(runs: xr.Dataset) -> xr.Dataset:
     lacking = np.isnan(runs["peak_rotation"].to_numpy())
     none = np.where(lacking, np.nan, 0.0) if lacking.any() else np.zeros(lacking.shape)
     dims = tuple(map(str, runs["peak_rotation"].dims))
-    columns = build_dataset(dict.fromkeys(SCREENED, none), {}, over=dims)
     said = str(runs.attrs["verdict"]).removesuffix(".")
     words = "all ran at 'standard', which costs less here than 'screen'"
-    return runs.assign(columns.data_vars).assign_attrs(verdict=f"{said}; {words}.")
+    runs = with_variables(runs, dict.fromkeys(SCREENED, none), over=dims)
+    return runs.assign_attrs(verdict=f"{said}; {words}.")
 
 
 def say_what_is_missing(dataset: xr.Dataset) -> None:

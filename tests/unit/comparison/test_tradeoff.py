@@ -442,16 +442,16 @@ def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
 
     def counted(*given):
         done.append("untimed")
-        return outcome(*given)
+        return respond(*given)
 
     def timed(*_):
         done.append("timed")
         return 1.0
 
-    outcome = module.outcome
+    respond = module.respond
     monkeypatch.setattr(module, "has_machine_code", lambda _: next(there))
     monkeypatch.setattr(module, "runs_as_python", lambda _: False)
-    monkeypatch.setattr(module, "outcome", counted)
+    monkeypatch.setattr(module, "respond", counted)
     monkeypatch.setattr(module, "_timed", timed)
     rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies="standard", repeats=1, duration="1 s")
     assert done == ["untimed", "untimed", "timed"]

@@ -11,7 +11,8 @@ from unit.own_parts import TabulatedPads
 import rockframe as rf
 from rockframe.compiled import COMPILED
 from rockframe.errors import ModelWarning
-from rockframe.studies.sweeps import side_by_side, study
+from rockframe.studies.sweeps import lanes as in_lanes
+from rockframe.studies.sweeps import study
 from rockframe.studies.sweeps.planning import plan_study
 
 pytestmark = [
@@ -261,7 +262,7 @@ def test_what_fails_in_preparing_lanes_is_told_as_an_error(monkeypatch):
 
     monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
-    monkeypatch.setattr(side_by_side, "begun", fails)
+    monkeypatch.setattr(in_lanes, "begun", fails)
     told = r"beside others failed \(ZeroDivisionError: no such lane\).*error in rockframe"
     with pytest.warns(ModelWarning, match=told):
         runs = swept()
@@ -303,7 +304,7 @@ def test_lanes_are_compiled_where_they_save_more_than_that_takes(monkeypatch):
         asked.append(seconds)
         return False
 
-    monkeypatch.setattr(side_by_side, "lanes_compiled", never)
+    monkeypatch.setattr(in_lanes, "lanes_compiled", never)
     scales = np.linspace(0.1, 0.2, 500)
     runs = rf.sweep(system, MOTIONS[3], scale=scales, accuracy="fast", duration="0.1 s")
     assert asked

@@ -9,8 +9,8 @@ import pytest
 import rockframe as rf
 from rockframe.compiled import COMPILED
 from rockframe.studies.sweeps import chunk, runs, study
+from rockframe.studies.sweeps.lanes import FinishedTogether
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.together import FinishedTogether
 
 pytestmark = [
     pytest.mark.skipif(not COMPILED, reason="lanes are compiled"),
