@@ -10,7 +10,7 @@ from rockframe.errors import SolverWarning
 from rockframe.simulation import soundness
 from rockframe.simulation.certify.run_summary import RunSummary
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run import outcome
+from rockframe.simulation.run import respond
 from rockframe.simulation.soundness import (
     BY_TOLERANCE,
     DOUBTFUL,
@@ -35,7 +35,7 @@ def said(accuracy, residual, other=STOOD, base=STOOD, system=SYSTEM):
         outputs=None,
         overturning="stop",
     )
-    summary = replace(outcome(system.assembly, plan), energy_residual=residual)
+    summary = replace(respond(system.assembly, plan).trajectory, energy_residual=residual)
     tried = []
 
     def run(beside):
