@@ -391,6 +391,7 @@ def _beginning(
     vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
     rotation = system.setting.rest_rotation if start.rotation is None else start.rotation
     faults += system.setting.start_faults(rotation, vertical_start)
+    faults += system.setting.faults_of_velocity(rotation, start.angular_velocity)
     theta = system.setting.overturning_angles.on_side_of(rotation)
     if abs(rotation) >= theta:
         faults.append(

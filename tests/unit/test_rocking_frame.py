@@ -64,6 +64,9 @@ def test_what_a_frame_does_not_go_with():
         rf.System(BENT, rf.Tendon(stiffness="1 MN/m"), rotation="small")
     with pytest.raises(AssemblyError, match="RockingFrame and Block are both given"):
         rf.System(BENT, PIER)
+    tendon = rf.Tendon(stiffness="1 MN/m", name="one")
+    with pytest.raises(AssemblyError, match="two links are called 'one'"):
+        rf.System(BENT, tendon, tendon)
     squat = rf.Block(width="1 m", height="0.9 m", mass="1 t")
     with pytest.raises(AssemblyError, match="so squat that the frame cannot rock"):
         rf.System(rf.RockingFrame(squat, columns=2, beam_mass="50 t"))
