@@ -235,9 +235,14 @@ def _counted(look: Look, bar: ProgressBar, first: int) -> Look:
 
 
 def _uplift_scale(system: System, plan: Plan) -> float:
-    """Give the scale up to which a block at rest on rigid ground stays so; NaN otherwise."""
+    """Give the scale up to which a block at rest on rigid ground stays so; NaN otherwise.
+
+    Also of one that may slide before.
+    """
     setting, motion = system.setting, plan.motion
     if not isinstance(setting, RigidGroundSetting) or plan.initial != InitialState():
+        return math.nan
+    if setting.slides:
         return math.nan
     if motion is None or motion.si.vertical is not None:
         return math.nan

@@ -121,7 +121,9 @@ def test_nothing_happens_on_rigid_ground_before_uplift(found):
         RIGID, SHAKING, initial=rf.InitialState(rotation="0.01 rad"), **SPARING
     )
     lifted = rf.critical_scale(RIGID, SHAKING.with_vertical(SHAKING.scaled(0.5)), **SPARING)
-    assert np.isnan([leaning.uplift_scale, lifted.uplift_scale]).all()
+    slippery = rf.System(RIGID.parts.block, rf.RigidGround(friction=0.05))
+    slid = rf.critical_scale(slippery, SHAKING, **SPARING)
+    assert np.isnan([leaning.uplift_scale, lifted.uplift_scale, slid.uplift_scale]).all()
     never = rf.critical_scale(RIGID, SHAKING, largest=0.5 * told.uplift_scale.item(), **SPARING)
     assert never.scale.size == 1
 
