@@ -9,7 +9,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
-from rockframe.errors import AssemblyError, ComponentError
+from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 from rockframe.plot._artists import Drawer
 from rockframe.plot._scene import Moving
 from rockframe.reports.limits import limits_of
@@ -48,6 +48,21 @@ def test_a_frame_gives_back_what_it_was_made_of():
 def test_what_makes_no_frame_is_refused(column, given, words):
     with pytest.raises(ComponentError, match=words):
         rf.RockingFrame(column, **({"columns": 3, "beam_mass": "200 t"} | given))
+
+
+@pytest.mark.parametrize(
+    ("parts", "ends"),
+    [
+        ((BENT,), "which this model cannot show$"),
+        ((PIER, rf.RearWall()), "; give the wall a stiffness to follow its flight$"),
+        ((PIER,), "; put it on a TwoSpringSupport to follow its flight$"),
+    ],
+    ids=["frame", "wall", "pier"],
+)
+def test_what_would_fly_is_told_what_can_be_done(parts, ends):
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    with pytest.warns(ModelWarning, match=ends):
+        rf.System(*parts).simulate(pulse.with_vertical(pulse.scaled(11.0)), outputs=None)
 
 
 def test_what_a_frame_does_not_go_with():
