@@ -235,14 +235,9 @@ def _counted(look: Look, bar: ProgressBar, first: int) -> Look:
 
 
 def _uplift_scale(system: System, plan: Plan) -> float:
-    """Give the scale up to which a block at rest on rigid ground stays so; NaN otherwise.
-
-    Also of one that may slide before.
-    """
+    """Give the scale up to which a block at rest on rigid ground stays so; NaN otherwise."""
     setting, motion = system.setting, plan.motion
     if not isinstance(setting, RigidGroundSetting) or plan.initial != InitialState():
-        return math.nan
-    if setting.slides:
         return math.nan
     if motion is None or motion.si.vertical is not None:
         return math.nan
@@ -251,7 +246,7 @@ def _uplift_scale(system: System, plan: Plan) -> float:
     values = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
     # ground that is accelerated to the right tips the block to the left
     peaks = float(values.max()), -float(values.min())
-    scales = zip(setting.uplift_accelerations, peaks, strict=True)
+    scales = zip(setting.moving_accelerations, peaks, strict=True)
     return min((uplift / peak for uplift, peak in scales if peak > 0.0), default=math.inf)
 
 
