@@ -239,6 +239,12 @@ def _beyond_bodies(parts: Parts) -> list[str]:
                     f"{name}: a Tendon goes through its body, whose base ends "
                     f"{body.half_width:.6g} m beside its middle; at is {link.si.at:.6g} m"
                 )
+            below = bodies[link.si.on_body :]
+            if below and link.si.depth > below[0].height * (1.0 + _ROUNDING):
+                faults.append(
+                    f"{name}: a Tendon through body {link.si.on_body} is held in the body below, "
+                    f"which is {below[0].height:.6g} m high; depth is {link.si.depth:.6g} m"
+                )
         elif link.si.height is not None and link.si.height > body.height * (1.0 + _ROUNDING):
             faults.append(
                 f"RearWall: height is {link.si.height:.6g} m, above the top of body "

@@ -80,6 +80,10 @@ def test_what_makes_no_tie_is_refused(changes, words):
             "its points meet, so that its preload has no direction",
         ),
         ((BLOCK, rf.Tendon(stiffness="1 MN/m", at="3 m")), "whose base ends 0.5 m beside"),
+        (
+            (rf.Stack(BLOCK, BLOCK, interfaces=[PADS]), rf.Tendon(stiffness="1 MN/m", depth="5 m")),
+            "held in the body below, which is 4 m high; depth is 5 m",
+        ),
         ((BLOCK, TIE.replace(to=("-1e200 m", "3 m"))), "larger than a computer's numbers"),
     ],
 )
