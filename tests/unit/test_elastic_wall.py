@@ -156,6 +156,13 @@ def test_a_wall_that_misses_its_body_is_refused(given, words):
         rf.System(BLOCK, rf.RearWall(**given))
 
 
+def test_what_touches_the_top_of_a_body_stands_its_nudges():
+    wall = rf.RearWall(stiffness="1 MN/m", height="4 m")
+    tendon = rf.Tendon(stiffness="1 MN/m", at="0.5 m")
+    for size in BLOCK.parameters():
+        rf.System(BLOCK.with_scaled(size, 0.999), wall, tendon)
+
+
 def test_an_elastic_wall_names_no_law_of_impact():
     wall = rf.RearWall(stiffness="2 MN/m", gap="5 mm")
     assert "restitution" not in repr(wall)
