@@ -55,7 +55,7 @@ def asce_7_22(
     strength_factor : float, optional
         R_po, of the component's table [1].
     friction : float, optional
-        Coefficient of friction under the component [1].
+        Coefficient of friction under the component; that of its ground unless given [1].
     free_vibration : str or Quantity, optional
         Still floor after each motion [s].
 
@@ -80,7 +80,7 @@ def asce_7_22(
     False
     """
     system = System(block) if isinstance(block, Block) else block
-    setting = rocking_block(system, _OWNER)
+    setting = rocking_block(system, _OWNER, slides=True)
     numbers = {
         "S_DS": ("spectral_acceleration", spectral_acceleration),
         "I_p": ("importance", importance),
@@ -128,8 +128,10 @@ def asce_7_22(
         CheckedVerdict("tipping", tipping <= resisting,
                        f"M_OT {tipping:.4g} N m, M_R {resisting:.4g} N m", "chapter 13")
     ]  # fmt: skip
+    there = None if system.parts.ground is None else system.parts.ground.friction
     if friction is not None:
         there = to_ratio(friction, owner=_OWNER, name="friction", condition=POSITIVE, example="0.4")
+    if there is not None:
         verdicts.append(
             CheckedVerdict("sliding", needed <= there,
                            f"needed {needed:.4g}, there is {there:.4g}", "equilibrium")

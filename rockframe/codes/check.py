@@ -13,11 +13,11 @@ from rockframe.units import QuantityLike
 
 
 def rocking_block(
-    system: object, owner: str, *, carries: bool = False
+    system: object, owner: str, *, carries: bool = False, slides: bool = False
 ) -> RigidGroundSetting | TiedSetting:
     """Give the setting of a block that rocks on rigid ground; refuse all else.
 
-    It may carry masses, as loads, if told.
+    It may carry masses, as loads, or slide, if told.
     """
     if not isinstance(system, System):
         msg = f"{owner}: system needs a System, got {shown(system)}"
@@ -25,7 +25,7 @@ def rocking_block(
     setting = system.setting
     level = system.options.slope.level
     if system.parts.block is not None and level:
-        if isinstance(setting, RigidGroundSetting):
+        if isinstance(setting, RigidGroundSetting) and (slides or not setting.slides):
             return setting
         if (
             carries
@@ -37,9 +37,10 @@ def rocking_block(
     carried = ", which may carry loads that are masses," if carries else ","
     found = ", ".join(type(part).__name__ for part in system.parts.structural())
     slope = "" if level else " on a slope"
+    held = ", or with sliding='checked', which holds it" if setting.slides else ""
     msg = (
         f"{owner}: the check is of a block on level rigid ground{carried} got {found}{slope}, "
-        f"{setting.model}; check the block alone, rf.System(block)"
+        f"{setting.model}; check the block alone, rf.System(block){held}"
     )
     raise ComponentError(msg)
 

@@ -355,6 +355,7 @@ COMMANDS: Final = (
             word(
                 "--case",
                 nargs="+",
+                action="extend",
                 metavar="NAME=VALUE",
                 help="of a study: which case, by its place along every axis of several values",
             ),

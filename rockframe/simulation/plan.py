@@ -172,7 +172,20 @@ def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) ->
         faults.append("initial is the end of a run of another system")
     elif passed and not _came_back(dataset, system, ending):
         faults.append("initial is the end of a run that overturned")
-    return ending
+    return ending if faults else _with_new_peaks(ending, system)
+
+
+def _with_new_peaks(ending: Ending, system: Assembly) -> Ending:
+    """Let the greatest slips begin anew, as all other peaks do; what has slipped so far stays."""
+    if not system.setting.slides:
+        return ending
+    memory = ending.memory.copy()
+    peaks = [k for k, name in enumerate(system.model.memory) if name.startswith("peak_slip_")]
+    memory[peaks] = 0.0
+    begun = replace(ending, memory=memory)
+    slips = system.setting.slips_of(begun)
+    memory[peaks] = [side for one in slips for side in (one.left, one.right)]
+    return begun
 
 
 def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
@@ -399,6 +412,7 @@ def _beginning(
     vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
     rotation = system.setting.rest_rotation if start.rotation is None else start.rotation
     faults += system.setting.start_faults(rotation, vertical_start)
+    faults += system.setting.faults_of_velocity(rotation, start.angular_velocity)
     theta = system.setting.overturning_angles.on_side_of(rotation)
     if abs(rotation) >= theta:
         faults.append(

@@ -51,10 +51,7 @@ from rockframe.system.assembly import Assembly
 
 ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
 FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
-_LEAVES: Final = (
-    "the block would leave the rigid ground, which this model cannot show; put it on a "
-    "TwoSpringSupport to follow its flight"
-)
+_LEAVES: Final = "the block would leave the rigid ground, which this model cannot show"
 NONE: Final = "none"
 """What is said where there is nothing to be cautious of."""
 _SAMPLES: Final = "histories, and the peaks of forces and at points,"
@@ -313,7 +310,7 @@ def _leaving(
         if lowest < -slope.normal_gravity:
             which = "vertical" if slope.level else "normal"
             found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
-            yield f"{found}: {_LEAVES}"
+            yield f"{found}: {_LEAVES}{system.setting.to_fly}"
     if "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # how a block falls is another matter
@@ -325,4 +322,4 @@ def _leaving(
             f"the ground would have to pull at the bearing corner, with {-lowest:.4g} N at "
             f"{when:.4g} s"
         )
-        yield f"{found}: {_LEAVES}"
+        yield f"{found}: {_LEAVES}{system.setting.to_fly}"

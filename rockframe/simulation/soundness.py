@@ -102,7 +102,7 @@ AT_REST: Final = 0.2
 less than the energy to overturn: held at that angle a third of it, 1 - (1 - 0.2)^2."""
 
 STILL_MOVING: Final = (
-    "the run ends while the body, which stands, still has the energy to overturn: add "
+    "the run ends while the body, which counts as standing, still has the energy to overturn: add "
     "free_vibration='10 s', still ground after the motion, to see whether it comes to rest"
 )
 
@@ -111,7 +111,8 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     """Tell whether a body that stood has as much energy as overturning takes.
 
     What shakes it is over: its energy is that of its motion and what it takes to hold it at its
-    rotation, :eq:`eq-overturning-energy`.
+    rotation, :eq:`eq-overturning-energy`. Beyond the overturning angle it takes none, unless links
+    hold the body there.
     """
     if summary.overturned is not False:
         return False
@@ -119,8 +120,12 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     rotation, size = model.rotation_in(ending.state), model.system.coordinates()
     rates, sizes = ending.state[size : 2 * size], model.scales[size : 2 * size]
     upright = abs(rotation) < AT_REST * setting.overturning_angle
-    if upright and bool(np.all(np.abs(rates) < AT_REST * sizes)):
+    beyond = abs(rotation) >= setting.overturning_angles.on_side_of(rotation)
+    held = upright or (beyond and bool(setting.link_names))
+    if held and bool(np.all(np.abs(rates) < AT_REST * sizes)):
         return False
+    if beyond:
+        return True
     kinetic = _kinetic_energy(system, ending)
     needed = setting.overturning_energy
     return 0.0 < needed <= kinetic + stored_energy(setting, rotation)

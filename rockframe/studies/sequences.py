@@ -77,8 +77,8 @@ def earthquake_sequences(
     -----
     The motions are joined, with their polynomials, and zeros between them; each row of the
     result is a run from the start of its sequence, so that nothing is lost in between. On rigid
-    ground, on pads and on soil a block that has come to rest remembers nothing; a base of
-    one's own may.
+    ground, on pads and on soil a block that has come to rest remembers nothing but how far it has
+    slid, and which ties have yielded or broken; a base of one's own may.
 
     Examples
     --------
@@ -127,6 +127,12 @@ def _sequences(given: object) -> dict[str, list[GroundMotion]]:
         named = by_words(cast("Mapping[Any, Any]", given), owner=_OWNER)
     elif isinstance(given, Iterable) and not isinstance(given, str):
         listed = list(cast("Iterable[Any]", given))
+        if len(listed) > 1 and all(isinstance(one, GroundMotion) for one in listed):
+            msg = (
+                f"{_OWNER}: found {len(listed)} motions in a row; expected a row of sequences: put "
+                "brackets around the motions that follow one another, [[main, aftershock]]"
+            )
+            raise ComponentError(msg)
         named = {f"sequence {number}": each for number, each in enumerate(listed, start=1)}
     else:
         named = {}

@@ -4,10 +4,19 @@ import math
 from inspect import getattr_static
 from typing import Final, NamedTuple
 
-from rockframe.components import Component, RearWall, RigidGround, Stack, Tendon
-from rockframe.components.block_numbers import squat
+from rockframe.components import (
+    Component,
+    Load,
+    PointLink,
+    RearWall,
+    RigidGround,
+    Stack,
+    Tendon,
+)
+from rockframe.components.block_numbers import BlockSI, squat
 from rockframe.components.ground import Impact
 from rockframe.many import isfinite
+from rockframe.system.links import link_labels
 from rockframe.system.options import Coupling, Options, Restraint, Sliding
 from rockframe.system.own_base import OwnBase
 from rockframe.system.parts import Parts, slot_of_kind
@@ -21,6 +30,8 @@ _ROUNDING = 1e-12
 BASES = ("pads", "soil", "ground")
 """Slots of bases that bodies of a stack may stand on."""
 _ROUNDING_OF_DEPTHS = 1e-9
+_AT_THE_EDGE: Final = 1.01
+"""Share of a size up to which a point is at its end: certificates change sizes a little."""
 
 
 def misfits(parts: Parts) -> list[str]:
@@ -66,7 +77,9 @@ def _misfits_of_stiff_wall(wall: RearWall, parts: Parts) -> list[str]:
     behind = (parts.pads, parts.soil, parts.cap, parts.stack, parts.frame, *parts.links)
     others = [type(part).__name__ for part in behind if part is not None]
     if not others:
-        return []
+        if wall.si.on_body == 1:
+            return []
+        return [f"RearWall: there is no body {wall.si.on_body}; the wall stands behind one Block"]
     fault = (
         f"a RearWall and {' and '.join(others)} are both given; a wall stands behind a Block on "
         "rigid ground"
@@ -169,13 +182,77 @@ def contradictions(parts: Parts) -> list[str]:
         depth = getattr(part, "depth", None) if known else None
         if depth is not None:
             depths[type(part).__name__] = float(depth.m_as("m"))
+    beside = _beside_bodies(parts)
     if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_ROUNDING_OF_DEPTHS):
-        return []
+        return beside
     (upper, above), (lower, below) = depths.items()
     return [
+        *beside,
         f"the {lower} was built for a base of a depth of {below:.6g} m, but the {upper} on it is "
-        f"{above:.6g} m deep: its stiffness is the subgrade modulus times that depth"
+        f"{above:.6g} m deep: its stiffness is the subgrade modulus times that depth",
     ]
+
+
+def _bodies_of(parts: Parts) -> tuple[BlockSI, ...]:
+    """Give the bodies that links may be on, from the top down; none of a frame."""
+    if parts.stack is not None:
+        return parts.stack.si.bodies
+    return () if parts.block is None else (parts.block.si,)
+
+
+def _beside_bodies(parts: Parts) -> list[str]:
+    """Tell of links at points that are above or below their bodies, or far beside them.
+
+    What reaches beyond a base, such as a bracket or the arm of a statue, is less wide than high.
+    """
+    told = list[str]()
+    bodies = _bodies_of(parts)
+    for name, link in zip(link_labels(parts.links), parts.links, strict=True):
+        points = list[tuple[int | None, tuple[float, float]]]()
+        if isinstance(link, PointLink):
+            points = [(link.si.on_body, link.si.on), (link.si.to_body, link.si.to)]
+        elif isinstance(link, Load):
+            points = [(link.si.on_body, link.si.at)]
+        for number, (x, y) in points:
+            if number is None or number > len(bodies):
+                continue
+            body = bodies[number - 1]
+            reach, most = body.half_width + body.height, body.height * (1.0 + _ROUNDING)
+            if abs(x) > reach or not body.height - most <= y <= most:
+                told.append(
+                    f"{name}: its point ({x:.6g}, {y:.6g}) m is outside of body {number}, "
+                    f"{body.width:.6g} m wide at its base and {body.height:.6g} m high; points "
+                    "count from the middle of the base of their body"
+                )
+    return told
+
+
+def _beyond_bodies(parts: Parts) -> list[str]:
+    """Give the faults of tendons and walls that miss their bodies."""
+    faults = list[str]()
+    bodies = _bodies_of(parts)
+    for name, link in zip(link_labels(parts.links), parts.links, strict=True):
+        if not isinstance(link, Tendon | RearWall) or link.si.on_body > len(bodies):
+            continue
+        body = bodies[link.si.on_body - 1]
+        if isinstance(link, Tendon):
+            if abs(link.si.at) > body.half_width * _AT_THE_EDGE:
+                faults.append(
+                    f"{name}: a Tendon goes through its body, whose base ends "
+                    f"{body.half_width:.6g} m beside its middle; at is {link.si.at:.6g} m"
+                )
+            below = bodies[link.si.on_body :]
+            if below and link.si.depth > below[0].height * _AT_THE_EDGE:
+                faults.append(
+                    f"{name}: a Tendon through body {link.si.on_body} is held in the body below, "
+                    f"which is {below[0].height:.6g} m high; depth is {link.si.depth:.6g} m"
+                )
+        elif link.si.height is not None and link.si.height > body.height * _AT_THE_EDGE:
+            faults.append(
+                f"RearWall: height is {link.si.height:.6g} m, above the top of body "
+                f"{link.si.on_body} at {body.height:.6g} m"
+            )
+    return faults
 
 
 def unused(parts: Parts, options: Options) -> list[str]:
@@ -241,6 +318,7 @@ def missizes(parts: Parts, options: Options) -> list[str]:
     # impacts of bodies that slide, and of those in a stack, let a squat one land flat
     if block is not None and not parts.own and held:
         faults += squat(block.si, type(block).__name__)
+    faults += _beyond_bodies(parts)
     if block is not None and cap is not None:
         body = parts.the_cap
         width = 2.0 * body.half_width

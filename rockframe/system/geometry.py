@@ -131,12 +131,17 @@ def geometry_of(scene: Assembly) -> Geometry:
     )
 
 
-def _of_wall(wall: RearWall | None, block: BlockSI) -> Array | None:
-    """Give what is drawn of a wall: it is as high as the block, and as thick as its base."""
+def _of_wall(
+    wall: RearWall | None, body: BlockSI, place: tuple[float, float] = (0.0, 0.0)
+) -> Array | None:
+    """Give what is drawn of a wall: it is as high as its body, and as thick as the base of that.
+
+    `place` is the middle of that base, from the middle of the lowest one.
+    """
     if wall is None:
         return None
-    beside = wall.direction * (2.0 * block.half_width + (wall.given.gap or 0.0))
-    return rectangle(block.half_width, block.height, beside)
+    beside = wall.direction * (2.0 * body.half_width + (wall.given.gap or 0.0))
+    return rectangle(body.half_width, body.height, place[0] + beside, place[1])
 
 
 def _of_frame(frame: RockingFrame | None) -> dict[str, Any]:
@@ -176,6 +181,9 @@ def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
         level += body.height
     block = bodies[0]
     beside += offsets[0]
+    wall = scene.parts.wall
+    k = 0 if wall is None else wall.si.on_body - 1
+    place = sum(offsets[k:]), sum(one.height for one in bodies[k + 1 :])
     return Geometry(
         outline=rectangle(block.half_width, block.height),
         members=(),
@@ -190,6 +198,7 @@ def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
         small_rotation=scene.options.small,
         lower=tuple(lower),
         ties=_ties_of(scene.setting),
+        wall=_of_wall(wall, bodies[k], place),
     )
 
 

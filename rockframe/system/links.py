@@ -205,8 +205,7 @@ def placed(
     offsets: Sequence[float],
 ) -> tuple[PlacedLink, ...]:
     """Give links between points of bodies upon one another, from the top down."""
-    names = link_labels(parts)
-    faults = [f"two links are called {name!r}" for name in names if names.count(name) > 1]
+    names, faults = link_labels(parts), called_alike(parts)
     found = list[PlacedLink]()
     for part, name in zip(parts, names, strict=True):
         on, to = part.si.on_body - 1, _other_body(part, len(bodies))
@@ -233,6 +232,9 @@ def placed(
             (x - base[0] - bodies[k].eccentricity, y - base[1] - bodies[k].centre_height)
             for k, (x, y), base in zip((on, to), ends, bases, strict=True)
         ]  # fmt: skip
+        far = max(abs(place) for end in ends for place in end)
+        if not math.isfinite(far * far * max(getattr(part.si, "stiffness", None) or 1.0, 1.0)):
+            faults.append(f"{name}: its moments are larger than a computer's numbers can be")
         one = PlacedLink(part, name, on, points[0], to, points[1], ends)
         if one.length == 0.0 and isinstance(part, Restrainer) and part.si.preload:
             faults.append(f"{name}: its points meet, so that its preload has no direction")
@@ -278,6 +280,14 @@ def link_labels(parts: Sequence[Link]) -> list[str]:
         part.si.name or f"{'load' if isinstance(part, Load) else 'restrainer'} {i}"
         for i, part in enumerate(parts, 1)
     ]
+
+
+def called_alike(parts: Sequence[Link]) -> list[str]:
+    """Tell which names several links have, each once."""
+    names = link_labels(parts)
+    return list(dict.fromkeys(
+        f"two links are called {name!r}" for name in names if names.count(name) > 1
+    ))  # fmt: skip
 
 
 def base_of(

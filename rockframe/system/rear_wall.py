@@ -26,6 +26,7 @@ from rockframe.system.words import Words
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
 
+_INTO_WALL: Final = "is into the RearWall"
 IMPACT_TIME: Final = 1e-3
 """Of an elastic wall in place of a stiff one [s]."""
 
@@ -38,6 +39,7 @@ class RearWallSetting(RigidGroundSetting):
     rebound: float  # ratio of the angular velocities after and before an impact [1]
     height: float  # of the block [m]
     struck_by_base = False
+    to_fly = "; give the wall a stiffness to follow its flight"
 
     @property
     def model(self) -> str:
@@ -70,9 +72,15 @@ class RearWallSetting(RigidGroundSetting):
         """Refuse a start in the wall, too."""
         found = super().start_faults(rotation, has_vertical_start)
         if rotation * self.direction < 0.0:
-            side = str(self.wall.given.side)
-            found.append(f"InitialState: a rotation to the {side} is into the RearWall")
+            found.append(f"InitialState: a rotation to the {self.wall.given.side} {_INTO_WALL}")
         return found
+
+    def faults_of_velocity(self, rotation: float, angular_velocity: float) -> list[str]:
+        """Refuse the velocity of a body that leans on the wall, if it is into that."""
+        if rotation == 0.0 and angular_velocity * self.direction < 0.0:
+            side = self.wall.given.side
+            return [f"InitialState: an angular velocity to the {side} at no rotation {_INTO_WALL}"]
+        return []
 
     def contact_model(self) -> "ContactModel":
         """Give Housner's equations of the side that is open."""

@@ -23,6 +23,7 @@ class RigidGroundSetting(Setting):
 
     restitution: Restitutions  # eps of its corners [1]
     flies = False
+    to_fly: ClassVar[str] = "; put it on a TwoSpringSupport to follow its flight"
     steps_cost_most = False
     source: ClassVar[str] = "Housner; Eq. (6) for omega"
     """Of the equation of motion."""
@@ -48,13 +49,21 @@ class RigidGroundSetting(Setting):
 
         Ground that is accelerated to the right tips the block to the left.
         """
+        return self._reached_at(*self.tangents)
+
+    @property
+    def moving_accelerations(self) -> tuple[float, float]:
+        """Ground accelerations, as those of uplift, at which a block at rest moves [m s^-2]."""
+        return self.uplift_accelerations
+
+    def _reached_at(self, left: float, right: float) -> tuple[float, float]:
+        """Give the ground accelerations whose force, with the weight, has slopes to the base."""
         if self.slope.level:
-            left, right = self.tangents
             return self.gravity * left, self.gravity * right
         i = self.slope.inclination
-        slants = (atan(self.tangents[0]) - i, atan(self.tangents[1]) + i)
         left, right = (
-            self.gravity * tan(slant) if slant < 0.5 * math.pi else math.inf for slant in slants
+            self.gravity * tan(slant) if slant < 0.5 * math.pi else math.inf
+            for slant in (atan(left) - i, atan(right) + i)
         )
         return left, right
 

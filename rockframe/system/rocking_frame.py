@@ -12,7 +12,7 @@ from rockframe.components.rocking_frame import RockingFrameSI
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
 from rockframe.system.bodies import BaseLoad, Restitutions, SupportedBody, resolve_restitution
-from rockframe.system.links import link_labels, tie_of, tie_words
+from rockframe.system.links import called_alike, link_labels, tie_of, tie_words
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
@@ -86,6 +86,7 @@ class RockingFrameSetting(RigidGroundSetting):
     frame: RockingFrameSI
     source: ClassVar[str] = "Makris and Vassiliou 2013; omega of columns and beam together"
     greatest: ClassVar[str] = "the greatest value, of columns and beam together"
+    to_fly = ""
 
     @property
     def model(self) -> str:
@@ -249,5 +250,7 @@ def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting
     if not parts.links:
         return setting
     refuse_options("a RockingFrame with tendons", options, small=False)
+    if faults := called_alike(parts.links):
+        raise AssemblyError(faults)
     tendons = tuple(one for one in parts.links if isinstance(one, Tendon))
     return TiedFrameSetting(load, restitution, frame, tendons)

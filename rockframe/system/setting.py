@@ -62,6 +62,8 @@ class Setting(ABC):
     """Whether the body stands on pads on a cap on soil."""
     flies: ClassVar[bool] = True
     """Whether the equations follow a body that leaves its base."""
+    to_fly: ClassVar[str] = ""
+    """What to do where they do not, if anything can be done, at the end of a sentence."""
     slides: ClassVar[bool] = False
     """Whether in the equations a body slides on its base, so that its friction is that of these."""
 
@@ -167,6 +169,10 @@ class Setting(ABC):
         if not self.supports:
             return [NO_VERTICAL_START] if has_vertical_start else []
         return self.supports[0].start_faults(rotation, has_vertical_start)
+
+    def faults_of_velocity(self, rotation: float, angular_velocity: float) -> list[str]:
+        """Give the faults of an angular velocity at which a run starts; none unless overridden."""
+        return []
 
     def cautions(self) -> list[str]:
         """Give warnings about values near or beyond the model's validity."""

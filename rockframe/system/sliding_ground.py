@@ -39,6 +39,13 @@ class SlidingSetting(RigidGroundSetting):
         """Whether the block is so squat that it does not roll over."""
         return min(self.restitution) <= 0.0
 
+    @property
+    def moving_accelerations(self) -> tuple[float, float]:
+        """Ground accelerations at which it rocks or slides; zero of one that its weight moves."""
+        left, right = (min(self.friction.static, one) for one in self.tangents)
+        left, right = self._reached_at(left, right)
+        return max(left, 0.0), max(right, 0.0)
+
     def contact_model(self) -> "ContactModel":
         """Give the equations of slip, rotation and rise."""
         from rockframe.dynamics.slide_rock_model import slide_rock

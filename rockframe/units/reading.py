@@ -266,7 +266,8 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
         return [to_si(one, measure, owner=owner, name=name) for one in _each(given)]
     if isinstance(value, Iterable):
         items: list[Any] = list(value)
-        if len(items) == 2 and isinstance(items[1], str) and not isinstance(items[0], str):
+        alone = isinstance(items[0], str | pint.Quantity | None) if items else True
+        if len(items) == 2 and isinstance(items[1], str) and not alone:
             factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
             numbers = items[0] if isinstance(items[0], Iterable) else [items[0]]
             several = _floats_times(numbers, factor)

@@ -103,6 +103,9 @@ def test_what_a_wall_does_not_go_with():
     system = rf.System(FACADE, rf.RearWall(side="right"))
     with pytest.raises(AssemblyError, match="into the RearWall"):
         system.simulate(duration="1 s", initial=rf.InitialState(rotation="0.01 rad"))
+    inwards = rf.InitialState(angular_velocity="1 rad/s")
+    with pytest.raises(AssemblyError, match="at no rotation is into the RearWall"):
+        system.simulate(duration="1 s", initial=inwards)
     with pytest.raises(AssemblyError, match="into the RearWall"):
         system.moment_rotation(["0.01 rad"])
 

@@ -156,3 +156,22 @@ def test_units_do_not_matter():
         )
     run = other.simulate(MOTION, accuracy="reference")
     assert run.rotation.values == pytest.approx(whole_of("pads").rotation.values, abs=1e-9)
+
+
+@pytest.mark.parametrize("base", ["ground", "pads", "stack"])
+def test_the_greatest_slip_is_that_of_the_run_that_goes_on(base):
+    block = rf.Block(width="1 m", height="2 m", mass="4 t")
+    statue, pads = rf.Block(width="0.5 m", height="1 m", mass="1 t"), PADS.replace(friction=0.25)
+    parts = {
+        "ground": (block, rf.RigidGround(friction=0.25)),
+        "pads": (block, pads),
+        "stack": (rf.Stack(statue, block.replace(height="0.6 m"), interfaces=[PADS]), pads),
+    }[base]
+    system = rf.System(*parts)
+    pulse = rf.GroundMotion.sine_pulse("-6 m/s^2", "1 Hz")
+    first = system.simulate(pulse, free_vibration="1 s")
+    second = system.simulate(pulse.scaled(0.5), initial=first, free_vibration="1 s")
+    slips = first.get("body_slip", first.slip), second.get("body_slip", second.slip)
+    peak = float(second.get("peak_body_slip", second.peak_slip).max())
+    assert float(abs(slips[0]).max()) > 1.2 * peak
+    assert peak == pytest.approx(float(abs(slips[1]).max()), rel=1e-3)

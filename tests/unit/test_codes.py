@@ -155,6 +155,17 @@ def test_a_component_on_its_floor():
     assert rf.codes.asce_7_22(squat, spectral_acceleration=0.5).passed == {"tipping": True}
 
 
+def test_the_friction_of_a_ground_is_used_and_a_block_that_slides_is_no_mechanism():
+    tiles = rf.System(CABINET, rf.RigidGround(friction=0.3))
+    check = rf.codes.asce_7_22(tiles, spectral_acceleration=1.2)
+    assert check.passed == {"tipping": False, "sliding": False}
+    assert "there is 0.3" in str(check)
+    with pytest.raises(ComponentError, match="or with sliding='checked', which holds it"):
+        rf.codes.circolare_2019(tiles, spectrum())
+    held = rf.System(CABINET, rf.RigidGround(friction=0.3), sliding="checked")
+    assert rf.codes.circolare_2019(held, spectrum()).value("alpha_0") == pytest.approx(1 / 3)
+
+
 def test_texts_and_pages(tmp_path):
     check = rf.codes.circolare_2019(LOW, PULSES)
     text = str(check)

@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, ComponentError
+from rockframe.system.geometry import geometry_of
 from rockframe.system.rear_wall import yielding_wall
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
@@ -132,6 +133,34 @@ def test_an_elastic_wall_tells_itself_and_goes_to_plain_values_and_back():
     assert "presses only" in system.describe()
     assert rf.System.from_dict(system.to_dict()) == system
     rf.plot.scene(system)
+
+
+def test_a_wall_behind_a_body_of_a_stack_is_drawn_beside_it():
+    plinth = rf.Block(width="2 m", height="1 m", mass="9 t")
+    stack = rf.Stack(BLOCK, plinth, interfaces=[rf.RigidGround()], offsets=["10 cm"])
+    wall = rf.RearWall(side="right", stiffness="1 MN/m", gap="5 cm")
+    for number, lowest in ((1, (0.65, 1.0)), (2, (1.05, 0.0))):
+        scene = rf.System(stack, wall.replace(on_body=number))
+        assert geometry_of(scene.assembly).wall.min(axis=0) == pytest.approx(lowest)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"stiffness": "1 MN/m", "height": "40 m"}, "above the top of body 1 at 4 m"),
+        ({"on_body": 2}, "there is no body 2"),
+    ],
+)
+def test_a_wall_that_misses_its_body_is_refused(given, words):
+    with pytest.raises(AssemblyError, match=words):
+        rf.System(BLOCK, rf.RearWall(**given))
+
+
+def test_what_touches_the_top_of_a_body_stands_its_nudges():
+    wall = rf.RearWall(stiffness="1 MN/m", height="4 m")
+    tendon = rf.Tendon(stiffness="1 MN/m", at="0.5 m")
+    for size in BLOCK.parameters():
+        rf.System(BLOCK.with_scaled(size, 0.999), wall, tendon)
 
 
 def test_an_elastic_wall_names_no_law_of_impact():

@@ -3,6 +3,7 @@
 import math
 from contextlib import nullcontext
 
+import numpy as np
 import pytest
 
 import rockframe as rf
@@ -51,6 +52,30 @@ def test_a_run_that_ends_in_mid_swing_warns():
     long = system.simulate(PULSE, free_vibration="3 s")
     assert long.overturned
     assert long.attrs["cautions"] == "none"
+
+
+def test_a_run_that_goes_on_and_ends_in_mid_fall_warns():
+    system, strong = rf.System(BLOCK), PULSE.scaled(3.0)
+    with pytest.warns(SolverWarning, match=STILL_MOVING):
+        short = system.simulate(strong, overturning="continue")
+    assert short.attrs["verdict"].startswith("Passed the overturning angle")
+    assert "is beyond it at the end" in short.attrs["verdict"]
+    with pytest.warns(ModelWarning, match=STILL_MOVING):
+        runs = rf.sweep(system, strong, scale=np.linspace(0.9, 1.1, 20), overturning="continue")
+    assert "side by side" in runs.attrs["driver"]
+    long = system.simulate(strong, free_vibration="3 s", overturning="continue")
+    assert "fell flat" in long.attrs["verdict"]
+    assert long.attrs["cautions"] == "none"
+
+
+def test_a_body_that_hangs_on_its_tie_beyond_the_angle_is_at_rest():
+    tie = rf.Restrainer(on=("0.25 m", "2 m"), to=("2 m", "2 m"), stiffness="500 kN/m",
+                        slack="70 cm", strength="3 kN", brittle=False)  # fmt: skip
+    system = rf.System(BLOCK, tie)
+    start = rf.InitialState(rotation="-0.24 rad", angular_velocity="-0.3 rad/s")
+    run = system.simulate(duration="4 s", initial=start, overturning="continue")
+    assert "is beyond it at the end" in run.attrs["verdict"]
+    assert run.attrs["cautions"] == "none"
 
 
 @pytest.mark.parametrize("parts", [[], [PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)

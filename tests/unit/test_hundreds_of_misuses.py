@@ -420,6 +420,7 @@ VALUES = {
     "rf.rocking_spectrum(SYSTEM, RECORD, periods=['-2 s'])": "periods must be above zero",
     "sample(spread={'width': 0.1})": "width needs ('normal', mean, standard deviation)",
     "sample(correlation='x')": "correlation must be a symmetric matrix",
+    "rf.earthquake_sequences(SYSTEM, [RECORD, PULSE])": "found 2 motions in a row; expected a row",
     "rf.earthquake_sequences(SYSTEM, {'a': 3})": "'a' must be several GroundMotions in a list",
     "rf.earthquake_sequences(SYSTEM, {'a': [RECORD]}, pause=20)": "pause needs a time",
     "rf.cloud_analysis(runs, 'XYZ')": "intensity must be one of",

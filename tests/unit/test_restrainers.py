@@ -10,7 +10,7 @@ from plainly import plainly
 
 import rockframe as rf
 from rockframe.dynamics.events import EventKind, LinkState
-from rockframe.errors import AssemblyError, ComponentError
+from rockframe.errors import AssemblyError, ComponentError, ModelWarning, StudyError
 
 BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -79,11 +79,27 @@ def test_what_makes_no_tie_is_refused(changes, words):
             (BLOCK, PADS, PRELOADED.replace(to=("0.5 m", "3 m"))),
             "its points meet, so that its preload has no direction",
         ),
+        ((BLOCK, rf.Tendon(stiffness="1 MN/m", at="3 m")), "whose base ends 0.5 m beside"),
+        (
+            (rf.Stack(BLOCK, BLOCK, interfaces=[PADS]), rf.Tendon(stiffness="1 MN/m", depth="5 m")),
+            "held in the body below, which is 4 m high; depth is 5 m",
+        ),
+        ((BLOCK, TIE.replace(to=("-1e200 m", "3 m"))), "larger than a computer's numbers"),
     ],
 )
 def test_what_makes_no_scene_is_refused(parts, words):
     with pytest.raises(AssemblyError, match=words):
         rf.System(*parts)
+
+
+@pytest.mark.parametrize(
+    "link",
+    [TIE.replace(on=("-0.5 m", "4.1 m")), TIE.replace(on=("-5 m", "3 m")),
+     rf.Load(at=("0 m", "-0.1 m"), moving_mass="1 t")],
+)  # fmt: skip
+def test_a_point_outside_of_its_body_is_told(link):
+    with pytest.warns(ModelWarning, match="outside of body 1, 1 m wide at its base and 4 m high"):
+        rf.System(BLOCK, link)
 
 
 def test_a_run_shows_each_restrainer(tmp_path):
@@ -281,6 +297,24 @@ def test_sweeps_name_the_parameters_of_ties():
     )  # fmt: skip
     assert runs.sizes["Restrainer.stiffness"] == 2
     assert float(runs.overturning_time.std()) > 0.0
+
+
+def test_axes_name_ties_in_one_word_and_take_truth_values(tmp_path):
+    upper = TIE.replace(name="tie, above", strength="0.5 kN", damping=None)
+    system = rf.System(BLOCK, upper, TIE.replace(name=None))
+    axes = {"tie__above.brittle": [True, False], "restrainer_2.stiffness": ["1 MN/m", "2 MN/m"]}
+    runs = rf.sweep(system, PULSE, axes=axes)
+    assert runs.broken_restrainer_count.sum("restrainer_2.stiffness").values.tolist() == [[4], [2]]
+    runs.to_netcdf(tmp_path / "runs.nc")
+    back = xr.load_dataset(tmp_path / "runs.nc")
+    labels = {"tie__above.brittle": True, "restrainer_2.stiffness": "2 MN/m"}
+    assert rf.case(back, **labels).system.parts["restrainer"].brittle is True
+    with pytest.raises(StudyError, match=r"write 'tie__above\.brittle'"):
+        rf.sweep(system, PULSE, axes={"tie, above.brittle": [True]})
+    with pytest.raises(StudyError, match=r"was 'restrainer_2\.slack'"):
+        rf.sweep(system, PULSE, axes={"restrainer2.slack": ["1 mm"]})
+    with pytest.raises(StudyError, match="must be True or False, got 'perhaps'"):
+        rf.sweep(system, PULSE, axes={"tie__above.brittle": ["perhaps"]})
 
 
 @pytest.mark.parametrize("base", [PADS, rf.RigidGround()], ids=["pads", "rigid"])

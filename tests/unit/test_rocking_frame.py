@@ -9,7 +9,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.command.files.scenes import read_scene
-from rockframe.errors import AssemblyError, ComponentError
+from rockframe.errors import AssemblyError, ComponentError, ModelWarning
 from rockframe.plot._artists import Drawer
 from rockframe.plot._scene import Moving
 from rockframe.reports.limits import limits_of
@@ -50,6 +50,21 @@ def test_what_makes_no_frame_is_refused(column, given, words):
         rf.RockingFrame(column, **({"columns": 3, "beam_mass": "200 t"} | given))
 
 
+@pytest.mark.parametrize(
+    ("parts", "ends"),
+    [
+        ((BENT,), "which this model cannot show$"),
+        ((PIER, rf.RearWall()), "; give the wall a stiffness to follow its flight$"),
+        ((PIER,), "; put it on a TwoSpringSupport to follow its flight$"),
+    ],
+    ids=["frame", "wall", "pier"],
+)
+def test_what_would_fly_is_told_what_can_be_done(parts, ends):
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    with pytest.warns(ModelWarning, match=ends):
+        rf.System(*parts).simulate(pulse.with_vertical(pulse.scaled(11.0)), outputs=None)
+
+
 def test_what_a_frame_does_not_go_with():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     with pytest.raises(AssemblyError, match="a RockingFrame stands on rigid ground"):
@@ -64,6 +79,9 @@ def test_what_a_frame_does_not_go_with():
         rf.System(BENT, rf.Tendon(stiffness="1 MN/m"), rotation="small")
     with pytest.raises(AssemblyError, match="RockingFrame and Block are both given"):
         rf.System(BENT, PIER)
+    tendon = rf.Tendon(stiffness="1 MN/m", name="one")
+    with pytest.raises(AssemblyError, match="two links are called 'one'"):
+        rf.System(BENT, tendon, tendon)
     squat = rf.Block(width="1 m", height="0.9 m", mass="1 t")
     with pytest.raises(AssemblyError, match="so squat that the frame cannot rock"):
         rf.System(rf.RockingFrame(squat, columns=2, beam_mass="50 t"))

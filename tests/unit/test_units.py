@@ -647,3 +647,11 @@ def test_sentences_are_told_in_the_units_of_the_reader():
     ):
         assert units.of_sentence(text) == wanted
     assert reader_units(None, owner="a figure").of_sentence("4 m") == "4 m"
+
+
+def test_two_values_of_which_one_is_a_quantity_are_no_number_and_its_unit():
+    metre = pint.Quantity(1.0, "m")
+    assert to_si_values([metre, "20 cm"], LENGTH, owner="here", name="width") == [1.0, 0.2]
+    assert to_si_values([[1, 2], "cm"], LENGTH, owner="here", name="width") == [0.01, 0.02]
+    with pytest.raises(rf.errors.UnitsError, match="got None"):
+        to_si_values([None, "20 cm"], LENGTH, owner="here", name="width")

@@ -168,6 +168,10 @@ def _axis(file: TomlFile, name: str, given: object) -> Any:
         return given
     where = (AXES, name)
     table = file.table(where, given) or {}
+    if table and not {"values", "unit"}.intersection(table):
+        written = f'"{name}.{next(iter(table))}" = [...]'
+        file.fault(where, f"an axis of a part stands in quotation marks: {written}")
+        return []
     if checked(file, where, table, {"values": True, "unit": True}):
         return (table["values"], table["unit"])
     return []

@@ -66,7 +66,7 @@ def numbers_of(given: object, measure: Measure, name: str) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
     if measure.unit == Unit.ONE:
         example = measure.example
-        items = _items(_as_python(_ratios(given)))
+        items = items_of(_as_python(_ratios(given)))
         floats = all(type(one) is float and math.isfinite(one) for one in items)
         found = (
             items
@@ -81,7 +81,7 @@ def numbers_of(given: object, measure: Measure, name: str) -> Generic:
 
 def _refuse_bare(given: object, measure: Measure, name: str) -> None:
     """Refuse numbers without a unit, and say how several are given one."""
-    first = next(iter(_items(given)), None)
+    first = next(iter(items_of(given)), None)
     if isinstance(given, tuple) or not isinstance(first, Real | np.number):
         return
     msg = (
@@ -93,7 +93,7 @@ def _refuse_bare(given: object, measure: Measure, name: str) -> None:
 
 def words_of(given: object, read: Callable[[object], object]) -> Generic:
     """Read the values of an axis that are words."""
-    return np.array([str(read(word)) for word in _items(given)])
+    return np.array([str(read(word)) for word in items_of(given)])
 
 
 def free_values(given: object, name: str) -> tuple[Generic, str | None]:
@@ -102,7 +102,7 @@ def free_values(given: object, name: str) -> tuple[Generic, str | None]:
     if unit is not None:
         measure = _measure_of(unit, name)
         return numbers_of(given, measure, name), str(measure.unit)
-    items = _as_python(_items(given))
+    items = _as_python(items_of(given))
     array = np.array(items)
     if array.ndim != 1 or array.dtype.kind not in "iufbU":
         msg = f"{OWNER}: {name} needs numbers, words or quantities in a row, got {shown(given)}"
@@ -123,7 +123,7 @@ def _unit_in(given: object) -> str | None:
         pair = cast("tuple[Any, ...]", given)
         if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
             return pair[1]
-    first = next(iter(_items(given)), None)
+    first = next(iter(items_of(given)), None)
     if isinstance(given, pint.Quantity):
         first = given
     if isinstance(first, pint.Quantity):
@@ -161,11 +161,12 @@ def _ratios(given: object) -> object:
         pair = cast("tuple[Any, ...]", given)
         if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
             factor = to_ratio(f"1 {pair[1]}", owner=OWNER, name="unit")
-            return [factor * float(one) for one in _items(pair[0])]
+            return [factor * float(one) for one in items_of(pair[0])]
     return given
 
 
-def _items(given: object) -> list[Any]:
+def items_of(given: object) -> list[Any]:
+    """Give values one by one; one alone is a row of one."""
     if isinstance(given, str | bytes) or not isinstance(given, Iterable):
         return [given]
     if isinstance(given, pint.Quantity) and getattr(cast("Any", given).magnitude, "ndim", 0) == 0:

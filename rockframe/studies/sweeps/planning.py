@@ -5,6 +5,7 @@ Also which histories are kept, and whether there is memory for them.
 
 import math
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -374,7 +375,9 @@ def _read(
 
 def _name_fault(name: object) -> str | None:
     if not isinstance(name, str) or not all(part.isidentifier() for part in name.split(".")):
-        return f"{shown(name)} cannot be the name of an axis"
+        written = re.sub(r"[^\w.]", "_", name) if isinstance(name, str) else ""
+        way = f"; write {written!r} for what is called so" if "." in written else ""
+        return f"{shown(name)} cannot be the name of an axis{way}"
     if name in _TAKEN:
         way = "; write 'System.rotation' for the option" if name == "rotation" else ""
         return f"axis {name!r} has the name of a result, or of one of its dimensions{way}"

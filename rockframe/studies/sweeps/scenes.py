@@ -1,6 +1,7 @@
 """From the values of a case to the scene, and to where its run starts."""
 
 import inspect
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -10,7 +11,7 @@ import numpy as np
 
 from rockframe.arguments import one_of_words
 from rockframe.components import Component, InitialState
-from rockframe.components.parameters import Choice, Count, Declared, Text
+from rockframe.components.parameters import Choice, Count, Declared, Flag, Text
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
@@ -23,6 +24,7 @@ from rockframe.studies.sweeps.axes import (
     Axis,
     Changes,
     free_values,
+    items_of,
     numbers_of,
     words_of,
 )
@@ -172,29 +174,45 @@ class SystemScene:
         return [
             (slot, part, part.varied()[parameter])
             for slot, part in parts.items()
-            if parameter in part.varied() and kind in ("", *_names(part), self._label(part))
+            if parameter in part.varied() and kind in ("", *_names(part), *self._labels(part))
         ]
 
-    def _label(self, part: Component) -> str | None:
-        """Give the name that results call a link by; None of other parts."""
+    def _labels(self, part: Component) -> tuple[str, ...]:
+        """Give what axes call a link beside its class: as results do, in one word; none of others.
+
+        As an axis has it, "restrainer 1" is restrainer_1.
+        """
         links = self.assembly.parts.links
         labels = link_labels(links)
-        return next((name for one, name in zip(links, labels, strict=True) if one is part), None)
+        own = next((name for one, name in zip(links, labels, strict=True) if one is part), None)
+        return () if own is None else tuple(dict.fromkeys([re.sub(r"\W", "_", own), own]))
 
     def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
         if having:
             kinds = [type(part).__name__ for part in having]
             if len(set(kinds)) < len(kinds):  # several links
                 kinds = [
-                    self._label(part) or kind for part, kind in zip(having, kinds, strict=True)
+                    next(iter(self._labels(part)), kind)
+                    for part, kind in zip(having, kinds, strict=True)
                 ]
             ways = " or ".join(f"'{kind}.{parameter}'" for kind in kinds)
             return (
                 f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one, in "
                 f"axes={{...}}: {ways}"
             )
+        parts = self._parts().values()
+        known = [
+            f"{next(iter(self._labels(part)), type(part).__name__)}.{parameter}"
+            for part in parts
+            if "." in name and parameter in part.varied()
+        ]
+        if known:
+            return (
+                f"axis {name!r} names no part that has {parameter!r}{suggestion(name, known)} "
+                f"There are {', '.join(known)}"
+            )
         known = [*TARGETS, *_OPTIONS, *STARTS]
-        known += [one for part in self._parts().values() for one in part.varied()]
+        known += [one for part in parts for one in part.varied()]
         listed = ", ".join(dict.fromkeys(known))
         question = suggestion(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"
@@ -336,6 +354,8 @@ def _declared_values(
     if isinstance(one, Count):
         numbers = numbers_of(given, Measure("a whole number", Unit.ONE, "2"), name)
         return np.array([one.read(number, OWNER) for number in numbers.tolist()]), str(Unit.ONE)
+    if isinstance(one, Flag):
+        return np.array([one.read(word, OWNER) for word in items_of(given)]), None
     if one.measure is None:
         return words_of(given, lambda word: one.read(word, OWNER)), None
     return numbers_of(given, one.measure, name), str(one.measure.unit)

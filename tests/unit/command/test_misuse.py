@@ -177,6 +177,7 @@ def test_faults_of_a_scene_have_their_line(text, typed):
         ("scale = [1]\nwidht = ['1 m']\n", 5, "was 'width' meant?"),
         ("scale = [1]\n\nwidth = ['1 s']\n", 6, 'width = "4 m"'),
         ("scale = ['one']\n", 4, "scale"),
+        ("Block.width = ['1 m']\n", 4, 'in quotation marks: "Block.width" = [...]'),
     ],
 )
 def test_faults_of_a_study_have_their_line(axes, line, words, typed):

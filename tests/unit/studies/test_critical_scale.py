@@ -1,7 +1,9 @@
 """The least scale that overturns: labels, brackets, options, measures, refusals."""
 
 import itertools
+import math
 import warnings
+from contextlib import nullcontext
 from importlib import import_module
 
 import numpy as np
@@ -12,6 +14,7 @@ import rockframe as rf
 from rockframe.errors import (
     AssemblyError,
     ComponentError,
+    ModelWarning,
     RecordWarning,
     SolverError,
     SolverWarning,
@@ -122,6 +125,17 @@ def test_nothing_happens_on_rigid_ground_before_uplift(found):
     )
     lifted = rf.critical_scale(RIGID, SHAKING.with_vertical(SHAKING.scaled(0.5)), **SPARING)
     assert np.isnan([leaning.uplift_scale, lifted.uplift_scale]).all()
+    # or before it slides, by the friction of the ground less its slope
+    for friction, slope in ((0.1, 0.0), (9.0, 0.0), (0.1, 0.02), (0.1, 0.2)):
+        ground = rf.RigidGround(friction=friction, kinetic_friction=min(friction, 1.0))
+        with pytest.warns(ModelWarning) if slope > friction else nullcontext():
+            slides = rf.System(BLOCK, ground, inclination=f"{slope!r} rad")
+        least = max(0.0, math.tan(math.atan(min(friction, 0.8 / 3.6)) - slope))
+        either = slides.setting.moving_accelerations
+        assert min(either) == pytest.approx(9.80665 * least, rel=1e-12)
+    slippery = rf.System(BLOCK, rf.RigidGround(friction=0.1))
+    slid = rf.critical_scale(slippery, SHAKING, **SPARING)
+    assert slid.uplift_scale.item() == pytest.approx(0.1 * 9.80665 / peak, rel=1e-12)
     never = rf.critical_scale(RIGID, SHAKING, largest=0.5 * told.uplift_scale.item(), **SPARING)
     assert never.scale.size == 1
 
