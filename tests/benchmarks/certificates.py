@@ -20,7 +20,7 @@ from benchmarks.certified_scenes import Case, cases
 import rockframe as rf
 from rockframe.errors import RockframeWarning
 from rockframe.simulation.certify.perturbations import cut, parameters
-from rockframe.simulation.run import outcome
+from rockframe.simulation.run import respond
 
 DISTANCES = tuple(10.0**-k for k in range(2, 8))
 NUDGES = 12
@@ -53,7 +53,7 @@ def contradictions(case: Case, scale: float, fell: bool, count: int = NUDGES) ->
         for _ in range(count):
             _, scene_at = every[int(rng.integers(len(every)))]
             scene = scene_at(float(rng.uniform(-1e-3, 1e-3)))
-            found += scene is not None and outcome(scene, plan).overturned != fell
+            found += scene is not None and respond(scene, plan).trajectory.overturned != fell
     return found
 
 

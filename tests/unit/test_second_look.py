@@ -9,9 +9,9 @@ import pytest
 
 import rockframe as rf
 from rockframe.simulation.certify.certificate import SAFETY
-from rockframe.simulation.certify.second_look import MORE, OFF, doubts, peak_error
+from rockframe.simulation.certify.second_look import MORE, OFF, doubts, peak_error, second_look
 from rockframe.simulation.plan import plan_run
-from rockframe.simulation.run import outcome
+from rockframe.simulation.run import respond
 from rockframe.solve.workspace import Status
 
 SYSTEM = rf.System(
@@ -80,10 +80,10 @@ def test_it_can_be_switched_off_and_belongs_to_fast_alone(monkeypatch):
     made = []
 
     def counted(system, plan):
-        made.append(plan)
-        return outcome(system, plan)
+        made.append(second_look(system, plan))
+        return made[-1]
 
-    monkeypatch.setattr("rockframe.simulation.run.outcome", counted)
+    monkeypatch.setattr("rockframe.simulation.run.second_look", counted)
     run, _ = fast(second_look=False)
     assert "peak_error_estimate" not in run
     SYSTEM.simulate(PULSE, accuracy="standard")
@@ -98,7 +98,7 @@ def test_it_can_be_switched_off_and_belongs_to_fast_alone(monkeypatch):
 @pytest.fixture(scope="module")
 def base():
     plan = plan_run(SYSTEM.assembly, PULSE, free_vibration="4 s", accuracy="fast", outputs=None)
-    return plan, outcome(SYSTEM.assembly, plan)
+    return plan, respond(SYSTEM.assembly, plan).trajectory
 
 
 def told(base, first, second):
