@@ -83,6 +83,7 @@ def test_bodies_that_give_way_above_the_base_that_lifts():
     np.testing.assert_allclose(state.restoring_moment, about, rtol=0.01)
 
 
+@pytest.mark.filterwarnings("ignore:restrainer 1. its point:rockframe.errors.ModelWarning")
 def test_a_tie_pulls_on_what_has_lifted():
     tie = rf.Restrainer(on=("-0.4 m", "4.5 m"), to=("-2 m", "0 m"), stiffness="20 kN/m")
     scene = SCENES["statue on a block on pads"]

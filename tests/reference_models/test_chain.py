@@ -11,7 +11,7 @@ from reference_models.stacks.scene import mirrored
 import rockframe as rf
 from rockframe.compiled import COMPILED
 from rockframe.dynamics.chain.model import chain_of
-from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, lists_of, row_of
+from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, row_of
 from rockframe.dynamics.coupled.model import system_of
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
@@ -118,9 +118,6 @@ def test_what_is_observed_is_what_two_bodies_show(pair):
 
 def test_a_chain_tells_what_it_cannot_carry(pair):
     by_hand, _ = pair
-    row = np.zeros(3)
-    with pytest.raises(ValueError, match="at most 8 bodies, got 9"):
-        lists_of([row] * 9)
     body, numbers = (
         by_hand.upper.body,
         assemble(

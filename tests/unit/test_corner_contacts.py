@@ -16,7 +16,6 @@ from rockframe.dynamics.pads import (
     LEAVING,
     REENGAGE,
     RELAXING,
-    REVERSE,
     TOUCHING,
     corner_contact,
 )
@@ -78,7 +77,7 @@ def test_what_waits_beside_a_corner_that_leaves_is_judged_by_its_force(contact):
 
 
 def test_a_silent_event_of_one_corner_leaves_the_other_as_it_is():
-    new = switched(LEAVING, ENGAGING, RIGHT_GUARDS + REVERSE, state_with(right_force=G))
+    new = switched(LEAVING, ENGAGING, RIGHT_GUARDS + REENGAGE, state_with(right_force=G))
     assert corners_in(new) == (LEAVING, TOUCHING)
     assert pivot_in(new) == PIVOT_RIGHT
 

@@ -257,7 +257,7 @@ VALUES = {
     "rf.Stack(BLOCK, BLOCK)": "'interfaces'",
     "rf.Stack(BLOCK, BLOCK, interfaces=GROUND)": "interfaces must be several bases in a list",
     "rf.Stack(BLOCK, BLOCK, interfaces=[GROUND], offsets=3)": "offsets must be several lengths",
-    "rf.Stack(BLOCK, interfaces=[])": "it has 2 to 8 bodies, got 1",
+    "rf.Stack(BLOCK, interfaces=[])": "it has 2 to 12 bodies, got 1",
     "rf.Stack(BLOCK, GROUND, interfaces=[GROUND])": "a body of a stack is a Block",
     "rf.Stack.from_dict({'bodies': 3})": "bodies must be several descriptions in a list, got 3",
     "rf.RockingFrame(BLOCK, columns='two', beam_mass='1 t')": "columns must be a whole number",
