@@ -182,7 +182,7 @@ def contradictions(parts: Parts) -> list[str]:
         depth = getattr(part, "depth", None) if known else None
         if depth is not None:
             depths[type(part).__name__] = float(depth.m_as("m"))
-    beside = _beside_bodies(parts)
+    beside = _beside_bodies(parts) if parts.links else []
     if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_ROUNDING_OF_DEPTHS):
         return beside
     (upper, above), (lower, below) = depths.items()
@@ -318,7 +318,8 @@ def missizes(parts: Parts, options: Options) -> list[str]:
     # impacts of bodies that slide, and of those in a stack, let a squat one land flat
     if block is not None and not parts.own and held:
         faults += squat(block.si, type(block).__name__)
-    faults += _beyond_bodies(parts)
+    if parts.links:
+        faults += _beyond_bodies(parts)
     if block is not None and cap is not None:
         body = parts.the_cap
         width = 2.0 * body.half_width

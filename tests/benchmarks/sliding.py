@@ -22,6 +22,8 @@ from reference_models.sliding import (  # noqa: E402
     draw_on_base,
     draw_tied,
     draw_tied_on_base,
+    draw_walled,
+    draw_walled_on_base,
 )
 
 import rockframe as rf  # noqa: E402
@@ -144,6 +146,8 @@ def main():
     parser.add_argument("--on-bases", type=int, default=60, help="scenes on pads and beds")
     parser.add_argument("--tied", type=int, default=200, help="scenes on rigid ground with ties")
     parser.add_argument("--tied-on-bases", type=int, default=100, help="on pads and beds")
+    parser.add_argument("--walled", type=int, default=300, help="before elastic walls")
+    parser.add_argument("--walled-on-bases", type=int, default=300, help="on pads and beds")
     parser.add_argument("--runs", type=int, default=20_000)
     parser.add_argument("--json", type=Path, default=ROOT / "docs" / "data" / "sliding.json")
     given = parser.parse_args()
@@ -158,6 +162,10 @@ def main():
         "with ties": (given.tied, against_monolith, (draw_tied, SEED + 10)),
         "with ties on pads and beds": (
             given.tied_on_bases, against_monolith, (draw_tied_on_base, SEED + 11),
+        ),
+        "before elastic walls": (given.walled, against_monolith, (draw_walled, SEED + 20)),
+        "before elastic walls on pads and beds": (
+            given.walled_on_bases, against_monolith, (draw_walled_on_base, SEED + 21),
         ),
     }  # fmt: skip
     for name, (count, run, arguments) in parts.items():

@@ -7,6 +7,7 @@ import numpy as np
 from reference_models.monoliths import slipping_block
 from reference_models.monoliths.slide_rock import Block
 from reference_models.monoliths.ties import Tie
+from reference_models.monoliths.wall import Wall
 
 import rockframe as rf
 from rockframe.dynamics.events import EventKind
@@ -128,11 +129,26 @@ def draw_ties(rng, block):
     return parts, models
 
 
-def draw_tied(rng, draw=draw):
+def draw_wall(rng, block):
+    """Draw an elastic wall behind a block of 1 t, and its model."""
+    body, side = block.si, float(rng.choice([-1.0, 1.0]))
+    up = 2.0 * body.centre_height * rng.uniform(0.3, 1.0)
+    stiffness = GRAVITY * body.width / body.centre_height**2 * 10.0 ** rng.uniform(0.5, 3.0)
+    damping = float(rng.uniform(0.0, 0.3)) * math.sqrt(stiffness)
+    gap = float(rng.uniform(1e-4, 0.05)) * body.width
+    part = rf.RearWall(
+        side="left" if side < 0.0 else "right", stiffness=f"{1e3 * stiffness!r} N/m",
+        damping=f"{1e3 * damping!r} N s/m", gap=f"{gap!r} m", height=f"{float(up)!r} m",
+    )  # fmt: skip
+    point = (0.5 * side * body.width - body.eccentricity, up - body.centre_height)
+    return [part], [Wall(point, (0.0, 0.0), stiffness, damping, gap, side=side)]
+
+
+def draw_tied(rng, draw=draw, links=draw_ties):
     """Draw a scene on level ground, or on a level base, with ties, in which the block stands."""
     scene = None
     while scene is None:
-        scene = with_ties(draw(rng), rng)
+        scene = with_ties(draw(rng), rng, links)
     return scene
 
 
@@ -141,12 +157,22 @@ def draw_tied_on_base(rng):
     return draw_tied(rng, draw_on_base)
 
 
-def with_ties(drawn, rng):
+def draw_walled(rng):
+    """Draw a scene on level ground before an elastic wall."""
+    return draw_tied(rng, draw, draw_wall)
+
+
+def draw_walled_on_base(rng):
+    """Draw the same on pads or on a bed."""
+    return draw_tied(rng, draw_on_base, draw_wall)
+
+
+def with_ties(drawn, rng, links=draw_ties):
     """Give a scene with ties beside; None on a slope, or if they tip the block."""
     if not drawn.system.options.slope.level:
         return None
     block, *others = drawn.system.parts.structural()
-    parts, models = draw_ties(rng, block)
+    parts, models = links(rng, block)
     try:
         system = rf.System(block, *others, *parts, restraint=drawn.system.restraint)
         system.equilibrium()

@@ -8,6 +8,8 @@ from reference_models.sliding import (
     draw_on_base,
     draw_tied,
     draw_tied_on_base,
+    draw_walled,
+    draw_walled_on_base,
 )
 
 pytestmark = [pytest.mark.reference_models, pytest.mark.filterwarnings("ignore")]
@@ -37,6 +39,16 @@ def test_random_scenes_with_ties(number):
 @pytest.mark.parametrize("number", TIED_ON_BASES)
 def test_random_scenes_with_ties_on_pads_and_beds(number):
     check(compare(draw_tied_on_base(np.random.default_rng([41, number]))))
+
+
+@pytest.mark.parametrize("number", [2, 5])
+def test_random_scenes_before_elastic_walls(number):
+    check(compare(draw_walled(np.random.default_rng([50, number]))))
+
+
+@pytest.mark.parametrize("number", [1, 9])
+def test_random_scenes_before_elastic_walls_on_pads_and_beds(number):
+    check(compare(draw_walled_on_base(np.random.default_rng([51, number]))))
 
 
 @pytest.mark.long
