@@ -1,4 +1,4 @@
-"""Blocks with ties on rigid ground against the equation written by hand, in random scenes.
+"""Blocks with ties or a tendon on rigid ground against equations written by hand.
 
 Run from the root as ``PYTHONPATH=.:tests python tests/benchmarks/tied_oracle.py``.
 """
@@ -10,6 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
+from reference_models import test_tendons
 from reference_models.test_tied_rigid_blocks import AGREES, compare
 
 DATA = Path(__file__).resolve().parents[2] / "docs" / "data" / "tied_oracle.json"
@@ -22,6 +23,7 @@ twice within one [s]."""
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=SCENES)
+    parser.add_argument("--tendons", type=int, default=300)
     parser.add_argument("--json", type=Path, default=DATA)
     given = parser.parse_args()
     warnings.simplefilter("ignore")
@@ -49,6 +51,17 @@ def main() -> None:
         "worst energy balance": float(f"{max(one['energy_residual'] for one in found):.2g}"),
         "events": dict(sorted(events.items())),
         "beyond": [one["number"] for one in found if one["difference"] > AGREES],
+    }
+    with_tendon = [test_tendons.compare(number) for number in range(given.tendons)]
+    differences = [one["difference"] for one in with_tendon]
+    table["with a tendon"] = {
+        "scenes": len(with_tendon),
+        "agree": sum(one <= AGREES for one in differences),
+        "median": float(f"{np.median(differences):.2g}"),
+        "worst": float(f"{max(differences):.2g}"),
+        "verdicts agree": sum(one["overturned"][0] == one["overturned"][1] for one in with_tendon),
+        "overturning": sum(one["overturned"][0] for one in with_tendon),
+        "events": sum(one["events"] for one in with_tendon),
     }
     given.json.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
     print(json.dumps(table, indent=1))

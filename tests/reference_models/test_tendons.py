@@ -1,0 +1,62 @@
+"""A block with a tendon against an equation written by hand, in random scenes."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+
+from .monoliths import tendon, tied_rigid_block
+
+GRAVITY = 9.80665
+TIME_STEP, DURATION = 0.05, 1.5
+
+
+def compare(number):
+    """Give how far both are apart over the peak, the balance of energies, and what happens."""
+    rng = np.random.default_rng([60, number])
+    width = rng.uniform(0.4, 1.5)
+    height = width * rng.uniform(1.5, 5.0)
+    at = float(rng.choice([0.0, rng.uniform(-0.4, 0.4)])) * width
+    stiffness = GRAVITY * width / height**2 * 10.0 ** rng.uniform(0.0, 2.0)
+    preload = float(rng.choice([0.0, rng.uniform(0.0, 1.0)])) * GRAVITY
+    noise = rng.normal(size=16) * rng.uniform(0.5, 4.0) * GRAVITY * width / height
+    moved = np.array([0.0, *noise, 0.0])
+    start = float(rng.choice([0.0, 1.0]) * rng.uniform(-0.5, 0.5) * math.atan2(width, height))
+    system = rf.System(
+        rf.Block(width=f"{width!r} m", height=f"{height!r} m", mass="1 kg"),
+        rf.Tendon(
+            stiffness=f"{stiffness!r} N/m", at=f"{at!r} m",
+            preload=f"{preload!r} N" if preload else None,
+        ),
+    )  # fmt: skip
+    run = system.simulate(
+        rf.GroundMotion.from_arrays((moved, "m/s^2"), f"{TIME_STEP} s"),
+        initial=rf.InitialState(rotation=f"{start!r} rad") if start else None,
+        accuracy="reference", output_step="10 ms", duration=f"{DURATION} s", outputs=("energy",),
+    )  # fmt: skip
+    b, h = 0.5 * width, 0.5 * height
+    ties = [tendon.Tendon(b + at, b - at, stiffness, preload)]
+    block = tendon.Block(b, h, (b * b + h * h) / 3.0, GRAVITY, ties)
+    times = np.append(run.time.values, DURATION)
+    found = tied_rigid_block.simulate(block, moved, TIME_STEP, start, times, limit=block.theta)
+    ours, theirs = run.rotation.values, found.rotation[:-1]
+    both = ~np.isnan(ours) & ~np.isnan(theirs)
+    return {
+        "number": number,
+        "difference": float(np.abs(ours - theirs)[both].max())
+        / max(float(np.abs(ours[both]).max()), 1e-3),
+        "energy_residual": float(run.energy_residual),
+        "events": len(run.event_time),
+        "overturned": (bool(run.overturned), found.overturned),
+    }
+
+
+@pytest.mark.parametrize("number", [2, 5, 6, 11])
+def test_random_blocks_with_a_tendon(number):
+    found = compare(number)
+    assert found["difference"] < 1e-9
+    assert found["energy_residual"] < 1e-9
+    assert found["overturned"][0] == found["overturned"][1]
+    assert found["events"] > 1
