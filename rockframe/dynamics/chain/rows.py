@@ -437,24 +437,15 @@ class Rows(InState, Lists):
         return self.state_of(k, state)
 
     @inlined
-    def place_value(self, k: int) -> int:
-        """Give what the mode of a body is multiplied by in that of the chain."""
-        return int(self.rows[k * ROW + PLACE_VALUE])
-
-    @inlined
-    def mode_count(self, k: int) -> int:
-        """Give the number of modes of a body."""
-        return int(self.rows[k * ROW + MODE_COUNT])
-
-    @inlined
     def modes_of_bodies(self) -> int:
         """Give the number of modes of all bodies together."""
-        return self.place_value(self.body_count - 1) * self.mode_count(self.body_count - 1)
+        k = self.body_count - 1
+        return int(self.number(k, PLACE_VALUE)) * int(self.number(k, MODE_COUNT))
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
         """Give how a body stands."""
-        number = mode // self.place_value(k) % self.mode_count(k)
+        number = mode // int(self.number(k, PLACE_VALUE)) % int(self.number(k, MODE_COUNT))
         if self.number(k, LAW) == ON_RIGID:
             ends, rest = number % ENDS, number // ENDS
             return Mode(ends + CORNER * (rest % 2), ends % PIVOTS, rest >= 2)
@@ -465,13 +456,14 @@ class Rows(InState, Lists):
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
         """Give the mode in which a body stands otherwise."""
-        value, low, high = self.place_value(k), part.contact % CORNER, part.contact // CORNER
+        value, modes = int(self.number(k, PLACE_VALUE)), int(self.number(k, MODE_COUNT))
+        low, high = part.contact % CORNER, part.contact // CORNER
         if self.number(k, LAW) == ON_RIGID:
             number = low + ENDS * (high + (2 if part.slides else 0))
         else:
             number = part.pivot + (PIVOTS if part.slides else 0)
             number += 2 * PIVOTS * (low + CORNERS * high)
-        return mode + value * (number - mode // value % self.mode_count(k))
+        return mode + value * (number - mode // value % modes)
 
 
 def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float) -> Vector:
