@@ -41,7 +41,7 @@ from rockframe.dynamics.sliding import blend
 from rockframe.dynamics.switching import comes_back, end_speed, lift_by_slip, stay_if_small
 
 # memory, behind the held places and the body of the last event
-ADMISSIBLE: Final = 1  # sets of corners that might have borne after the last event
+ADMISSIBLE: Final = 1  # ways to bear, or to slip, that there were after the last event
 TAKEN: Final = 2  # the set that did
 OTHER: Final = 3  # the next best, or -1
 KEPT: Final = ("admissible_sets", "set_taken", "other_set")
