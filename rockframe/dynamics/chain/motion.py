@@ -24,6 +24,7 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
     """Write how all bodies lie and move relative to what they stand on, and their velocities."""
     count, angle, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     below = 0.0  # top of the body below above its centre of mass
+    sine, cosine = 0.0, 1.0
     for k in range(count - 1, -1, -1):
         i = k * PLACES
         part, standing = system.on_base(k), system.part_mode(mode, k)
@@ -31,7 +32,8 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
         attitude = part.body.attitude(body.rotation)
         reach = part.body.reach(part.body.pin(standing.pivot), attitude)
         free = part.is_free(standing)
-        sine, cosine = sine_cosine(angle)
+        room[i + at.ATTITUDE], room[i + at.ATTITUDE + 1] = attitude.sine, attitude.cosine
+        room[i + at.ATTITUDE + 2] = attitude.rise
         sway = body.horizontal_velocity if free else reach.rate * body.angular_velocity
         lowest = k == count - 1
         across = 0.0 if lowest else body.horizontal
@@ -50,6 +52,10 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
         room[i + at.DRIFT] = reach.bend * body.angular_velocity * body.angular_velocity
         room[i + at.SPEED_X], room[i + at.SPEED_Y] = speed_x, speed_y
         angle += body.rotation
+        if lowest and not part.body.small:
+            sine, cosine = attitude.sine, attitude.cosine
+        elif k > 0:
+            sine, cosine = sine_cosine(angle)
         rate += body.angular_velocity
         below = system.number(k, at.TOP)
 

@@ -5,6 +5,7 @@ Equations :eq:`eq-chain`; per unit of a mass that all others are measured by.
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERTICAL
+from rockframe.dynamics.body import Attitude
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import (
     FREE,
@@ -155,7 +156,8 @@ class MovingBodies(Rows):
         for k in range(self.body_count):
             i, mass = k * PLACES, self.number(k, at.MASS)
             part, body = self.on_base(k), self.state_of(k, state)
-            line = part.body.base_line_at(body)
+            a = i + at.ATTITUDE
+            line = part.body.base_line(body, Attitude(room[a], room[a + 1], room[a + 2]))
             base = part.base.force(self.contact_with_force(k, mode), line, ())
             dissipated += base.dissipated
             room[i + at.PRESS] = base.upward

@@ -94,7 +94,15 @@ LEVERS: Final = 33
 RESTS: Final = 35
 REACHES: Final = 37
 STAYS: Final = 39
-PLACES: Final = 41
+# how the body stands in the mode that was read last, and that mode, in two numbers
+CONTACT: Final = 41
+PIVOT: Final = 42
+SLIDES: Final = 43
+HIGH_BITS: Final = 44
+LOW_BITS: Final = 45
+# sine, cosine and rise of its rotation on its base
+ATTITUDE: Final = 46
+PLACES: Final = 49
 
 # constraints, at most so many of each body; of each
 MOST_CONSTRAINTS: Final = 3
@@ -116,6 +124,8 @@ CORNERS: Final = 5
 ENDS: Final = 4
 """States of both ends on a bed, or of both corners on a rigid base."""
 PIVOTS: Final = 3
+HALF_OF_BITS: Final = 32
+"""Of the number of a mode, each half of which a float holds exactly."""
 PAD_MODES: Final = 2 * PIVOTS * CORNERS * CORNERS
 BED_MODES: Final = 2 * PIVOTS * ENDS
 RIGID_MODES: Final = 2 * 2 * ENDS  # what is held follows from the corners that bear
@@ -442,9 +452,21 @@ class Rows(InState, Lists):
         k = self.body_count - 1
         return int(self.number(k, PLACE_VALUE)) * int(self.number(k, MODE_COUNT))
 
-    @kernel
+    @inlined
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give how a body stands."""
+        """Give how a body stands; divisions are slow, so what was read last is kept."""
+        room, i, high = self.places(), k * PLACES, mode >> HALF_OF_BITS
+        low = mode - (high << HALF_OF_BITS)
+        if room[i + HIGH_BITS] != high or room[i + LOW_BITS] != low:
+            found = self.read_mode(mode, k)
+            room[i + CONTACT], room[i + PIVOT] = found.contact, found.pivot
+            room[i + SLIDES] = 1.0 if found.slides else 0.0
+            room[i + HIGH_BITS], room[i + LOW_BITS] = high, low
+        return Mode(int(room[i + CONTACT]), int(room[i + PIVOT]), room[i + SLIDES] != 0.0)
+
+    @kernel
+    def read_mode(self, mode: int, k: int) -> Mode:
+        """Read how a body stands from the number of a mode."""
         number = mode // int(self.number(k, PLACE_VALUE)) % int(self.number(k, MODE_COUNT))
         if self.number(k, LAW) == ON_RIGID:
             ends, rest = number % ENDS, number // ENDS
