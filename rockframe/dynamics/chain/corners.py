@@ -14,6 +14,7 @@ from rockframe.dynamics.bed import DOWN, RAISED, both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, BodyState
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.any_base import ON_RIGID
 from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, RIGHT_ONLY, Attempt, attempt
 from rockframe.dynamics.chain.motion import add_constraint, coriolis_normal
 from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
@@ -43,7 +44,7 @@ class RigidCorners(Chain):
     @inlined
     def is_rigid(self, k: int) -> bool:
         """Whether a body stands on a rigid base."""
-        return self.number(k, at.LAW) == at.ON_RIGID
+        return self.number(k, at.LAW) == ON_RIGID
 
     @inlined
     def band(self) -> int:

@@ -1,0 +1,240 @@
+"""A base under a body of a chain: pads or a bed, as the numbers in the body's row tell."""
+
+from typing import Final, NamedTuple
+
+from rockframe.compiled import inlined, kernel
+from rockframe.dynamics.base import Base, BaseForce, EndEvent, Guards, Variables
+from rockframe.dynamics.bed import Bed
+from rockframe.dynamics.body import BaseLine
+from rockframe.dynamics.pads import CORNER_GUARDS, ElasticPads
+from rockframe.dynamics.point_law import Viscoelastic
+
+ON_PADS: Final = 0
+ON_BED: Final = 1
+ON_RIGID: Final = 2  # a bed without stiffness: what holds the ends are constraints
+BASE_NUMBERS: Final = 12
+"""Numbers of a law."""
+
+
+class LawNumbers(NamedTuple):
+    """Which law a base has, and its numbers."""
+
+    which: int
+    n0: float
+    n1: float
+    n2: float
+    n3: float
+    n4: float
+    n5: float
+    n6: float
+    n7: float
+    n8: float
+    n9: float
+    n10: float
+    n11: float
+
+
+class AnyBase(Base, LawNumbers):
+    """A base whose law is known when it runs."""
+
+    __slots__ = ()
+
+    @inlined
+    def pads(self) -> ElasticPads:
+        """Give the pads."""
+        return ElasticPads(
+            Viscoelastic(self.n0, self.n1), self.n2, self.n3, self.n4, self.n5, self.n6, self.n7,
+            self.n8, self.n9, self.n10, self.n11,
+        )  # fmt: skip
+
+    @inlined
+    def bed(self) -> Bed:
+        """Give the bed."""
+        return Bed(self.n0, self.n1, self.n2, self.n3, self.n4 != 0.0)
+
+    @kernel
+    def contacts(self) -> int:
+        """Give the number of contacts, of either law."""
+        return max(self.pads().contacts(), self.bed().contacts())
+
+    @kernel
+    def end_guards(self) -> int:
+        """Give the number of guards of an end, of either law."""
+        return CORNER_GUARDS
+
+    @inlined
+    def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
+        """Give the guards of an end, and their rates; those that a bed has not are idle."""
+        if self.which == ON_PADS:
+            return self.pads().guards_of(contact, left, line, own)
+        found = self.bed().guards_of(contact, left, line, own)
+        return Guards((found.values[0], 1.0, 1.0), (found.changes[0], 0.0, 0.0))
+
+    @inlined
+    def in_flight(self) -> int:
+        """Give the contact of a bed in which no end is held."""
+        return self.bed().in_flight()
+
+    @kernel
+    def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
+        """Give what users see of the base."""
+        if self.which == ON_PADS:
+            left, right = self.pads().observed(contact, line, own)
+            return left, right, 0.0
+        return self.bed().observed(contact, line, own)
+
+    @inlined
+    def is_held(self, contact: int, left: bool) -> bool:
+        """Whether an end is held."""
+        if self.which == ON_PADS:
+            return self.pads().is_held(contact, left)
+        return self.bed().is_held(contact, left)
+
+    @inlined
+    def touches(self, contact: int, left: bool) -> bool:
+        """Whether an end is held and its force counts as long as it presses."""
+        if self.which == ON_PADS:
+            return self.pads().touches(contact, left)
+        return self.bed().touches(contact, left)
+
+    @kernel
+    def tilt(self, contact: int) -> float:
+        """Give the side to which the contact will rotate a body that is upright and at rest."""
+        if self.which == ON_PADS:
+            return self.pads().tilt(contact)
+        return self.bed().tilt(contact)
+
+    @inlined
+    def force(self, contact: int, line: BaseLine, own: Variables) -> BaseForce:
+        """Give force, moment and dissipated power."""
+        if self.which == ON_PADS:
+            return self.pads().force(contact, line, own)
+        return self.bed().force(contact, line, own)
+
+    @kernel
+    def energy(self, line: BaseLine, own: Variables) -> tuple[float, float]:
+        """Give the stored energy, and that less the energy at rest."""
+        if self.which == ON_PADS:
+            return self.pads().energy(line, own)
+        return self.bed().energy(line, own)
+
+    @kernel
+    def switch(
+        self, contact: int, left: bool, which: int, line: BaseLine, own: Variables
+    ) -> EndEvent:
+        """Give what happens when a guard of an end, by its number, falls through zero."""
+        if self.which == ON_PADS:
+            return self.pads().switch(contact, left, which, line, own)
+        return self.bed().switch(contact, left, which, line, own)
+
+    @kernel
+    def level(self, left: bool, line: BaseLine, own: Variables) -> float:
+        """Give how much higher than an end the level is at which it parts from the base."""
+        if self.which == ON_PADS:
+            return self.pads().level(left, line, own)
+        return self.bed().level(left, line, own)
+
+    @kernel
+    def is_level(self, left: bool, line: BaseLine, own: Variables) -> bool:
+        """Whether an end that slides has come to that level, but for rounding."""
+        if self.which == ON_PADS:
+            return self.pads().is_level(left, line, own)
+        return self.bed().is_level(left, line, own)
+
+    @inlined
+    def follows(self, contact: int, left: bool) -> int:
+        """Give the contact in which an end that slides takes part: it touches without force."""
+        if self.which == ON_PADS:
+            return self.pads().follows(contact, left)
+        return self.bed().follows(contact, left)
+
+    @inlined
+    def following_rate(self) -> float:
+        """Give the rate at which a base without force returns to its level [s^-1]."""
+        if self.which == ON_PADS:
+            return self.pads().following_rate()
+        return self.bed().following_rate()
+
+    @kernel
+    def least_landing(self) -> float:
+        """Give the speed of a landing below which the base's answer is rounding noise."""
+        if self.which == ON_PADS:
+            return self.pads().least_landing()
+        return self.bed().least_landing()
+
+    @kernel
+    def released(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
+        """Give the contact after an end that touched without force has left."""
+        if self.which == ON_PADS:
+            return self.pads().released(contact, left, line, own)
+        return self.bed().released(contact, left, line, own)
+
+    @kernel
+    def presses(self, contact: int, left: bool, line: BaseLine, own: Variables) -> bool:
+        """Whether the base still presses an end that has just left."""
+        if self.which == ON_PADS:
+            return self.pads().presses(contact, left, line, own)
+        return self.bed().presses(contact, left, line, own)
+
+    @kernel
+    def will_press(self, left: bool, line: BaseLine, own: Variables) -> bool:
+        """Whether the force of the base on an end would rise with an acceleration."""
+        if self.which == ON_PADS:
+            return self.pads().will_press(left, line, own)
+        return self.bed().will_press(left, line, own)
+
+    @kernel
+    def held(self, contact: int, left: bool) -> int:
+        """Give the contact with an end that touches."""
+        if self.which == ON_PADS:
+            return self.pads().held(contact, left)
+        return self.bed().held(contact, left)
+
+    @kernel
+    def waiting(self, contact: int, left: bool) -> int:
+        """Give the contact of an end that has left while the base still presses it."""
+        if self.which == ON_PADS:
+            return self.pads().waiting(contact, left)
+        return self.bed().waiting(contact, left)
+
+    @kernel
+    def unpressed(self, contact: int, left: bool) -> int:
+        """Give the contact of an end that stays held though the base has ceased to press it."""
+        if self.which == ON_PADS:
+            return self.pads().unpressed(contact, left)
+        return self.bed().unpressed(contact, left)
+
+    @kernel
+    def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
+        """Give the contact after an end has come back and its body has been held."""
+        if self.which == ON_PADS:
+            return self.pads().engaged(contact, left, line, own)
+        return self.bed().engaged(contact, left, line, own)
+
+    @kernel
+    def disturbed(self, contact: int) -> int:
+        """Give the contact after something else than an event of its own changed the speeds."""
+        if self.which == ON_PADS:
+            return self.pads().disturbed(contact)
+        return self.bed().disturbed(contact)
+
+    @kernel
+    def rebound(self, left: bool) -> float:
+        """Give the restitution of an end that lands with an impact."""
+        if self.which == ON_PADS:
+            return self.pads().rebound(left)
+        return self.bed().rebound(left)
+
+    @kernel
+    def starting(self, line: BaseLine, own: Variables) -> int:
+        """Give the contact at the start of a run."""
+        if self.which == ON_PADS:
+            return self.pads().starting(line, own)
+        return self.bed().starting(line, own)
+
+    @kernel
+    def resting_height(self, left: float, right: float, own: Variables) -> float:
+        """Give the height at which the base carries the body at rest."""
+        if self.which == ON_PADS:
+            return self.pads().resting_height(left, right, own)
+        return self.bed().resting_height(left, right, own)
