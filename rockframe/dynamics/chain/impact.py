@@ -149,7 +149,7 @@ def attempt(
             room[i + at.HOLDS_ALONG] = count
             add_constraint(system, count, k, 1.0, 0.0, -reach, stays, room, rows)
             count += 1
-    solve_motion(system, count, system.band(), room, rows, system.matrix())
+    solve_motion(system, 0, count, system.band(), room, rows, system.matrix())
     loss = pressing = 0.0
     for which in range(count):
         first = which * CONSTRAINT

@@ -237,15 +237,36 @@ def push(system: Rows, which: int, room: Vector, rows: Vector) -> None:
         holds += 3
 
 
+@inlined
+def eliminate(system: Rows, r: int, band: int, rows: Vector, matrix: Vector) -> None:
+    """Add a constraint to those before it, whose elimination stands.
+
+    Below the diagonal of the matrix stand the factors, on it what one is divided by.
+    """
+    stride, low, first = MOST_CONSTRAINTS * system.body_count, max(0, r - band), r * CONSTRAINT
+    own, left = answer(system, r, r, rows), rows[first + at.LEFT]
+    for c in range(low, r):
+        above, factor = answer(system, c, r, rows), answer(system, r, c, rows)
+        for i in range(low, c):
+            above -= matrix[c * stride + i] * matrix[i * stride + r]
+            factor -= matrix[r * stride + i] * matrix[i * stride + c]
+        factor *= matrix[c * stride + c]
+        matrix[c * stride + r], matrix[r * stride + c] = above, factor
+        own -= factor * above
+        left -= factor * rows[c * CONSTRAINT + at.LEFT]
+    matrix[r * stride + r], rows[first + at.LEFT] = 1.0 / own, left
+
+
 @kernel
 def solve_motion(
-    system: Rows, count: int, band: int, room: Vector, rows: Vector, matrix: Vector
+    system: Rows, start: int, count: int, band: int, room: Vector, rows: Vector, matrix: Vector
 ) -> None:
     """Write the forces of `count` constraints, sorted by body, and the accelerations of all bodies.
 
     Equation :eq:`eq-chain-solution`.
 
-    Elimination in the band about the diagonal, on which there is no zero.
+    Elimination in the band about the diagonal, on which there is no zero. That of constraints
+    before `start` stands from the last time.
     """
     for k in range(system.body_count):
         i = k * PLACES
@@ -254,25 +275,16 @@ def solve_motion(
             room[i + at.LOAD_X] * per_mass, room[i + at.LOAD_Y] * per_mass,
         )  # fmt: skip
         room[i + at.ROTATION] = room[i + at.LOAD_MOMENT] * system.number(k, at.PER_INERTIA)
-    stride = MOST_CONSTRAINTS * system.body_count
-    for r in range(count):
+    for r in range(start, count):
         first = r * CONSTRAINT
-        k = int(rows[first + at.BODY])
-        left = rows[first + at.VALUE] - of_both(system, k, first + at.KEEPS, room, rows)
-        rows[first + at.FORCE] = left
-        for c in range(max(0, r - band), min(count, r + band + 1)):
-            matrix[r * stride + c] = answer(system, r, c, rows)
-    for c in range(count):
-        for r in range(c + 1, min(count, c + band + 1)):
-            ratio = matrix[r * stride + c] / matrix[c * stride + c]
-            if ratio != 0.0:
-                for i in range(c + 1, min(count, c + band + 1)):
-                    matrix[r * stride + i] -= ratio * matrix[c * stride + i]
-                rows[r * CONSTRAINT + at.FORCE] -= ratio * rows[c * CONSTRAINT + at.FORCE]
+        kept = of_both(system, int(rows[first + at.BODY]), first + at.KEEPS, room, rows)
+        rows[first + at.LEFT] = rows[first + at.VALUE] - kept
+        eliminate(system, r, band, rows, matrix)
+    stride = MOST_CONSTRAINTS * system.body_count
     for r in range(count - 1, -1, -1):
-        known = rows[r * CONSTRAINT + at.FORCE]
+        force = rows[r * CONSTRAINT + at.LEFT]
         for c in range(r + 1, min(count, r + band + 1)):
-            known -= matrix[r * stride + c] * rows[c * CONSTRAINT + at.FORCE]
-        rows[r * CONSTRAINT + at.FORCE] = known / matrix[r * stride + r]
+            force -= matrix[r * stride + c] * rows[c * CONSTRAINT + at.FORCE]
+        rows[r * CONSTRAINT + at.FORCE] = force * matrix[r * stride + r]
     for r in range(count):
         push(system, r, room, rows)

@@ -139,7 +139,7 @@ class MovingBodies(Rows):
     def solve(self, count: int, room: Vector) -> None:
         """Write forces and accelerations, in the ground's axes and of all coordinates."""
         rows = self.constraints()
-        solve_motion(self, count, self.band(), room, rows, self.matrix())
+        solve_motion(self, 0, count, self.band(), room, rows, self.matrix())
         for which in range(count):  # the last one of each body is along what it stands on
             first = which * CONSTRAINT
             room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]

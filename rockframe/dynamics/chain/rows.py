@@ -96,7 +96,10 @@ HIGH_BITS: Final = 44
 LOW_BITS: Final = 45
 # sine, cosine and rise of its rotation on its base
 ATTITUDE: Final = 46
-PLACES: Final = 49
+# what a set of corners that is tried says of it, a number, and how many constraints stand before
+TRIED: Final = 49
+BEFORE: Final = 50
+PLACES: Final = 51
 
 # constraints, at most so many of each body; of each
 MOST_CONSTRAINTS: Final = 3
@@ -105,7 +108,8 @@ VALUE: Final = 1  # what is kept
 FORCE: Final = 2
 KEEPS: Final = 3  # the combination of accelerations, of the body and of the one below
 HOLDS: Final = 9  # that of forces
-CONSTRAINT: Final = 15
+LEFT: Final = 15  # of the value, by elimination
+CONSTRAINT: Final = 16
 # then their matrix, slopes, guards and their rates, velocities, and columns
 
 GUARDS: Final = 2 * CORNER_GUARDS + BODY_GUARDS
