@@ -7,14 +7,16 @@ one of body ``k``. A set of them is a whole number, a bit for each.
 import math
 from typing import Any, Final, NamedTuple
 
-from rockframe.compiled import Vector, kernel
+from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.body import PIVOT_LEFT, PIVOT_RIGHT
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import (
     FREE,
+    UNKNOWN,
     add_constraint,
     coriolis_along,
     coriolis_normal,
+    forget_trial,
     of_both,
     solve_motion,
     write_direction,
@@ -107,6 +109,39 @@ def next_set(start: int, near: Near) -> int:
     return some
 
 
+@inlined
+def trial_of(bears: int, holds: int, sense: float, impulsive: bool) -> float:
+    """Give a number for how a body is tried, by which the constraints follow."""
+    return bears + 4.0 * holds + 16.0 * (sense + 1.0) + (64.0 if impulsive else 0.0)
+
+
+@inlined
+def bear(
+    system: Any, k: int, count: int, bears: int, holds: int, sense: float, impulsive: bool,
+    room: Vector, rows: Vector,
+) -> int:  # fmt: skip
+    """Add the constraints of a body on a rigid base; give how many there are then."""
+    i = k * PLACES
+    room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = -1.0
+    if holds == 0:
+        return count
+    # where both corners are closed all points of the base move alike
+    pivot = 0 if holds == LEFT_ONLY else 1
+    reach, stays = room[i + at.REACHES + pivot], room[i + at.STAYS + pivot]
+    for side in range(2):
+        if bears >> side & 1 != 0:
+            lever, rests = room[i + at.LEVERS + side], room[i + at.RESTS + side]
+            add_constraint(system, count, k, 0.0, 1.0, lever, rests, room, rows)
+            room[i + at.LEFT_CORNER + side] = count
+            system.rub(k, count, sense, reach, impulsive, room, rows)
+            count += 1
+    if sense == 0.0:
+        room[i + at.HOLDS_ALONG] = count
+        add_constraint(system, count, k, 1.0, 0.0, -reach, stays, room, rows)
+        count += 1
+    return count
+
+
 @kernel
 def attempt(
     system: Any, mode: int, some: int, closed: int, sticks: bool, impulsive: bool, noise: float,
@@ -119,37 +154,28 @@ def attempt(
     or accelerations up to `noise` are rounding.
     """
     room, rows = system.places(), system.constraints()
-    count = 0
-    for k in range(system.body_count):
+    count, start, same = 0, 0, True
+    # from the bottom up: sets that are tried in turn differ in the highest bodies
+    for k in range(system.body_count - 1, -1, -1):
         i, standing = k * PLACES, system.part_mode(mode, k)
+        bears, touches = some >> 2 * k & BOTH, closed >> 2 * k & BOTH
+        holds = touches | bears if sticks else bears
+        sense = 0.0 if sticks else system.slip_sense(k)
+        tried = trial_of(bears, holds, sense, impulsive) if system.is_rigid(k) else UNKNOWN
+        if same and tried == room[i + at.TRIED] and tried != UNKNOWN:
+            count = start = int(room[i + at.CONSTRAINTS])
+            continue
+        same, room[i + at.TRIED] = False, tried
         if not system.is_rigid(k):
             if not impulsive:
                 count = system.hold_as_tried(k, count, standing, state, room, rows)
             elif room[i + at.HELD] != FREE:
                 add_constraint(system, count, k, 1.0, 0.0, -room[i + at.REACH], 0.0, room, rows)
                 count += 1
-            continue
-        room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = -1.0
-        bears, touches = some >> 2 * k & BOTH, closed >> 2 * k & BOTH
-        holds = touches | bears if sticks else bears
-        if holds == 0:
-            continue
-        # where both corners are closed all points of the base move alike
-        pivot = 0 if holds == LEFT_ONLY else 1
-        reach, stays = room[i + at.REACHES + pivot], room[i + at.STAYS + pivot]
-        sense = 0.0 if sticks else system.slip_sense(k)
-        for side in range(2):
-            if bears >> side & 1 != 0:
-                lever, rests = room[i + at.LEVERS + side], room[i + at.RESTS + side]
-                add_constraint(system, count, k, 0.0, 1.0, lever, rests, room, rows)
-                room[i + at.LEFT_CORNER + side] = count
-                system.rub(k, count, sense, reach, impulsive, room, rows)
-                count += 1
-        if sense == 0.0:
-            room[i + at.HOLDS_ALONG] = count
-            add_constraint(system, count, k, 1.0, 0.0, -reach, stays, room, rows)
-            count += 1
-    solve_motion(system, 0, count, system.band(), room, rows, system.matrix())
+        else:
+            count = bear(system, k, count, bears, holds, sense, impulsive, room, rows)
+        room[i + at.CONSTRAINTS] = count
+    solve_motion(system, start, count, system.band(), room, rows, system.matrix())
     loss = pressing = 0.0
     for which in range(count):
         first = which * CONSTRAINT
@@ -166,6 +192,7 @@ def attempt(
 def write_corners(system: Any, impulsive: bool, state: Vector) -> None:
     """Write what all trials of corners have in common: their levers, and what makes them rest."""
     room = system.places()
+    forget_trial(system, room)
     for k in range(system.body_count):
         if system.is_rigid(k):
             i, part, body = k * PLACES, system.on_base(k), system.state_of(k, state)

@@ -17,11 +17,20 @@ from rockframe.dynamics.trigonometry import sine_cosine
 
 FREE: Final = 0.0
 HELD: Final = 1.0
+UNKNOWN: Final = -1.0
+"""How a body is tried of which no elimination stands."""
+
+
+@inlined
+def forget_trial(system: Rows, room: Vector) -> None:
+    """Let the next set of corners that is tried be solved from the lowest body on."""
+    room[(system.body_count - 1) * PLACES + at.TRIED] = UNKNOWN
 
 
 @kernel
 def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
     """Write how all bodies lie and move relative to what they stand on, and their velocities."""
+    forget_trial(system, room)
     count, angle, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     below = 0.0  # top of the body below above its centre of mass
     sine, cosine = 0.0, 1.0
@@ -82,6 +91,7 @@ def input_power(system: Rows, state: Vector, ground: Ground, room: Vector) -> fl
 @inlined
 def load_bodies(system: Rows, x: float, y: float, room: Vector) -> None:
     """Load all bodies by accelerations that their masses resist."""
+    forget_trial(system, room)
     for k in range(system.body_count):
         i, mass = k * PLACES, system.number(k, at.MASS)
         room[i + at.LOAD_X], room[i + at.LOAD_Y] = -mass * x, -mass * y
@@ -91,6 +101,7 @@ def load_bodies(system: Rows, x: float, y: float, room: Vector) -> None:
 @inlined
 def press_at(system: Rows, k: int, press: float, moment: float, room: Vector) -> None:
     """Add the force of a base along its normal and the moment on its body, and the reaction."""
+    forget_trial(system, room)
     i = k * PLACES
     sine, cosine = room[i + at.SINE], room[i + at.COSINE]
     room[i + at.LOAD_X] += press * sine
@@ -106,6 +117,7 @@ def press_at(system: Rows, k: int, press: float, moment: float, room: Vector) ->
 @inlined
 def load_along(system: Rows, k: int, thrust: float, room: Vector) -> None:
     """Add a force along a base on the point of its body that slips, and the reaction."""
+    forget_trial(system, room)
     i = k * PLACES
     x, y = thrust * room[i + at.COSINE], -thrust * room[i + at.SINE]
     room[i + at.LOAD_X] += x

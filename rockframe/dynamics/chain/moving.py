@@ -12,6 +12,7 @@ from rockframe.dynamics.chain.motion import (
     add_constraint,
     coriolis_along,
     coriolis_normal,
+    forget_trial,
     input_power,
     load_bodies,
     place_bodies,
@@ -139,6 +140,7 @@ class MovingBodies(Rows):
     def solve(self, count: int, room: Vector) -> None:
         """Write forces and accelerations, in the ground's axes and of all coordinates."""
         rows = self.constraints()
+        forget_trial(self, room)
         solve_motion(self, 0, count, self.band(), room, rows, self.matrix())
         for which in range(count):  # the last one of each body is along what it stands on
             first = which * CONSTRAINT

@@ -96,9 +96,9 @@ HIGH_BITS: Final = 44
 LOW_BITS: Final = 45
 # sine, cosine and rise of its rotation on its base
 ATTITUDE: Final = 46
-# what a set of corners that is tried says of it, a number, and how many constraints stand before
+# how it is tried with a set of corners, a number, and how many constraints it and those below have
 TRIED: Final = 49
-BEFORE: Final = 50
+CONSTRAINTS: Final = 50
 PLACES: Final = 51
 
 # constraints, at most so many of each body; of each
