@@ -295,7 +295,7 @@ def solve_motion(
     stride = MOST_CONSTRAINTS * system.body_count
     for r in range(count - 1, -1, -1):
         force = rows[r * CONSTRAINT + at.LEFT]
-        for c in range(r + 1, min(count, r + band + 1)):
+        for c in range(min(count, r + band + 1) - 1, r, -1):  # the force found last comes last
             force -= matrix[r * stride + c] * rows[c * CONSTRAINT + at.FORCE]
         rows[r * CONSTRAINT + at.FORCE] = force * matrix[r * stride + r]
     for r in range(count):
