@@ -28,6 +28,7 @@ _FOLLOWED: Final = (
     "cap_rotation",
     "cap_angular_velocity",
     "cap_vertical_displacement",
+    "cap_slip",
     "soil_contact_state",
 )
 """What the place of a scene's parts follows from; of the cap, where there is one."""

@@ -218,7 +218,9 @@ def scalars(
     every = setting.slips_of(run.ending)
     for slips in every[:1]:
         sides |= {"peak_slip": slips.peak + 0.0, "residual_slip": slips.residual}
-    if len(every) > 1:
+    if len(every) > 1 and setting.stacked:
+        sides |= {"peak_cap_slip": every[1].peak, "residual_cap_slip": every[1].residual}
+    elif len(every) > 1:
         sides["peak_body_slip"] = np.array([one.peak for one in every])
     return sides | {
         "overturned": run.passed,
@@ -297,7 +299,8 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
         text += f". Not finished: {_cut_off(run)}"
     slid = [_slid(slips) for slips in setting.slips_of(run.ending)]
     if len(slid) > 1:
-        slid = [f"body {k} {words[0].lower()}{words[1:]}" for k, words in enumerate(slid, 1)]
+        names = setting.sliding_bodies or [f"body {k}" for k in range(1, len(slid) + 1)]
+        slid = [f"{names[k]} {words[0].lower()}{words[1:]}" for k, words in enumerate(slid)]
     if slid:
         words = ", ".join([*slid, f"{text[0].lower()}{text[1:]}"])
         text = f"{words[0].upper()}{words[1:]}"

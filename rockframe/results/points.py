@@ -158,7 +158,10 @@ class Placement:
             np.array(-pin), np.array(0.5 * height), np.array(rotation),
             small_rotation=self.geometry.small_rotation,
         )  # fmt: skip
-        moves = float(across), self.values.get("cap_vertical_displacement", 0.0)
+        moves = (
+            float(across) + self.values.get("cap_slip", 0.0),
+            self.values.get("cap_vertical_displacement", 0.0),
+        )
         return self._moved(points, (0.0, 0.5 * height), rotation, moves)
 
     @property

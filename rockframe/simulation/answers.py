@@ -262,7 +262,8 @@ def _stops(run: Trajectory, events: EventStates) -> Integers:
     if STICK not in kind:
         return np.empty(0, dtype=np.int64)
     changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
-    for name in (one for one in events.after if one == "slip" or one.startswith("slip_of_")):
+    of_caps = ("slip", "cap_slip")
+    for name in (one for one in events.after if one in of_caps or one.startswith("slip_of_")):
         changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < LEAST_SLIP
     return 1 + np.flatnonzero(changes)
 

@@ -11,6 +11,7 @@ from rockframe.errors import AssemblyError
 from rockframe.system.alone import AloneSetting, SlidingAloneSetting
 from rockframe.system.bodies import BaseLoad, load_of, one_body
 from rockframe.system.fitting import (
+    HELD,
     SMALL_SLIDING,
     contradictions,
     friction_under,
@@ -36,7 +37,12 @@ from rockframe.system.setting import Setting
 from rockframe.system.sliding_ground import rigid_ground_setting
 from rockframe.system.sliding_stack import stack_on, tied_on_ground
 from rockframe.system.stack import StackSetting, block_setting, stack_setting
-from rockframe.system.stacked import CascadeSetting, CoupledSetting, StackedSetting
+from rockframe.system.stacked import (
+    CascadeSetting,
+    CoupledSetting,
+    SlidingCoupledSetting,
+    StackedSetting,
+)
 from rockframe.system.words import describe
 
 if TYPE_CHECKING:
@@ -106,6 +112,20 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
     return kind(upper.load, upper, lower, parts.the_cap)
 
 
+def _coupled(parts: Parts, options: Options) -> StackedSetting:
+    """Put a block on pads on a cap on soil, on which either slips where its base has friction."""
+    held, bases = _stacked(CoupledSetting, parts, options), (parts["pads"], parts["soil"])
+    pads, soil = (friction_under(base, options) for base in bases)
+    own = any(isinstance(base, OwnBase) for base in bases)  # one of two laws alone may slip
+    if own or (pads is None and soil is None):
+        return held
+    if options.small:
+        raise AssemblyError([SMALL_SLIDING])
+    return SlidingCoupledSetting(
+        held.load, held.upper, held.lower, held.cap, frictions=(pads or HELD, soil or HELD)
+    )
+
+
 def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
     """Put a stack, or a block with restrainers, on the base in a slot."""
     base = parts.components.get(slot, RigidGround())
@@ -137,7 +157,7 @@ _SHIPPED: Final = (
     Scene(
         "Block + TwoSpringSupport + CushionCap + WinklerSoil, coupling='coupled'",
         _STACK,
-        partial(_stacked, CoupledSetting),
+        _coupled,
         Coupling.COUPLED,
     ),
     Scene(

@@ -66,6 +66,8 @@ class Setting(ABC):
     """What to do where they do not, if anything can be done, at the end of a sentence."""
     slides: ClassVar[bool] = False
     """Whether in the equations a body slides on its base, so that its friction is that of these."""
+    sliding_bodies: ClassVar[tuple[str, ...]] = ()
+    """What verdicts call the bodies that slide; unless told, by their numbers."""
 
     steps_cost_most: ClassVar[bool] = True
     """Whether a run spends more on steps than on events and labels, so that fixed steps save."""

@@ -2,9 +2,9 @@
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 
@@ -13,16 +13,18 @@ from rockframe.errors import AssemblyError
 from rockframe.many import atan2, isnan
 from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
+from rockframe.system.fitting import HELD, BaseFriction
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting
+from rockframe.system.setting import Setting, SlipRange
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
-from rockframe.system.words import Words
+from rockframe.system.words import SLIPS, Words
 
 if TYPE_CHECKING:
+    from rockframe.dynamics.chain.slips import SlippingBodies
     from rockframe.dynamics.coupled.model import StackRest
-    from rockframe.dynamics.protocol import ContactModel
+    from rockframe.dynamics.protocol import ContactModel, Ending
     from rockframe.dynamics.vibrations import ChainBody
 
 LEAST_CAP_SHARE = 1e-3
@@ -211,6 +213,52 @@ class CoupledSetting(StackedSetting):
     def rest_rotation(self) -> float:
         """Rotation of the block at rest, with the cap [rad]."""
         return self.rest.rotation + self.rest.cap_rotation
+
+
+@dataclass(frozen=True)
+class SlidingCoupledSetting(CoupledSetting):
+    """Block and cap, with friction on pads, on soil or on both."""
+
+    frictions: tuple[BaseFriction, BaseFriction]  # of the block on the cap, of the cap on the soil
+    slides = True
+    sliding_bodies = ("the block", "the cap")
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return "coupled-sliding"
+
+    def words(self) -> Words:
+        """Tell block, cap and soil, and their friction."""
+        told, names = super().words(), ("pads", "soil")
+        numbers = [
+            (f"{name}: friction at rest, and of slip", friction.words())
+            for name, friction in zip(names, self.frictions, strict=True)
+            if friction != HELD
+        ]
+        return replace(
+            told,
+            equations=[*told.equations, SLIPS],
+            numbers=[*told.numbers, *numbers],
+            left_out=[one for one in told.left_out if one != "sliding"],
+        )
+
+    def contact_model(self) -> "ContactModel":
+        """Give the equations of two bodies upon one another that slip."""
+        from rockframe.dynamics.chain.model import AtRest
+        from rockframe.dynamics.chain.on_cap import block_on_cap
+
+        rest = None
+        if self.leans:
+            rest = [AtRest(one.state.rotation, one.state.vertical) for one in self._rest]
+        return block_on_cap(*self.bodies(), self.body.mass, rest, self.frictions)
+
+    def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
+        """Tell how far the block slipped on the cap and, where that may, the cap on the soil."""
+        system, count = cast("SlippingBodies", self.compile().system), 2
+        if self.frictions[-1] == HELD:
+            count = 1
+        return tuple(SlipRange(*system.slips(k, ending)) for k in range(count))
 
 
 class CascadeSetting(StackedSetting):

@@ -153,6 +153,9 @@ SLIPS: Final = (
     Variable("event_slip", EVENT, Unit.METRE, "slip of the base at the event"),
     Variable("residual_slip", (), Unit.METRE, "slip of the base at the end of the run"),
     Variable("peak_slip", (), Unit.METRE, "largest absolute slip of the base while it bears"),
+    Variable("cap_slip", TIME, Unit.METRE, "slip of the cap on the soil, to the right"),
+    Variable("residual_cap_slip", (), Unit.METRE, "slip of the cap at the end of the run"),
+    Variable("peak_cap_slip", (), Unit.METRE, "largest absolute slip of the cap while it bears"),
     Variable(
         "residual_displacement",
         (),

@@ -1,0 +1,83 @@
+"""A block on pads on a cap on soil, either of which may slip: a chain of two, shown as such."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final, cast
+
+from rockframe.compiled import Vector, kernel
+from rockframe.dynamics.chain.friction import SlippingChain
+from rockframe.dynamics.chain.model import AtRest, chain
+from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
+from rockframe.dynamics.chain.rows import OBSERVED
+from rockframe.dynamics.chain.system import Chain
+from rockframe.dynamics.events import REVERSAL, SLIP, STICK
+from rockframe.dynamics.protocol import (
+    BODY_COLUMNS,
+    HELD_PLACE,
+    LAST_EVENT,
+    Column,
+    ContactModel,
+    Ground,
+)
+from rockframe.dynamics.stacked import COLUMNS, CONTACTS, LOWER, tell_of_soil
+from rockframe.dynamics.vibrations import ChainBody
+
+OF_CAP: Final = 4
+"""Columns of the cap's motion; forces that bear it are those of block and soil."""
+
+
+class OnCap(Chain):
+    """A block on a cap, whose events have names of their own. A mixin of systems."""
+
+    __slots__ = ()
+
+    @kernel
+    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Carry out the switch that a guard calls for, and name it; give the new mode."""
+        new, of_soil = self.switch_body(mode, guard, state, ground, memory), LOWER + 1.0
+        names_itself = int(memory[LAST_EVENT]) in (SLIP, STICK, REVERSAL)
+        if memory[HELD_PLACE + self.body_count] == of_soil and not names_itself:
+            tell_of_soil(memory)
+        return new
+
+
+class BothSlip(OnCap, SlippingChain):
+    """A block on a cap, both held by friction: a system."""
+
+    __slots__ = ()
+
+
+class OneSlips(OnCap, SlippingRigidChain):
+    """A block on a cap, of which one base holds: a system."""
+
+    __slots__ = ()
+
+
+def block_on_cap(
+    block: ChainBody, cap: ChainBody, mass: float, rest: Sequence[AtRest] | None,
+    frictions: Sequence[tuple[float, float, float]],
+) -> ContactModel:  # fmt: skip
+    """Assemble the model of a block on a cap, arguments as of :func:`chain`."""
+    found = chain((block, cap), mass, rest, frictions=frictions)
+    kind = BothSlip if isinstance(found.system, SlippingChain) else OneSlips
+    slips = Column("cap_slip" if math.isfinite(frictions[LOWER][0]) else "unused_slip")
+    own, of_cap = COLUMNS[len(BODY_COLUMNS) :], len(BODY_COLUMNS) + len(COLUMNS[-2:])
+    return replace(
+        found,
+        name="coupled",
+        system=kind(*cast("Chain", found.system)),
+        columns=(
+            *BODY_COLUMNS, *own[OF_CAP:], *_filled(block.base.columns, OBSERVED, "block"),
+            *_filled(own[:OF_CAP], of_cap, "cap"), *_filled(cap.base.columns, OBSERVED, "soil"),
+            Column("slip"), Column("slip_velocity"), slips, Column("unused_rate"),
+        ),
+        contacts=CONTACTS,
+        shows_bodies=False,
+    )  # fmt: skip
+
+
+def _filled(columns: Sequence[Column], count: int, whose: str) -> tuple[Column, ...]:
+    """Give columns and, behind them, those that users do not see."""
+    unseen = (Column(f"unused_{i}_of_{whose}") for i in range(count - len(columns)))
+    return (*columns, *unseen)
