@@ -67,17 +67,27 @@ class SlidingStackSetting(StackSetting):
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
         """Warn of bodies that slipped beyond the edge of what they stand on, which has no end."""
-        found = list[str]()
         pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
-        for k, (upper, lower, offset, slips) in enumerate(pairs, 1):
-            room = lower.half_width - upper.half_width
-            over = max(slips.right + offset, slips.left - offset) - room
-            if over > LEAST_OVERHANG * upper.half_width:
-                found.append(
-                    f"body {k} slides {over:.3g} m beyond the edge of body {k + 1}, whose top goes "
-                    "on without end in the model: it would tip about that edge sooner"
-                )
-        return found
+        found = (
+            beyond_edge(
+                slips, offset, upper.half_width, lower.half_width, (f"body {k}", f"body {k + 1}")
+            )
+            for k, (upper, lower, offset, slips) in enumerate(pairs, 1)
+        )
+        return [text for text in found if text]
+
+
+def beyond_edge(
+    slips: SlipRange, offset: float, upper: float, lower: float, names: Sequence[str]
+) -> str:
+    """Warn of a body that slipped beyond the edge of the one below; half their widths are given."""
+    over = max(slips.right + offset, slips.left - offset) - (lower - upper)
+    if over <= LEAST_OVERHANG * upper:
+        return ""
+    return (
+        f"{names[0]} slides {over:.3g} m beyond the edge of {names[1]}, whose top goes "
+        "on without end in the model: it would tip about that edge sooner"
+    )
 
 
 def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:

@@ -16,6 +16,7 @@ from rockframe.system.bodies import Cap
 from rockframe.system.fitting import HELD, BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange
+from rockframe.system.sliding_stack import beyond_edge
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
@@ -259,6 +260,12 @@ class SlidingCoupledSetting(CoupledSetting):
         if self.frictions[-1] == HELD:
             count = 1
         return tuple(SlipRange(*system.slips(k, ending)) for k in range(count))
+
+    def beyond_edges(self, ending: "Ending") -> list[str]:
+        """Warn of a block that slipped beyond the edge of its cap."""
+        slips, widths = self.slips_of(ending)[0], (self.body.half_width, self.cap.half_width)
+        found = beyond_edge(slips, 0.0, *widths, self.sliding_bodies)
+        return [found] if found else []
 
 
 class CascadeSetting(StackedSetting):

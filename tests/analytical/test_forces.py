@@ -321,7 +321,7 @@ def test_too_little_friction_warns_with_time_and_duration():
 def test_the_friction_of_a_stack_is_that_of_both_its_bases():
     pads, soil = PADS.replace(friction=0.05), SOIL.replace(friction=0.05)
     with pytest.warns(ModelWarning) as caught:
-        response = rf.System(BLOCK, pads, CAP, soil).simulate(PULSE)
+        response = rf.System(BLOCK, pads, CAP, soil, sliding="checked").simulate(PULSE)
     words = [str(each.message) for each in caught]
     assert any(word.startswith("the block would slide") for word in words)
     assert any(word.startswith("the cap would slide") for word in words)

@@ -80,7 +80,15 @@ SCENES[MIXED] = (
     (rf.Stack(STATUE, BLOCK, interfaces=[JOINT]), PADS.replace(friction=0.2)),
     "TwoSpringSupport.friction", [0.1, 0.2], ("statue on a block", "slippery pads"), "",
 )  # fmt: skip
-SLIPPERY = TIED | {MIXED}
+ON_CAP = "pads that slip on a cap"
+CAP = rf.CushionCap(height="0.5 m", mass="2 t")
+SCENES[ON_CAP] = (
+    (BLOCK, CAP, rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2), PADS.replace(friction=0.2)),
+    "TwoSpringSupport.friction", [0.1, 0.2], ("block", "slippery pads"),
+    '[cap]\nheight = "0.5 m"\nmass = "2 t"\n'
+    '[soil]\nstiffness = "20 MPa"\ndamping_ratio = 0.2\n',
+)  # fmt: skip
+SLIPPERY = TIED | {MIXED, ON_CAP}
 HAS_LINK = TIED | {"elastic wall", "elastic wall on pads", "frame with tendons", "tendon"}
 
 

@@ -1,0 +1,117 @@
+"""A block that slides on its cap, and a cap on its soil: a stack of two, with the cap's names."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.dynamics.events import EventKind
+from rockframe.results.points import Placement
+from rockframe.system.geometry import geometry_of
+
+BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
+CAP = rf.CushionCap(width="2 m", height="0.5 m", mass="2 t")
+PLATE = rf.Block(width="2 m", height="0.5 m", mass="2 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+SOIL = rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2)
+PUSH = rf.GroundMotion.sine_pulse("3.5 m/s^2", "2 Hz")
+PLAN = {"duration": "1.5 s", "accuracy": "standard"}
+
+
+def on_cap(pads, soil, **options):
+    bases = PADS.replace(friction=pads), SOIL.replace(friction=soil)
+    return rf.System(BLOCK, CAP, *bases, **options)
+
+
+def stacked(pads, soil):
+    joint = PADS.replace(friction=pads)
+    return rf.System(rf.Stack(BLOCK, PLATE, interfaces=[joint]), SOIL.replace(friction=soil))
+
+
+@pytest.mark.parametrize(("pads", "soil"), [(0.12, 0.15), (0.1, None), (None, 0.15)])
+def test_they_move_as_a_stack_of_two(pads, soil):
+    run = on_cap(pads, soil).simulate(PUSH, outputs=("energy", "cap_acceleration"), **PLAN)
+    other = stacked(pads, soil).simulate(PUSH, outputs=("energy",), **PLAN)
+    for name in ("rotation", "horizontal_displacement", "base_shear", "slip", "slip_velocity"):
+        np.testing.assert_allclose(run[name], other[name], rtol=1e-9, atol=1e-9)
+    lower = other.sel(body=2)
+    np.testing.assert_allclose(run.cap_rotation, lower.body_rotation, atol=1e-12)
+    np.testing.assert_allclose(
+        run.cap_vertical_displacement, lower.body_vertical_displacement, atol=1e-12
+    )
+    np.testing.assert_allclose(run.event_time, other.event_time, rtol=1e-9)
+    assert run.energy_residual < 1e-6
+    assert float(run.peak_slip) == pytest.approx(float(other.peak_body_slip[0]), abs=1e-12)
+    assert ("cap_slip" in run) is (soil is not None)
+    if soil is not None:
+        np.testing.assert_allclose(run.cap_slip, lower.body_slip, atol=1e-12)
+        assert float(run.peak_cap_slip) == pytest.approx(float(lower.peak_body_slip), abs=1e-12)
+        assert float(run.residual_cap_slip) == float(run.cap_slip[-1])
+        assert float(run.peak_cap_slip) > 1e-4
+    else:
+        assert float(run.peak_slip) > 1e-3
+
+
+def test_much_friction_holds():
+    # but for what a change of one body's held point leaves of the other's slip: that is stopped
+    # by a force, not by the same impulse
+    run, held = (on_cap(one, one).simulate(PUSH, **PLAN) for one in (1e6, None))
+    assert held.attrs["model"] == "coupled"
+    assert run.attrs["model"] == "coupled-sliding"
+    np.testing.assert_allclose(run.rotation, held.rotation, atol=1e-4)
+    np.testing.assert_allclose(run.cap_rotation, held.cap_rotation, atol=1e-4)
+    assert float(run.peak_slip) < 1e-7
+    assert float(run.peak_cap_slip) < 1e-7
+
+
+def test_the_mirrored_motion_is_mirrored():
+    system = on_cap(0.12, 0.15)
+    run, other = system.simulate(PUSH, **PLAN), system.simulate(PUSH.scaled(-1.0), **PLAN)
+    for name in ("rotation", "slip", "cap_slip", "cap_rotation"):
+        np.testing.assert_allclose(run[name], -other[name], atol=1e-10)
+
+
+def test_verdict_and_events_name_the_cap():
+    run = on_cap(0.12, 0.15).simulate(PUSH, **PLAN)
+    assert run.attrs["verdict"].startswith("The block slid ")
+    assert ", the cap slid " in run.attrs["verdict"]
+    assert {EventKind.SLIP, EventKind.STICK, EventKind.SOIL_CONTACT} <= set(run.event_kind.values)
+    assert "would_slide" not in run
+
+
+def test_what_is_held_is_checked():
+    system = on_cap(0.12, 0.15, sliding="checked")
+    with pytest.warns(rf.errors.ModelWarning) as caught:
+        run = system.simulate(PUSH, **PLAN)
+    words = " ".join(str(one.message) for one in caught)
+    assert "the block would slide" in words
+    assert "the cap would slide" in words
+    assert bool(run.would_slide)
+    assert "slip" not in run
+    with pytest.warns(rf.errors.ModelWarning, match="would slide"):
+        run = on_cap(0.12, 0.15, coupling="cascade").simulate(PUSH, **PLAN)
+    assert bool(run.would_slide)
+
+
+def test_small_rotations_do_not_slide():
+    with pytest.raises(rf.errors.AssemblyError, match="sliding='checked'"):
+        on_cap(0.12, 0.15, rotation="small").describe()
+
+
+def test_the_cap_is_drawn_where_it_is():
+    system, joints = on_cap(None, 0.1), stacked(None, 0.1)
+    run, other = system.simulate(PUSH, **PLAN), joints.simulate(PUSH, **PLAN)
+    values = {
+        name: float(run[name][-1])
+        for name in ("cap_slip", "cap_rotation", "cap_angular_velocity", "soil_contact_state")
+    }
+    geometry = geometry_of(system.assembly)
+    middle = Placement(geometry, values, system.restraint).cap(np.array([(0.0, 0.25)]))
+    assert abs(values["cap_slip"]) > 5e-3
+    assert middle[0, 0] == pytest.approx(float(other.body_horizontal_displacement[1, -1]), abs=5e-4)
+
+
+def test_a_block_beyond_the_edge_of_its_cap_is_warned_of():
+    short = CAP.replace(width="1.02 m")
+    system = rf.System(BLOCK, PADS.replace(friction=0.05), short, SOIL)
+    with pytest.warns(rf.errors.ModelWarning, match="the block slides .* beyond the edge of the c"):
+        system.simulate(PUSH.scaled(1.5), **PLAN)
