@@ -189,7 +189,7 @@ def player(
     traces = [
         _trace(of_rotation(drawn, unit), label, BLUE, store),
         *([_trace(length.of(drawn.dataset[SLIP]), _label(SLIP, length.words), ORANGE, store)]
-          if has_slid(drawn.dataset) else []),
+          if SLIP in drawn.dataset and has_slid(drawn.dataset) else []),
         _trace(ground.of(drawn.dataset["ground_acceleration"]),
                _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip

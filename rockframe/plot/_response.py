@@ -167,6 +167,10 @@ _SI_LENGTH: Final = Shown(str(LENGTH.unit), 1.0)
 _AT_REST: Final = 1e-12
 """Rotations below are rounding [rad]."""
 SLIP: Final = "slip"
+OF_BODIES: Final = "body_slip"
+OF_CAP: Final = "cap_slip"
+SLIPS: Final = (SLIP, OF_BODIES, OF_CAP)
+"""Histories of slip, of which one panel shows what there is."""
 _STACKED: Final = "rotation_on_cap"
 
 
@@ -295,15 +299,17 @@ def relative(rotation: Any, left: float, right: float) -> Any:
 
 
 def has_slid(run: xr.Dataset) -> bool:
-    """Whether a run has slip to be shown."""
-    return SLIP in run and float(np.abs(run[SLIP]).max()) >= LEAST_SLIP
+    """Whether a run has slip to be shown, of whatever body."""
+    slips = (run[name] for name in SLIPS if name in run)
+    return any(float(np.abs(slip).max()) >= LEAST_SLIP for slip in slips)
 
 
 def usual_panels(runs: list[Run]) -> tuple[str, ...]:
     """Give the panels of runs unless others are chosen."""
     slid = any(has_slid(run.dataset) for run in runs)
+    of_bodies = len(runs) == 1 and OF_BODIES in runs[0].dataset
     *above, contact = _HEIGHTS
-    return (*above, *([SLIP] if slid else []), contact)
+    return (*above, *([OF_BODIES if of_bodies else SLIP] if slid else []), contact)
 
 
 def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
@@ -382,6 +388,10 @@ def _history(axes: "Axes", runs: list[Run], name: str, units: ReaderUnits) -> No
             colour = run.colour if len(rows) == 1 else colour_of(number)
             axes.plot(run.time, unit.of(row), color=colour, linestyle=run.style, linewidth=0.9,
                       label=label)  # fmt: skip
+    if name == SLIP and len(runs) == 1 and OF_CAP in runs[0].dataset:
+        axes.lines[-1].set_label("block")
+        cap = unit.of(runs[0].dataset[OF_CAP])
+        axes.plot(runs[0].time, cap, color=ORANGE, linewidth=0.9, label="cap")
     if axes.get_legend_handles_labels()[0]:
         key(axes)
     zero_line(axes)

@@ -28,6 +28,7 @@ _MOTION: Final = (
     "peak_slip",
     "residual_slip",
     "peak_body_slip",
+    "peak_cap_slip",
     "peak_ground_acceleration",
     "peak_ground_velocity",
 )

@@ -15,7 +15,7 @@ from rockframe.components.parameters import Declared
 from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
-from rockframe.plot._response import SLIP, has_slid, histories_of
+from rockframe.plot._response import SLIPS, has_slid, histories_of
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
@@ -178,7 +178,7 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
 def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     """Show forces, accelerations and all else that was asked for along time."""
     beside = [name for name in histories_of(dataset) if name not in _DRAWN]
-    below = [name for name in beside if name != SLIP or not has_slid(dataset)]
+    below = [name for name in beside if name not in SLIPS or not has_slid(dataset)]
     for start in range(0, len(below), _PANELS):
         names = below[start : start + _PANELS]
         drawn = plot.response(dataset, panels=tuple(names), units=units.words, title=" ")

@@ -1,5 +1,6 @@
 """A block that slides on its cap, and a cap on its soil: a stack of two, with the cap's names."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -115,3 +116,21 @@ def test_a_block_beyond_the_edge_of_its_cap_is_warned_of():
     system = rf.System(BLOCK, PADS.replace(friction=0.05), short, SOIL)
     with pytest.warns(rf.errors.ModelWarning, match="the block slides .* beyond the edge of the c"):
         system.simulate(PUSH.scaled(1.5), **PLAN)
+
+
+def test_the_slip_of_a_cap_alone_is_told_and_drawn():
+    system = on_cap(None, 0.1)
+    runs = rf.sweep(system, PUSH, duration="1.5 s", scale=[0.1, 1.0])
+    assert "; 1 slid, by 0.0" in runs.attrs["verdict"]
+    assert runs.peak_cap_slip.squeeze()[1] > 1e-3 > runs.peak_cap_slip.squeeze()[0]
+    axes = rf.plot.response(system.simulate(PUSH, **PLAN))
+    panel = next(one for one in axes if one.get_ylabel().startswith("slip"))
+    assert [line.get_label() for line in panel.lines[:2]] == ["block", "cap"]
+    plt.close("all")
+
+
+def test_the_slips_of_all_bodies_of_a_stack_are_drawn():
+    run = stacked(None, 0.1).simulate(PUSH, **PLAN)
+    panel = next(one for one in rf.plot.response(run) if one.get_ylabel().startswith("body slip"))
+    assert len([line for line in panel.lines if not line.get_label().startswith("_")]) == 2
+    plt.close("all")

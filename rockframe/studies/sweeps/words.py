@@ -124,13 +124,17 @@ def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:
         yield runs.isel(dict(zip(status.dims, part, strict=True)))
 
 
+PEAK_SLIPS: Final = ("peak_slip", "peak_body_slip", "peak_cap_slip")
+"""Of the block, of all bodies of a stack, and of a cap."""
+
+
 def slips_of_cases(runs: xr.Dataset) -> Generic:
     """Give the largest slip of each case, of several bodies of that which slipped farthest [m]."""
-    found = runs.get("peak_body_slip", runs.get("peak_slip"))
-    if found is None:
-        return np.full(runs["status"].shape, np.nan)
-    others = [dim for dim in found.dims if dim not in runs["status"].dims]
-    return found.max(others).to_numpy()
+    most = np.full(runs["status"].shape, np.nan)
+    for found in (runs[name] for name in PEAK_SLIPS if name in runs):
+        others = [dim for dim in found.dims if dim not in runs["status"].dims]
+        most = np.fmax(most, found.max(others).to_numpy())
+    return most
 
 
 def not_screened(runs: xr.Dataset) -> xr.Dataset:
