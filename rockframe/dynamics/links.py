@@ -361,10 +361,10 @@ class Tie(NamedTuple):
             has_length = stretch.given + self.free + own[0] > stretch.noise
             value = x + CLEAR * stretch.noise if has_length else math.inf
         elif state == YIELDS and which == LOWER:
-            return stretch.rate, stretch.acceleration
+            return self.turning(1.0, stretch)
         elif state == SLACK and which == UPPER:
             if self.pushes != 0.0:
-                return -stretch.rate, -stretch.acceleration
+                return self.turning(-1.0, stretch)
             value = -x
         else:
             sign = 0.0
@@ -372,6 +372,11 @@ class Tie(NamedTuple):
             return 1.0, 0.0
         rate = sign * stretch.rate
         return value, rate
+
+    def turning(self, sign: float, stretch: Stretch) -> tuple[float, float]:
+        """Give the rate that must not turn as a length, which is what guards have noise of."""
+        time = sign / math.sqrt(self.stiffness)
+        return time * stretch.rate, time * stretch.acceleration
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
         """Give the state after the end of one; what a tie that breaks has stored is lost."""

@@ -49,6 +49,7 @@ from rockframe.dynamics.slide_motion import (
 from rockframe.dynamics.slide_rock import SlideRock, SlideSwitches
 from rockframe.dynamics.slide_rock_model import slide_rock
 from rockframe.dynamics.trigonometry import sine_cosine, versine
+from rockframe.dynamics.vibrations import greatest_share
 
 OWN_COLUMNS: Final = len(COLUMNS)
 SLIP_COLUMNS: Final = ("slip", "slip_velocity")
@@ -278,8 +279,6 @@ def fastest_pull(bare: SlideRock, ties: Sequence[ChainLink]) -> tuple[float, flo
         way = sign * np.array([[1.0, 0.0, y], [0.0, 1.0, -x]])
         stiffness += tie.numbers.stiffness * way.T @ way
         damping += tie.numbers.damping * way.T @ way
-    per_inertia = np.diag([1.0, 1.0, 1.0 / bare.inertia])
-    most, slowed = (
-        float(np.linalg.eigvals(per_inertia @ one).real.max()) for one in (stiffness, damping)
-    )
+    mass = np.diag([1.0, 1.0, bare.inertia])
+    most, slowed = (greatest_share(one, mass) for one in (stiffness, damping))
     return math.sqrt(max(most, 0.0)), max(slowed, 0.0)

@@ -48,8 +48,8 @@ def fastest_vibration(
         some = links[first:]
         pulled, slowed = _of_ties(some, ties, first)
         mass, stiffness, damped = small_motion_matrices(some)
-        fastest = max(fastest, _largest(mass, stiffness + pulled))
-        damping = max(damping, _largest(mass, damped + slowed))
+        fastest = max(fastest, greatest_share(stiffness + pulled, mass))
+        damping = max(damping, greatest_share(damped + slowed, mass))
     # a body that stands still on a rigid base makes no vibration faster; one that rocks is a
     # pendulum of its own
     rocking = sum(rocking_rate(per_own_mass(one)) ** 2 for one in links if is_rigid(one.base))
@@ -77,8 +77,14 @@ def _of_ties(
     return stiffness, damping
 
 
-def _largest(mass: Matrix, matrix: Matrix) -> float:
-    return float(np.linalg.eigvals(np.linalg.solve(mass, matrix)).real.max())
+def greatest_share(matrix: Matrix, mass: Matrix) -> float:
+    """Give the greatest eigenvalue of a matrix over that of the masses.
+
+    With each coordinate over its own inertia, so that rounding is not that of the unit of length.
+    """
+    scale = 1.0 / np.sqrt(np.diag(mass))
+    scales = np.outer(scale, scale)
+    return float(np.linalg.eigvals(np.linalg.solve(mass * scales, matrix * scales)).real.max())
 
 
 def small_motion_matrices(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:

@@ -26,8 +26,9 @@ HALF: Final = 0.5
 ENOUGH: Final = 1.0
 """The friction demand is told to last while it is above half its peak, or above what floors seldom
 have."""
-NO_FORCE: Final = 1e-9
-"""Force per mass, or change of velocity, that is rounding [m s^-2], [m s^-1]."""
+NO_FORCE: Final = 1e-10
+"""Share of the weight below which a force is rounding; of an impulse, in that of a fall by the
+height of the centre of mass."""
 
 
 def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
@@ -57,22 +58,24 @@ def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, 
 
 def friction_demands(values: Values, load: BaseLoad) -> dict[str, Generic]:
     """Give the friction demand of the bases, by their names in the schema."""
-    mass = load.body.mass
+    least = NO_FORCE * load.weight
     found: dict[str, Generic] = {
         "friction_demand": friction_demand(
-            values["horizontal_reaction"], values["vertical_reaction"], mass
+            values["horizontal_reaction"], values["vertical_reaction"], least
         )
     }
     if all(name in values for name in OF_SOIL_FRICTION):
         found["soil_friction_demand"] = friction_demand(
-            values["base_shear"], values["soil_reaction"], mass
+            values["base_shear"], values["soil_reaction"], least
         )
     return found
 
 
-def friction_demand(thrust: Array, press: Array, mass: float) -> Array:
-    """Give the coefficient of friction that keeps a body from sliding, :eq:`eq-friction-demand`."""
-    least = NO_FORCE * mass
+def friction_demand(thrust: Array, press: Array, least: float) -> Array:
+    """Give the coefficient of friction that keeps a body from sliding, :eq:`eq-friction-demand`.
+
+    Forces up to `least` are none.
+    """
     held = np.abs(thrust) > least
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(thrust) / press
@@ -121,9 +124,11 @@ def peaks_along(
     level = min(HALF * most, ENOUGH)
     lasted = along.above(lambda values: values["friction_demand"], level)[1] if level > 0.0 else 0.0
     impulses = events.impulses(load.body.mass)
+    fall = math.sqrt(load.body.centre_height / load.options.gravity)
     struck = friction_demand(
-        impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"], load.body.mass
-    )[events.is_impact]
+        impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"],
+        NO_FORCE * load.weight * fall,
+    )[events.is_impact]  # fmt: skip
     forces = {
         "peak_friction_demand": float(most),
         "peak_friction_demand_time": float(when),

@@ -22,7 +22,6 @@ from rockframe.results.forces import (
     residuals,
 )
 from rockframe.results.outcome import (
-    LEAST_SLIP,
     Generic,
     body_histories,
     cap_histories,
@@ -47,6 +46,8 @@ from rockframe.system.own_base import OwnAnswers
 
 OF_SLIPS: Final = (SLIP, REVERSAL, STICK)
 """Events by which a base that could not be held any longer slips, and holds again."""
+STOPPED_WITHIN: Final = 1e-6
+"""Share of the width of its base that a body slips at most where friction stops it at once."""
 
 
 @dataclass(frozen=True)
@@ -209,7 +210,7 @@ def _along(
     until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
     steps = run.kept_steps.until(until)
     shown = {name: each[: len(steps.time)] for name, each in columns.items()}
-    stops = _stops(run, events)
+    stops = _stops(run, events, STOPPED_WITHIN * 2.0 * load.body.half_width)
     if len(stops):
         kept = ~np.isin(steps.memory_row, stops)
         steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
@@ -256,15 +257,15 @@ def _peaks_of(names: tuple[str, ...], along: AlongSteps) -> Array:
     return along.largest(lambda shown: np.abs([shown[name] for name in names]))[0]
 
 
-def _stops(run: Trajectory, events: EventStates) -> Integers:
-    """Give the numbers, from one, of events whose small velocity friction stops at once."""
+def _stops(run: Trajectory, events: EventStates, within: float) -> Integers:
+    """Give the numbers, from one, of events whose small velocity friction stops `within` a way."""
     kind = run.events.kind
     if STICK not in kind:
         return np.empty(0, dtype=np.int64)
     changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
     of_caps = ("slip", "cap_slip")
     for name in (one for one in events.after if one in of_caps or one.startswith("slip_of_")):
-        changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < LEAST_SLIP
+        changes &= np.abs(events.before[name][1:] - events.after[name][:-1]) < within
     return 1 + np.flatnonzero(changes)
 
 

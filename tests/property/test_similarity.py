@@ -1,0 +1,86 @@
+"""Scenes of another size and mass, of millimetres to kilometres, move alike to the last bit.
+
+A length in metres, a time in seconds or a force in newtons that stands somewhere in the code shows
+here: an accuracy, a floor of rounding, a speed that counts as none.
+"""
+
+from zlib import crc32
+
+import numpy as np
+import pytest
+from property.similar_scenes import DRAWN
+from property.similarity import (
+    differences,
+    similar_arguments,
+    similar_motion,
+    similar_system,
+)
+
+import rockframe as rf
+
+pytestmark = [
+    pytest.mark.property,
+    # random scenes stretch their models, in either size alike
+    pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning"),
+    pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"),
+]
+
+LENGTHS = (4.0**-5, 4.0**-3, 4.0**3, 4.0**5)
+MASSES = (2.0**-20, 2.0**20)
+ACCURACIES = ("standard", "fast", "reference")
+OUTPUTS = ("energy", "acceleration", "reaction", "impulse")
+FEW, MANY = 3, 200
+
+
+def drawn(kind, number):
+    """Give a scene of a kind, how it is run, and what its lengths and masses are multiplied by."""
+    system, motion, asked = DRAWN[kind](np.random.default_rng([crc32(kind.encode()), number]))
+    asked |= {"accuracy": ACCURACIES[number % 3], "outputs": OUTPUTS}
+    # a motion as it is made from samples, not from what it was drawn by
+    return system, similar_motion(motion, 1.0), asked, LENGTHS[number // 3 % 4], MASSES[number % 2]
+
+
+def compare(kind, numbers):
+    """Check that scenes move alike in another size."""
+    for number in numbers:
+        system, motion, asked, length, mass = drawn(kind, number)
+        one = system.simulate(motion, **asked)
+        other = similar_system(system, length, mass).simulate(
+            similar_motion(motion, length), **similar_arguments(asked, length, mass)
+        )
+        assert not differences(one, other, length, mass), (kind, number)
+
+
+@pytest.mark.parametrize("kind", DRAWN)
+def test_a_scene_of_another_size_moves_alike(kind):
+    compare(kind, range(FEW))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", DRAWN)
+def test_many_scenes_of_another_size_move_alike(kind):
+    compare(kind, range(FEW, MANY))
+
+
+@pytest.mark.parametrize("kind", ["pads", "coupled", "ties", "held", "stack of mixed bases"])
+@pytest.mark.parametrize("length", LENGTHS)
+def test_a_scene_of_another_size_stands_alike(kind, length):
+    system, *_ = drawn(kind, 0)
+    other = similar_system(system, length, MASSES[0])
+    assert not differences(system.equilibrium(), other.equilibrium(), length, MASSES[0])
+    angles = (np.linspace(-0.2, 0.2, 9), "rad")
+    one, two = (each.moment_rotation(angles) for each in (system, other))
+    assert not differences(one, two, length, MASSES[0])
+
+
+@pytest.mark.parametrize("length", LENGTHS[::3])
+def test_scales_of_a_motion_that_overturn_another_size_are_the_same(length):
+    system, motion, *_ = drawn("slides", 0)
+    sizes = (system, motion), (similar_system(system, length, 1.0), similar_motion(motion, length))
+    found = [
+        rf.critical_scale(*one, scales=8, runs=16, largest=20.0, progress=False) for one in sizes
+    ]
+    assert found[0].critical_scale > 0.0
+    assert not differences(*found, length, 1.0)
+    runs = [rf.sweep(*one, scale=[0.5, 2.0], accuracy="screen", progress=False) for one in sizes]
+    assert not differences(*runs, length, 1.0)
