@@ -111,7 +111,8 @@ def recommend(
     met = bool(good.any())
     rung = f"{model!r} at accuracy {accuracy!r}"
     cost = f"{_without_exponent(1e3 * times[row, column], 3)} ms a run"
-    found = f"off by {_share(errors[row, column], 2)} in {_ERRORS[error]}"
+    of = _ERRORS[error] + " or slip" * (error == "peak_error" and "peak_slip" in dataset)
+    found = f"off by {_share(errors[row, column], 2)} in {of}"
     if met:
         slowest = float(np.max(times)) / float(times[row, column])
         sentence = (

@@ -15,9 +15,10 @@ from rockframe.comparison.models import check_system, model_ladder
 from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import verdict_of
+from rockframe.results.outcome import LEAST_SLIP, verdict_of
 from rockframe.results.schema import build_dataset
 from rockframe.shared_arguments import takes
+from rockframe.signals.arrays import Array
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import respond, run
@@ -39,11 +40,21 @@ def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:
 
 
 def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Compare peak rotations, relative to that of the reference."""
+    """Compare peak rotations and slips, relative to those of the reference; the greater error."""
     if _cut_off(run, reference):
         return float("nan")
-    peak = float(reference["peak_rotation"])
-    return _relative(abs(float(run["peak_rotation"]) - peak), peak)
+    peak, slips = float(reference["peak_rotation"]), _slips(reference)
+    error = _relative(abs(float(run["peak_rotation"]) - peak), peak)
+    slip = float(np.max(slips))
+    if slip < LEAST_SLIP:
+        return error
+    return max(error, float(np.max(np.abs(_slips(run) - slips))) / slip)
+
+
+def _slips(run: xr.Dataset) -> Array:
+    """Give the peak slips of all bodies of a run, zero where its model holds them [m]."""
+    names = [name for name in ("peak_body_slip", "peak_slip") if name in run]
+    return np.atleast_1d(run[names[0]].to_numpy()) if names else np.zeros(1)
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
@@ -124,10 +135,12 @@ def tradeoff(
     xarray.Dataset
         Over ``model`` and ``accuracy``. ``run_time`` (median), ``run_time_least``,
         ``run_time_greatest`` of runs that keep no histories [s]; the outcome:
-        ``peak_rotation``, ``overturned``, ``energy_residual``, ``status``. Against the same
+        ``peak_rotation``, ``overturned``, ``energy_residual``, ``status``, and ``peak_slip``
+        of a scene that slides [m]. Against the same
         model at a tolerance of 1e-12: ``numerical_peak_error``, ``numerical_history_error`` [1]
         and ``event_time_error`` [s]. Against the scene itself at that tolerance:
-        ``peak_error``, ``history_error`` [1] and ``verdict_agrees``. Errors of, and against,
+        ``peak_error``, ``history_error`` [1] and ``verdict_agrees``. Where the scene slides, errors
+        of peaks are the greater of those of rotation and of slip. Errors of, and against,
         a run that was cut off before its verdict are NaN, and its verdict agrees with none.
 
     Raises
@@ -232,6 +245,7 @@ def measure(
         "history_error": history_error(found, truth),
         "verdict_agrees": verdicts_agree(found, truth),
         **{name: found[name].item() for name in _KEPT},
+        **({"peak_slip": float(found.get("peak_slip", 0.0))} if "peak_slip" in truth else {}),
     }
 
 

@@ -337,7 +337,8 @@ def _overturned(run: Summary, setting: Setting, model: ContactModel) -> str:
         )
     if run.status is not Status.COMPLETED:
         return f"Overturned {when}"
-    ends = "stands" if abs(end) < angles.on_side_of(end) else "is beyond it"
+    stands = abs(end) < angles.on_side_of(end) and model.other_share_in(run.ending.state) < 1.0
+    ends = "stands" if stands else "is beyond it"
     return f"Passed the overturning angle {when}, and {ends} at the end"
 
 

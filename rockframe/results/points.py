@@ -58,7 +58,7 @@ def point_histories(
     angular = values["angular_acceleration"]
     body, small = load.body, load.options.small
     places = np.array([(point.x, point.y) for point in points])[:, :, None]
-    right, up = body.arms(places[:, 0], places[:, 1], rotation)
+    right, up = body.arms(places[:, 0], places[:, 1], values)
     sine, cosine = sines_cosines(rotation, small=small)
     # derivatives of the place about the centre of mass by the rotation
     across_rate, up_rate = up * cosine - right * sine, -right * cosine - up * sine

@@ -119,16 +119,35 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     model, setting, ending = system.model, system.setting, summary.ending
     rotation, size = model.rotation_in(ending.state), model.system.coordinates()
     rates, sizes = ending.state[size : 2 * size], model.scales[size : 2 * size]
-    upright = abs(rotation) < AT_REST * setting.overturning_angle
-    beyond = abs(rotation) >= setting.overturning_angles.on_side_of(rotation)
+    others = model.other_share_in(ending.state)
+    upright = abs(rotation) < AT_REST * setting.overturning_angle and others < AT_REST
+    beyond = abs(rotation) >= setting.overturning_angles.on_side_of(rotation) or others >= 1.0
     held = upright or (beyond and bool(setting.link_names))
     if held and bool(np.all(np.abs(rates) < AT_REST * sizes)):
         return False
-    if beyond:
+    if beyond or _whole_may_fall(system, ending):
         return True
     kinetic = _kinetic_energy(system, ending)
     needed = setting.overturning_energy
     return 0.0 < needed <= kinetic + stored_energy(setting, rotation)
+
+
+def _whole_may_fall(system: Assembly, ending: Ending) -> bool:
+    """Tell whether a lower body, and all above it as one, has the energy to fall over its corner.
+
+    As if it stood on rigid ground.
+    """
+    size = len(system.model.rotation_weights)
+    weights = system.model.other_limits.reshape(-1, 2 + size)[:, 2:]
+    rotations, rates = (weights @ ending.state[of : of + size] for of in (0, size))
+    for whole, rotation, rate in zip(system.setting.wholes, rotations, rates, strict=True):
+        across = whole.right if rotation > 0.0 else whole.left
+        left = whole.overturning_angles.on_side_of(rotation) - abs(rotation)
+        lift = math.hypot(across, whole.centre_height) * (1.0 - math.cos(left))
+        motion = 0.5 * whole.gyration_square_about(across) * rate**2
+        if motion >= system.options.gravity * lift:
+            return True
+    return False
 
 
 def _kinetic_energy(system: Assembly, ending: Ending) -> float:

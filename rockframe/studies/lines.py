@@ -329,8 +329,9 @@ class _Runner:
 
 
 def _moves(runs: xr.Dataset) -> xr.DataArray:
-    """Tell in which runs the base left the ground, or slid."""
-    moves = runs["first_uplift_time"].notnull()
+    """Tell in which runs a base left the ground, or slid; that of a lower body too."""
+    moves = runs["first_uplift_time"].notnull() | (runs["impact_count"] > 0)
+    moves |= runs["overturned"] == 1
     return moves | ~(runs["peak_slip"] == 0.0) if "peak_slip" in runs else moves
 
 

@@ -1,8 +1,9 @@
 """Bodies as they stand on a base: block and cap as one, how they land, and how they are held."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.components.cap import CushionCapSI
@@ -74,7 +75,7 @@ class SupportedBody(BodyGeometry):
         """Half the width that bears over b; 1 unless the body stands for several [1]."""
         return 1.0
 
-    def arms(self, x: Array, y: Array, rotation: Array) -> tuple[Array, Array]:
+    def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
         """Give where points, from the middle of the base, are from the centre of mass [m]."""
         return x - self.eccentricity, y - self.centre_height
 

@@ -1,6 +1,7 @@
 """The scene of columns under a beam: the body that moves as they do, tendons, and words."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
@@ -48,14 +49,15 @@ class FrameBody(SupportedBody):
         """Half the width of a column over that of the body [1]."""
         return self.frame.column.half_width / self.half_width
 
-    def arms(self, x: Array, y: Array, rotation: Array) -> tuple[Array, Array]:
+    def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
         """Give where points of a column, or of the beam, are from the centre of mass [m].
 
         Points above the top of the columns are of the beam, which moves as the upper corner
-        that bears it.
+        that bears it. The corners that bear tell the side: the sign of a rotation does not
+        where rocking begins and at impacts.
         """
         half, height = self.frame.column.half_width, self.frame.column.height
-        side = np.sign(rotation)
+        side = 1.0 * (values["right_reaction"] != 0.0) - (values["left_reaction"] != 0.0)
         of_beam = y > height
         right = np.where(of_beam, -half * side, x)
         up = np.where(of_beam, height, y)

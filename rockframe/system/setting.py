@@ -109,6 +109,11 @@ class Setting(ABC):
         """Energy that it takes to overturn the body, by itself, on the weaker side [J]."""
         return least_overturning_energy(self)
 
+    @cached_property
+    def wholes(self) -> tuple[SupportedBody, ...]:
+        """Bodies under the highest, each with all above it as one upright body."""
+        return ()
+
     @property
     def supports(self) -> tuple[Support, ...]:
         """The bases that give way, from that of the body down; none on rigid ground."""

@@ -66,6 +66,14 @@ class StackSetting(Setting):
             return f"{self.bases[0].model}-restrained"
         return "stack-restrained" if self.ties else "stack"
 
+    @cached_property
+    def wholes(self) -> tuple[SupportedBody, ...]:
+        """Bodies under the highest, each with all above it as one upright body."""
+        return tuple(
+            combined_body(self.bodies[: k + 1], self.tops, self.offsets)
+            for k in range(1, len(self.bodies))
+        )
+
     @property
     def supports(self) -> tuple[Support, ...]:
         """All bases."""
@@ -356,10 +364,7 @@ class StackSetting(Setting):
         from rockframe.dynamics.chain.model import chain
 
         rest = self._placed_at_rest()
-        limits = [
-            combined_body(self.bodies[: k + 1], self.tops, self.offsets).overturning_angles
-            for k in range(1, len(self.bodies))
-        ]
+        limits = [whole.overturning_angles for whole in self.wholes]
         return chain(
             self.links, self.body.mass, rest if self.leans else None, limits, self.chain_ties,
             self._held_height if self.ties and len(self.bodies) == 1 and self.groups else None,

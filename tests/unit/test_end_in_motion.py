@@ -78,6 +78,25 @@ def test_a_body_that_hangs_on_its_tie_beyond_the_angle_is_at_rest():
     assert run.attrs["cautions"] == "none"
 
 
+def test_a_lower_body_that_falls_counts_with_all_above_it():
+    """It carries a squat one, which is far from its own overturning angle."""
+    squat = rf.Block(width="0.6 m", height="0.5 m", mass="300 kg")
+    slender = rf.Block(width="0.7 m", height="3 m", mass="3 t")
+    pads = rf.TwoSpringSupport(frequency_ratio=30, damping_ratio=0.1)
+    system = rf.System(rf.Stack(squat, slender, interfaces=[pads]), pads)
+    push, plan = (
+        rf.GroundMotion.sine_pulse("4 m/s^2", "0.8 Hz"),
+        {"outputs": None},
+    )
+    with pytest.warns(SolverWarning, match=STILL_MOVING):
+        run = system.simulate(push, free_vibration="0.45 s", **plan)
+    assert run.attrs["verdict"].startswith("Did not overturn")
+    with pytest.warns(SolverWarning, match=STILL_MOVING):
+        run = system.simulate(duration="0.6 s", initial=run, overturning="continue", **plan)
+    assert "is beyond it at the end" in run.attrs["verdict"]
+    assert float(run.peak_rotation) < 0.5 * float(run.overturning_angle)
+
+
 @pytest.mark.parametrize("parts", [[], [PADS], [SOIL], [PADS, CAP, SOIL]], ids=len)
 @pytest.mark.parametrize("share", [0.9, 1.1])
 def test_the_bound_is_that_of_the_energy(parts, share):

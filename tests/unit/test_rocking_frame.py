@@ -123,6 +123,17 @@ def test_columns_without_a_beam_rock_as_one_alone():
         np.testing.assert_allclose(several[name], 3.0 * alone[name], rtol=0.0, atol=1e-9 * scale)
 
 
+def test_peaks_at_points_are_those_of_their_histories_where_the_rotation_is_zero():
+    column = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
+    run = rf.System(rf.RockingFrame(column, columns=3, beam_mass="5 t")).simulate(
+        rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz"), output_step="0.5 ms",
+        outputs=("point_vertical_acceleration",),
+        points={"foot": ("-0.4 m", "0 m"), "top": ("0.1 m", "2.5 m"), "beam": ("0 m", "3.5 m")},
+    )  # fmt: skip
+    seen = abs(run.point_vertical_acceleration).max("time")
+    np.testing.assert_allclose(run.peak_point_vertical_acceleration, seen, rtol=2e-3)
+
+
 def test_a_run_keeps_its_energy_tells_the_scene_and_goes_to_a_file(tmp_path):
     system = rf.System(BENT)
     run = system.simulate(

@@ -83,7 +83,7 @@ COMPARISON: Final = (
     Variable("run_time_greatest", (), Unit.SECOND, "greatest wall time of a run"),
     number(
         "numerical_peak_error",
-        "relative error of the peak rotation, against the same model at a tight tolerance",
+        "relative error of peak rotation or slip, against the same model at a tight tolerance",
     ),
     number(
         "numerical_history_error",
@@ -95,7 +95,7 @@ COMPARISON: Final = (
         Unit.SECOND,
         "largest error of an event's time, NaN if the events are others",
     ),
-    number("peak_error", "relative error of the peak rotation, against the scene itself"),
+    number("peak_error", "relative error of peak rotation or slip, against the scene itself"),
     number(
         "history_error", "largest error of the rotation over its peak, against the scene itself"
     ),

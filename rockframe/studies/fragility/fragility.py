@@ -148,8 +148,8 @@ def fragility(
     by ``fragility_status``, with NaN in its place: no run exceeded, all did, those that did
     are separated from those that did not, so that beta would be zero, or
     exceedances grow rarer with the intensity. Where they are separated, the median is in the middle
-    of the gap, the dispersion 0, at which the likelihood is greatest, and the bounds are those by
-    profile of one bracket for each motion. With fewer than five motions there are no bounds.
+    of the gap, the dispersion 0, at which the likelihood is greatest, and only counts, and motions
+    that were run once each, have bounds. With fewer than five motions there are none.
     Runs without a verdict are left out, ``left_out_count``.
 
     Rows of a table of cases that differ in motion and scale alone are of one structure, which

@@ -88,13 +88,15 @@ class _Fitted:
         """Fit, unless a fit is given, and look for the region where bounds come from it."""
         trials, made = found.trials, given or fit(found.trials, means.bands)
         separated = made.status is FragilityStatus.SEPARATED and trials.measures == 1
-        # separated trials of one motion do not contradict one another: they are one bracket
+        # capacities that an intensity parts lie together by chance: bounds from how close they
+        # are would hold in few samples
+        counted = trials.cluster is None and not np.any(trials.has_lower & trials.has_upper)
         bands = Bands.PROFILE if separated else means.bands
-        bounds = separated or made.status is FragilityStatus.FITTED
+        bounds = (separated and counted) or made.status is FragilityStatus.FITTED
         bounds = bounds and bounded(bands, found.independent) and made.complete
         edge = None
         if bounds and bands is Bands.PROFILE:
-            edge = boundary(trials.of_clusters() if separated else trials, made, means.confidence)
+            edge = boundary(trials, made, means.confidence)
         return cls(trials, made, edge, bounds)
 
 

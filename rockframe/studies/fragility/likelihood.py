@@ -234,11 +234,16 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
             at = best[:, None] + reach * ray
             return 2.0 * (greatest - log_likelihood(trials, at)) - drop
 
+        inner, outer = np.zeros(reach.shape), np.full(reach.shape, np.inf)
         for _ in range(_DOUBLINGS):  # the end of each ray comes to lie outside, if there is one
-            within = excess(reach) < 0.0
-            if not within.any():
+            beyond = excess(reach)
+            # where an upper end of a bracket falls below its lower one there is no likelihood
+            nowhere, within = ~np.isfinite(beyond), beyond < 0.0
+            if not (nowhere | within).any():
                 break
-            reach = np.where(within, 2.0 * reach, reach)
+            inner, outer = np.where(within, reach, inner), np.where(nowhere, reach, outer)
+            further = np.minimum(2.0 * reach, 0.5 * (inner + outer))
+            reach = np.where(nowhere | within, further, reach)
         for _ in range(60):  # Newton's steps for a convex function end from above
             over = excess(reach)
             slope = -2.0 * _slopes_along(trials, best[:, None] + reach * ray, ray)

@@ -52,19 +52,6 @@ class Trials:
             weight[kept], None if self.cluster is None else self.cluster[kept],
         )  # fmt: skip
 
-    def of_clusters(self) -> "Trials":
-        """Give one trial for each cluster whose trials do not contradict one another: a bracket."""
-        if self.cluster is None:
-            return self
-        names, place = np.unique(self.cluster, return_inverse=True)
-        lower, upper = np.full((2, len(names), self.measures), -np.inf)
-        upper = -upper
-        np.maximum.at(lower, place[self.has_lower], self.lower[self.has_lower])
-        np.minimum.at(upper, place[self.has_upper], self.upper[self.has_upper])
-        has_lower, has_upper = np.isfinite(lower[:, 0]), np.isfinite(upper[:, 0])
-        lower, upper = (np.where(np.isfinite(end), end, 0.0) for end in (lower, upper))
-        return Trials(lower, upper, has_lower, has_upper, np.ones(len(names)), None)
-
     @property
     def measures(self) -> int:
         """Number of intensity measures."""

@@ -455,3 +455,18 @@ def test_a_rung_is_timed_once_its_machine_code_is_there(monkeypatch):
     monkeypatch.setattr(module, "_timed", timed)
     rf.tradeoff(SYSTEM, PULSE, models="two pads", accuracies="standard", repeats=1, duration="1 s")
     assert done == ["untimed", "untimed", "timed"]
+
+
+def test_a_model_that_holds_a_block_is_off_by_its_slip():
+    floor = rf.RigidGround(friction=0.2, kinetic_friction=0.15)
+    system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"), floor)
+    pulse = rf.GroundMotion.sine_pulse("2.3 m/s^2", "1 Hz")  # which slides before it rocks
+    found = rf.tradeoff(system, pulse, accuracies="standard", repeats=1)
+    assert (found.peak_rotation == 0.0).all()
+    assert found.peak_error.values.ravel() == pytest.approx([1.0, 1.0, 0.0], abs=1e-6)
+    slip = float(system.simulate(pulse, outputs=None).peak_slip)
+    assert found.peak_slip.values.ravel().tolist() == [0.0, 0.0, slip]
+    assert slip > 0.03
+    best = rf.recommend(found)
+    assert best.model == "rigid ground, sliding"
+    assert "in the peak rotation or slip" in best.sentence

@@ -642,3 +642,17 @@ def test_pulses_keep_their_polynomials_in_a_sequence():
     for wrong in ({}, [[]], [["x"]], 3):
         with pytest.raises(ComponentError):
             rf.earthquake_sequences(SYSTEM, wrong)
+
+
+def test_gaps_are_looked_into_where_a_lower_body_alone_moves():
+    """The squat body on top never leaves its base."""
+    squat = rf.Block(width="0.9 m", height="0.6 m", mass="900 kg")
+    slender = rf.Block(width="0.95 m", height="5 m", mass="9 t")
+    stone = rf.RigidGround()
+    found = rf.incremental_dynamic_analysis(
+        rf.System(rf.Stack(squat, slender, interfaces=[stone]), stone),
+        rf.GroundMotion.sine_pulse("1 m/s^2", "0.6 Hz"), scale=[1.0, 8.0],
+        resolution=0.5, bracket_width=0.1, free_vibration="4 s", accuracy="fast",
+    )  # fmt: skip
+    assert found.first_uplift_time.isnull().all()
+    assert 0.0 < found.capacity_resolution.item() <= 0.5

@@ -12,7 +12,7 @@ from rockframe.studies.fragility.labelling import (
     StructureTrials,
     fragility_dataset,
 )
-from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, fit
+from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, boundary, fit
 from rockframe.studies.fragility.trials import Trials
 from rockframe.studies.fragility.words import COVERAGE, bounded, words_of_bounds
 
@@ -115,17 +115,16 @@ def test_bounds_by_jackknife_are_those_of_its_definition():
 
 @pytest.mark.long
 def test_bounds_by_jackknife_hold_with_few_motions():
-    """Of five motions, and of the samples of them that an intensity separates."""
+    """Of five motions; the samples of them that an intensity separates have none."""
     rng, samples = np.random.default_rng(9), []
     for _ in range(200):
         logs, over, cluster = runs_of(rng, 5, 0.4)
         trials = Trials.of_verdicts(logs[:, None], over, np.ones(len(over)), cluster)
         samples.append((trials, 5))
-    for status in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
-        shares, count = held(samples, 0.4, Bands.JACKKNIFE, status)
-        assert count >= 5
-        for share in shares:
-            assert share >= 0.95 - 3.0 * np.sqrt(0.95 * 0.05 / count)
+    shares, count = held(samples, 0.4, Bands.JACKKNIFE)
+    assert count >= 5
+    for share in shares:
+        assert share >= 0.95 - 3.0 * np.sqrt(0.95 * 0.05 / count)
 
 
 def test_separated_counts_have_the_bounds_of_their_likelihood():
@@ -151,13 +150,36 @@ def test_separated_counts_have_the_bounds_of_their_likelihood():
     assert "the median lies from" in found.verdict
 
 
-def held(samples, dispersion, bands, status=FragilityStatus.FITTED):
+def test_brackets_have_the_bounds_of_their_likelihood():
+    """Rays towards slopes below zero, where brackets have no likelihood, end before these."""
+    ends = np.log([[0.80, 0.75, 1.11, 0.54, 0.85], [1.07, 1.00, 1.67, 1.08, 1.28]])
+    lower, upper = ends[:, :, None]
+    known = np.ones(5, dtype=bool)
+    trials = Trials(lower, upper, known, known, np.ones(5), None)
+    intercept, slope = boundary(trials, fit(trials, Bands.PROFILE), 0.95)
+    assert slope.min() > 0.0
+    medians = np.linspace(-0.4, 0.4, 801)[:, None]
+    dispersions = np.geomspace(0.01, 1.0, 600)
+    shares = [
+        stats.norm.cdf((up - medians) / dispersions) - stats.norm.cdf((low - medians) / dispersions)
+        for low, up in zip(*ends, strict=True)
+    ]
+    with np.errstate(divide="ignore"):
+        likely = 2.0 * np.log(shares).sum(axis=0)
+    rows, columns = np.nonzero(likely >= likely.max() - stats.chi2.ppf(0.95, 1))
+    found = -intercept / slope
+    assert [found.min(), found.max()] == pytest.approx(medians[[rows[0], rows[-1]], 0], abs=2e-3)
+    assert 1.0 / slope.min() == pytest.approx(dispersions[columns.max()], rel=0.02)
+
+
+def held(samples, dispersion, bands):
     """Shares of samples in which the bounds hold the median, 1, and the dispersion."""
     found = fragility_dataset(
         [StructureTrials(trials, None, 0, independent) for trials, independent in samples],
         {"limit_state": len(samples)}, [MEASURE], Means(bands, 0.95), {"trials": "runs"},
     )  # fmt: skip
-    fitted = found.fragility_status == status
+    fitted = found.fragility_status == FragilityStatus.FITTED
+    assert found.median_intensity_lower_bound.where(~fitted).isnull().all()
     fitted &= found.median_intensity_lower_bound.notnull()
     shares = []
     for name, truth in (("median_intensity", 1.0), ("dispersion", dispersion)):
