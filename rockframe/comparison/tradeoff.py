@@ -15,7 +15,7 @@ from rockframe.comparison.models import check_system, model_ladder
 from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import LEAST_SLIP, verdict_of
+from rockframe.results.outcome import LEAST_SLIP, PEAK_SLIPS, verdict_of
 from rockframe.results.schema import build_dataset
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -53,8 +53,8 @@ def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 def _slips(run: xr.Dataset) -> Array:
     """Give the peak slips of all bodies of a run, zero where its model holds them [m]."""
-    names = [name for name in ("peak_body_slip", "peak_slip") if name in run]
-    return np.atleast_1d(run[names[0]].to_numpy()) if names else np.zeros(1)
+    found = [np.atleast_1d(run[name].to_numpy()) for name in PEAK_SLIPS if name in run]
+    return np.concatenate(found) if found else np.zeros(1)
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:

@@ -40,6 +40,8 @@ SAME: Final = 1e-6
 """Share by which one body comes no closer to overturning than another."""
 LEAST_SLIP: Final = 1e-6
 """Slip that is worth telling; changes of the held point leave less [m]."""
+PEAK_SLIPS: Final = ("peak_slip", "peak_body_slip", "peak_cap_slip")
+"""Of the block, of all bodies of a stack, and of a cap; those that a scene has."""
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
 

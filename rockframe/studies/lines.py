@@ -20,7 +20,7 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import Generic
+from rockframe.results.outcome import PEAK_SLIPS, Generic
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
@@ -332,7 +332,9 @@ def _moves(runs: xr.Dataset) -> xr.DataArray:
     """Tell in which runs a base left the ground, or slid; that of a lower body too."""
     moves = runs["first_uplift_time"].notnull() | (runs["impact_count"] > 0)
     moves |= runs["overturned"] == 1
-    return moves | ~(runs["peak_slip"] == 0.0) if "peak_slip" in runs else moves
+    for slip in (runs[name] for name in PEAK_SLIPS if name in runs):
+        moves |= ~(slip.max([dim for dim in slip.dims if dim not in moves.dims]) == 0.0)
+    return moves
 
 
 def read_resolution(given: object, *, owner: str) -> float:

@@ -11,7 +11,7 @@ import xarray as xr
 
 from rockframe.errors import ModelWarning, SolverWarning, warn
 from rockframe.results.joining import CASE_COUNT
-from rockframe.results.outcome import LEAST_SLIP, Generic, overturned_by
+from rockframe.results.outcome import LEAST_SLIP, PEAK_SLIPS, Generic, overturned_by
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import MESSAGE, REPEATED, VERDICT_CHANGED
@@ -122,10 +122,6 @@ def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:
     ]
     for part in product(*cuts):
         yield runs.isel(dict(zip(status.dims, part, strict=True)))
-
-
-PEAK_SLIPS: Final = ("peak_slip", "peak_body_slip", "peak_cap_slip")
-"""Of the block, of all bodies of a stack, and of a cap."""
 
 
 def slips_of_cases(runs: xr.Dataset) -> Generic:
