@@ -76,7 +76,7 @@ def _balanced(
 
     place, value, slopes = guess, at(guess), slopes_at(guess)
     for _ in range(TRIES):
-        if not np.isfinite(value).all() or not np.linalg.det(slopes):
+        if not _finite(value, slopes) or not np.linalg.det(slopes):
             return None
         move = np.linalg.solve(slopes, -value)
         furthest = np.abs(move).max()
@@ -91,4 +91,10 @@ def _balanced(
         return None
     if len(place) > 1:  # a secant is the slope where there is but one rotation
         slopes = slopes_at(place)
-    return place if np.linalg.eigvalsh(slopes + slopes.T).max() < 0.0 else None
+    stable = _finite(slopes) and np.linalg.eigvalsh(slopes + slopes.T).max() < 0.0
+    return place if stable else None
+
+
+def _finite(*values: Matrix) -> bool:
+    """Whether bases carry the bodies, and carry them a little beside too."""
+    return all(bool(np.isfinite(one).all()) for one in values)

@@ -279,6 +279,6 @@ def fastest_pull(bare: SlideRock, ties: Sequence[ChainLink]) -> tuple[float, flo
         way = sign * np.array([[1.0, 0.0, y], [0.0, 1.0, -x]])
         stiffness += tie.numbers.stiffness * way.T @ way
         damping += tie.numbers.damping * way.T @ way
-    mass = np.diag([1.0, 1.0, bare.inertia])
-    most, slowed = (greatest_share(one, mass) for one in (stiffness, damping))
+    root = np.diag([1.0, 1.0, math.sqrt(bare.inertia)])
+    most, slowed = (greatest_share(one, root) for one in (stiffness, damping))
     return math.sqrt(max(most, 0.0)), max(slowed, 0.0)

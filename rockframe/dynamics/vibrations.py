@@ -47,9 +47,9 @@ def fastest_vibration(
     for first in range(len(links)):
         some = links[first:]
         pulled, slowed = _of_ties(some, ties, first)
-        mass, stiffness, damped = small_motion_matrices(some)
-        fastest = max(fastest, greatest_share(stiffness + pulled, mass))
-        damping = max(damping, greatest_share(damped + slowed, mass))
+        root, stiffness, damped = small_motion_matrices(some)
+        fastest = max(fastest, greatest_share(stiffness + pulled, root))
+        damping = max(damping, greatest_share(damped + slowed, root))
     # a body that stands still on a rigid base makes no vibration faster; one that rocks is a
     # pendulum of its own
     rocking = sum(rocking_rate(per_own_mass(one)) ** 2 for one in links if is_rigid(one.base))
@@ -77,34 +77,31 @@ def _of_ties(
     return stiffness, damping
 
 
-def greatest_share(matrix: Matrix, mass: Matrix) -> float:
-    """Give the greatest eigenvalue of a matrix over that of the masses.
+def greatest_share(matrix: Matrix, root: Matrix) -> float:
+    """Give the greatest eigenvalue of a matrix over that of the masses, which is R^T R of a root.
 
-    With each coordinate over its own inertia, so that rounding is not that of the unit of length.
+    The root is never singular to rounding, as the masses of unlike bodies are.
     """
-    scale = 1.0 / np.sqrt(np.diag(mass))
-    scales = np.outer(scale, scale)
-    return float(np.linalg.eigvals(np.linalg.solve(mass * scales, matrix * scales)).real.max())
+    inverse = np.linalg.inv(root)
+    return float(np.linalg.eigvalsh(inverse.T @ matrix @ inverse).max())
 
 
 def small_motion_matrices(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
-    """Give mass, stiffness of the bases and damping of small motion of upright bodies.
+    """Give root of the masses, stiffness of the bases and damping of small motion, upright.
 
     In the order of rotation and height of each body relative to what it stands on, from the top
     down.
     """
     x, y, turn = small_ways(links)
-    mass = sum(
-        one.mass * (np.outer(x[k], x[k]) + np.outer(y[k], y[k]))
-        + one.body.inertia * np.outer(turn[k], turn[k])
-        for k, one in enumerate(links)
-    )
+    root = np.sqrt([one.mass for one in links])[:, None]
+    gyration = np.sqrt([one.body.inertia for one in links])[:, None]
     springs = np.array([
         each for one in links
         for each in (one.base.rotational_stiffness, one.base.vertical_stiffness)
     ])  # fmt: skip
     times = np.repeat([one.base.damping_time for one in links], 2)
-    return np.asarray(mass), np.diag(springs), np.diag(springs * times)
+    rows = np.concatenate([root * x, root * y, gyration * turn])
+    return np.linalg.qr(rows).R, np.diag(springs), np.diag(springs * times)
 
 
 def small_ways(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:

@@ -304,7 +304,8 @@ def integrate(
     steps = NO_STEPS
     if keep_steps:
         intervals = duration / run.controls[at.TIME_STEP]
-        room = STEP_ROOM + math.ceil(STEPS_PER_INTERVAL * intervals * max(run.substeps, 1))
+        expected = STEPS_PER_INTERVAL * intervals * max(run.substeps, 1)
+        room = STEP_ROOM + math.ceil(min(expected, MOST_STEPS_KEPT))
         row = BESIDE + 2 * width - model.system.coordinates()
         steps = StepTable(np.empty(room * row), np.empty(room * CODES, dtype=np.int64))
     events = EventTable(

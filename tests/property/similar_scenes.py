@@ -26,8 +26,12 @@ def usual(base, rng):
 
 
 def of_part(part, rng):
-    """Draw walls, frames, tendons, stacks."""
-    return *random_parts.drawn(part, rng), {}
+    """Draw walls, frames, tendons, stacks, of which some are on pads that are too soft."""
+    while True:
+        try:
+            return *random_parts.drawn(part, rng), {}
+        except rf.errors.AssemblyError:
+            continue
 
 
 def slides(draw, rng):

@@ -2,7 +2,7 @@
 
 Lengths are multiplied by L, masses by M and times by sqrt(L), accelerations stay as they are: all
 else that has a unit follows from its dimension, as :func:`factor` tells. With L a power of four and
-M one of two all numbers keep their digits.
+M one of two all numbers keep their digits, but where a library rounds a square otherwise.
 """
 
 import math
@@ -17,6 +17,7 @@ import rockframe as rf
 QUANTITY = re.compile(r"([-+0-9.e]+) (\S.*)")
 PLACE = re.compile(r"\((\S+), (\S+)\) m")
 NUMBER = re.compile(r"[-+]?\d[\d.e+-]*")
+COUNTS = ("solver_steps", "solver_rejected_steps")
 AS_THEY_ARE = ("accuracy", "outputs", "overturning", "second_look")
 
 
@@ -55,11 +56,12 @@ def similar_system(system, length, mass):
     return rf.System.from_dict(scaled(system.to_dict(), length, mass))
 
 
-def similar_motion(motion, length):
-    """Give the same accelerations at steps of another length."""
+def similar_motion(motion, length, nudge=0.0):
+    """Give the same accelerations at steps of another length, or with a nudge."""
     step, vertical = f"{math.sqrt(length) * motion.si.time_step!r} s", motion.si.vertical
     up = {} if vertical is None else {"vertical": (vertical.samples, "m/s^2")}
-    return rf.GroundMotion.from_arrays((motion.si.horizontal.samples, "m/s^2"), step, **up)
+    across = (1.0 + nudge) * motion.si.horizontal.samples
+    return rf.GroundMotion.from_arrays((across, "m/s^2"), step, **up)
 
 
 def similar_arguments(asked, length, mass):
@@ -80,20 +82,26 @@ def without_numbers(text):
 
 
 def differences(one, other, length, mass):
-    """Name what differs in its last bit between two datasets, the other one scaled back."""
-    found = [] if one.sizes == other.sizes else ["sizes"]
-    found += set(one.variables) ^ set(other.variables)
-    found += [
-        name for name in ("solver_steps", "solver_rejected_steps")
-        if one.attrs.get(name) != other.attrs.get(name)
-    ]  # fmt: skip
+    """Give what differs in its last bit between two datasets, the other one scaled back.
+
+    By its name, the greatest difference over the greatest value; infinite of what is no number.
+    """
+    alike = {name: one.attrs.get(name) == other.attrs.get(name) for name in COUNTS}
+    alike["sizes"] = one.sizes == other.sizes and set(one.variables) == set(other.variables)
     # not the verdict, which tells of slips from a micrometre on
     texts = (without_numbers(each.attrs.get("cautions")) for each in (one, other))
-    found += ["cautions"] if len(set(texts)) > 1 else []
+    alike["cautions"] = len(set(texts)) == 1
+    found = {name: math.inf for name, same in alike.items() if not same}
     for name in set(one.variables) & set(other.variables):
         ours, theirs = one[name].to_numpy(), other[name].to_numpy()
-        if ours.dtype.kind == "f":
+        number = ours.dtype.kind == "f"
+        if number:
             theirs = theirs / factor(one[name].attrs.get("units"), length, mass)
-        if not np.array_equal(ours, theirs, equal_nan=ours.dtype.kind == "f"):
-            found.append(name)
-    return sorted(found)
+        if np.array_equal(ours, theirs, equal_nan=number):
+            continue
+        found[name] = math.inf
+        if number and ours.shape == theirs.shape:
+            apart = np.where(ours == theirs, 0.0, np.abs(ours - theirs))
+            apart = np.where(np.isnan(ours) & np.isnan(theirs), 0.0, apart)
+            found[name] = float(np.max(apart) / np.nanmax(np.abs(ours), initial=1e-300))
+    return found

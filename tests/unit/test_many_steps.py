@@ -14,7 +14,7 @@ def test_the_first_steps_are_kept_and_the_run_says_so(monkeypatch):
     pads = rf.TwoSpringSupport(frequency_ratio=4000, damping_ratio=0.1)
     system, pulse = rf.System(block, pads), rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz")
     whole = system.simulate(pulse, duration="0.5 s", outputs=["base_shear"])
-    monkeypatch.setattr(integrate, "MOST_STEPS_KEPT", 50)
+    monkeypatch.setattr(integrate, "MOST_STEPS_KEPT", 400)
     with pytest.warns(SolverWarning, match="until 0.09"):
         run = system.simulate(pulse, duration="0.5 s", outputs=["base_shear"])
     for name in ("rotation", "base_shear", "event_time"):
@@ -33,3 +33,13 @@ def test_a_run_that_pauses_goes_on_to_the_last_bit(monkeypatch):
     whole = system.simulate(motion)
     monkeypatch.setattr(integrate, "STEPS_UNHEARD", 40)
     assert system.simulate(motion).drop_attrs().identical(whole.drop_attrs())
+
+
+def test_a_run_that_would_make_endless_steps_ends_at_their_limit():
+    block = rf.Block(width="1 m", height="3 m", mass="1 t")
+    system = rf.System(block, rf.TwoSpringSupport(frequency_ratio=1e10, damping_ratio=0.1))
+    accuracy = rf.Accuracy(substeps="fewest", steps_per_period=10.0, max_steps=100)
+    pulse = rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz")
+    with pytest.warns(SolverWarning, match="the limit of steps was reached"):
+        run = system.simulate(pulse, accuracy=accuracy)
+    assert run.attrs["solver_steps"] == 100

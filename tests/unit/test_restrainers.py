@@ -437,3 +437,17 @@ def test_ties_add_what_they_store_to_the_energy_that_overturns_a_mixed_stack():
 def test_changes_of_contact_beside_ties_come_to_an_end(number):
     _, ended, _ = run_drawn(number)
     assert ended in ("completed", "overturned", "toppled")
+
+
+def test_ties_too_stiff_to_find_rest_beside_are_refused_without_a_warning_of_numpy():
+    upper = rf.Block(width="0.63 m", height="2.4 m", mass="3 t")
+    lower = rf.Block(width="0.87 m", height="0.88 m", mass="1.5 t")
+    pads = rf.TwoSpringSupport(frequency_ratio=22, damping_ratio=0.1)
+    ties = [
+        rf.Restrainer(
+            on=("-0.43 m", on), to=("0.31 m", to), on_body=2, to_body=1, stiffness="5e10 N/m"
+        )
+        for on, to in (("0.2 m", "2.355 m"), ("0.59 m", "0.21 m"))
+    ]
+    with pytest.raises(AssemblyError, match="find no rest"):
+        rf.System(rf.Stack(upper, lower, interfaces=[pads]), pads, *ties)

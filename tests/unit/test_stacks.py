@@ -266,3 +266,13 @@ def test_certificates_change_all_its_numbers(joint):
     assert {f"{name.replace('_', ' ')} of the stack" for name in stack.parameters()} < set(scenes)
     changed = scenes["height of body 1 of the stack"](1e-3)
     assert changed.setting.bodies[0].centre_height == pytest.approx(0.9 * 1.001, rel=1e-12)
+
+
+@pytest.mark.parametrize("masses", [(1e-9, 1.0, 1e9), (1e9, 1.0, 1e-9), (1e9, 1e-9, 1e9)])
+def test_bodies_of_masses_that_are_nothing_to_one_another_vibrate(masses):
+    blocks = [rf.Block(width="1 m", height="2 m", mass=f"{one} t") for one in masses]
+    pads = rf.TwoSpringSupport(frequency_ratio=20.0, damping_ratio=0.1)
+    model = rf.System(rf.Stack(*blocks, interfaces=[pads, pads]), pads).setting.compile()
+    # of the body above by itself, whose pads bear it alone
+    alone = rf.System(blocks[0], pads).setting.compile()
+    assert alone.fastest_frequency * (1.0 - 1e-9) <= model.fastest_frequency < np.inf
