@@ -174,7 +174,7 @@ def case(
 
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
     """Give the study that a dataset is of, if this process has made it."""
-    return _studies.get(str(attributes["study_sha256"]))
+    return _studies.get(str(attributes.get("study_sha256")))
 
 
 def remember(study: Study) -> None:
