@@ -217,7 +217,9 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
         return motion_number(wanted, values.tolist(), owner=_OWNER)
     near = ""
     if values.dtype.kind == "f":
-        measure = Measure("a value", Unit(labels.attrs["units"]), f"{values[0]:g}")
+        unit = Unit(labels.attrs["units"])
+        example = f"{values[0]:g}" if unit == Unit.ONE else f"{values[0]:g} {unit}"
+        measure = Measure("a value", unit, example)
         number = (
             _float(wanted)
             if isinstance(wanted, int | float | np.number)
