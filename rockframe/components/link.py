@@ -279,7 +279,7 @@ class Load(Link):
     vertical = Parameter(FORCE, doc="Force downwards; none unless given.", default="0 N")
     horizontal = Parameter(FORCE, doc="Force to the right; none unless given.", default="0 N")
     moving_mass = Parameter(
-        MASS, POSITIVE,
+        MASS, NOT_NEGATIVE,
         doc="Mass at the point, a part of the body, with its weight; none unless given.",
         default=None,
     )  # fmt: skip
@@ -302,7 +302,7 @@ class Load(Link):
         )  # fmt: skip
 
     def _numbers(self, given: SIValues) -> Any:
-        if not (given.vertical or given.horizontal or given.moving_mass):
+        if not (given.vertical or given.horizontal) and given.moving_mass is None:
             msg = "Load: give vertical, horizontal or moving_mass"
             raise ComponentError(msg)
         return given

@@ -11,7 +11,7 @@ import xarray as xr
 from rockframe.errors import FileError
 from rockframe.plot._artists import CONTACT, SceneArtist
 from rockframe.plot._axes import BLUE, GREY, units_of
-from rockframe.plot._checks import RUN, above_zero, check_run, draws
+from rockframe.plot._checks import RUN, above_zero, checked_run, draws
 from rockframe.plot._panels import AxesLike, Figure, Panels, sheet
 from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
@@ -238,7 +238,7 @@ def animation(
     <animation of 21 frames, 1.1 s; save('run.gif')>
     >>> moving.save("run.gif")  # doctest: +SKIP
     """
-    check_run(run, "animation")
+    run = checked_run(run, "animation")
     (drawn,) = runs_of(run, "animation", window)
     rate = above_zero(frames_per_second, "animation", "frames_per_second")
     length = float(drawn.time[-1] - drawn.time[0])

@@ -8,6 +8,7 @@ from inspect import signature
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
+import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, RockframeWarning, SchemaError
@@ -147,8 +148,11 @@ def drawn_by(given: xr.Dataset) -> str:
     raise SchemaError(msg)
 
 
-def check_run(given: object, function: str) -> None:
-    """Refuse what is not the result of one run with histories."""
+def checked_run(given: object, function: str) -> xr.Dataset:
+    """Refuse what is not the result of one run with histories; give it up to its end.
+
+    Histories of a case of a sweep go on behind that, as NaN, as long as those of other cases.
+    """
     given = _checked(given, function, RUN)
     for name in (*RUN.known, *RUN.needed):
         if given[name].dtype.kind not in "fiub":
@@ -164,12 +168,17 @@ def check_run(given: object, function: str) -> None:
             f"{', '.join(more)}; pick one, for example with dataset.isel({more[0]}=0)"
         )
         raise SchemaError(msg)
-    if given.sizes["time"] < 2:
+    known = np.flatnonzero(~np.isnan(given["relative_rotation"].to_numpy()))
+    if not len(known):
+        msg = f"rf.plot.{function} needs {_needed(function)}, got a case without a result"
+        raise SchemaError(msg)
+    if known[-1] < 1:
         msg = (
             f"rf.plot.{function} needs {_needed(function)}, got one of a single instant; "
             "simulate for longer, or with a shorter output_step"
         )
         raise SchemaError(msg)
+    return given.isel(time=slice(int(known[-1]) + 1))
 
 
 def drawable(given: object, function: str, units: "UnitsLike" = None) -> xr.Dataset:
@@ -274,7 +283,10 @@ def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:
 
 
 def overturning_angles(dataset: xr.Dataset) -> tuple[float, float]:
-    """Give the overturning angles to the left and to the right [rad]."""
+    """Give the overturning angles to the left and to the right [rad].
+
+    A case of a sweep has those of both sides as NaN where the body has but one.
+    """
     least = dataset["overturning_angle"]
     left, right = (dataset.get(f"{side}_overturning_angle", least) for side in ("left", "right"))
-    return float(left), float(right)
+    return float(left.fillna(least)), float(right.fillna(least))

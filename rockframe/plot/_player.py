@@ -15,7 +15,7 @@ import xarray as xr
 from rockframe.arguments import text
 from rockframe.plot._artists import CONTACT, SOIL, Layout
 from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_of
-from rockframe.plot._checks import RUN, check_run, draws
+from rockframe.plot._checks import RUN, checked_run, draws
 from rockframe.plot._response import (
     CONTACT_COLOURS,
     SLIP,
@@ -173,7 +173,7 @@ def player(
     True
     >>> player.save("run.html")  # doctest: +SKIP
     """
-    check_run(run, "player")
+    run = checked_run(run, "player")
     (drawn,) = runs_of(run, "player", window)
     chosen = units_of(units, "player")
     unit = chosen.unless_relative(ANGLE, rotation=chosen.rotations(rotation))

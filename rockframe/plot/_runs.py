@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import colour_of, style_of
-from rockframe.plot._checks import check_run
+from rockframe.plot._checks import checked_run
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.shown import ReaderUnits
 
@@ -43,13 +43,11 @@ def runs_of(given: object, function: str, window: Window) -> list[Run]:
     cut = window_of(window, function)
     labelled = _labelled(given)
     if labelled is None:
-        check_run(given, function)
-        return [Run(_part(cast("xr.Dataset", given), cut, function), None, colour_of(0), "-")]
-    for one in labelled.values():
-        check_run(one, function)
+        return [Run(_part(checked_run(given, function), cut, function), None, colour_of(0), "-")]
+    runs = {label: checked_run(one, function) for label, one in labelled.items()}
     return [
         Run(_part(one, cut, function), label, colour_of(number), style_of(number))
-        for number, (label, one) in enumerate(labelled.items())
+        for number, (label, one) in enumerate(runs.items())
     ]
 
 

@@ -10,7 +10,14 @@ from rockframe.arguments import truth
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
-from rockframe.plot._checks import RUN, above_zero, check_run, draws, require_system, system_of_run
+from rockframe.plot._checks import (
+    RUN,
+    above_zero,
+    checked_run,
+    draws,
+    require_system,
+    system_of_run,
+)
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.signals.arrays import Array
@@ -148,7 +155,7 @@ def state(
     >>> axes.get_title()
     ''
     """
-    check_run(run, "state")
+    run = checked_run(run, "state")
     chosen = units_of(units, "state")
     moving = Moving(run, "state", magnify, chosen)
     place = moving.nearest(time)
@@ -176,9 +183,13 @@ class Moving:
         self.drawer = Drawer(geometry_of(self.system.assembly), number)
         self.run = run
         self.time = run["time"].to_numpy()
-        missing = [name for name in _FOLLOWED[:4] if name not in run]
+        needed = (*_FOLLOWED[:4], *(_OF_BODIES if self.geometry.lower else ()))
+        missing = [name for name in needed if name not in run]
         if missing:
-            msg = f"rf.plot.{function}: the run lacks {', '.join(map(repr, missing))}"
+            msg = (
+                f"rf.plot.{function}: the run lacks {', '.join(map(repr, missing))}; a case of a "
+                "sweep has all where it is run alone, rf.case(runs, ...).simulate()"
+            )
             raise SchemaError(msg)
         self._columns = {name: run[name].to_numpy() for name in _FOLLOWED if name in run}
 

@@ -15,6 +15,7 @@ from rockframe.components.parameters import Declared
 from rockframe.errors import RockframeError
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
+from rockframe.plot._checks import RUN
 from rockframe.plot._response import SLIPS, has_slid, histories_of
 from rockframe.reports import page
 from rockframe.reports.figures import figure_of
@@ -155,7 +156,7 @@ def motion_section(
 
 def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     """Show the scalars of a run, and figures of its histories."""
-    if dataset.sizes.get("time", 0) > 1:
+    if dataset.sizes.get("time", 0) > 1 and {*RUN.known, *RUN.needed} <= {*dataset.variables}:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.picture(
             figure_of(
@@ -167,7 +168,7 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
         )
         yield from _histories(dataset, units)
     else:
-        yield page.paragraph("The run kept no histories to draw.", kind="soft")
+        yield page.paragraph("The run kept no histories of its motion to draw.", kind="soft")
     names = [str(name) for name in dataset.data_vars if str(name) not in _CERTIFICATE]
     yield page.rows(table_of(dataset, names, units))
     if any(name in dataset for name in _CERTIFICATE):

@@ -117,6 +117,11 @@ def report(
     """
     dataset = checked_dataset(response, owner=_OWNER)
     _check(dataset)
+    # dimensions that xarray stacked: their levels are coordinates as others
+    stacked = [
+        dim for dim, index in dataset.indexes.items() if dim in dataset.dims and index.nlevels > 1
+    ]
+    dataset = dataset.reset_index(stacked)
     truth(certify, owner=_OWNER, name="certify")
     given = "" if title is None else text(title, owner=_OWNER, name="title")
     if motion is not None and not isinstance(cast("object", motion), GroundMotion):

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_names, text
-from rockframe.errors import ComponentError, StudyError, nearest, shown
+from rockframe.errors import ComponentError, SchemaError, StudyError, nearest, shown
 from rockframe.measures import (
     average_spectral_acceleration,
     intensity_measures,
@@ -249,6 +249,9 @@ def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str
     attributes: Mapping[str, Any] = runs.attrs
     known, kept = remembered(attributes), store_of(runs)
     found: dict[str, GroundMotion] = {}
+    if MOTION not in runs.coords:
+        msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
+        raise SchemaError(msg)
     used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist())
     names: list[str] = json.loads(attributes["motion_names"])
     unknown = sorted(used - set(names))

@@ -65,6 +65,10 @@ class BlockSizes:
         self.width = 2.0 * np.sin(angle)[:, None] * radius
         self.height = 2.0 * np.cos(angle)[:, None] * radius
         scene = scene_of(self.system)
+        # a wall has a height, too
+        beside = [part for part in self.system.parts.structural() if not isinstance(part, Block)]
+        shared = {name for part in beside for name in part.varied()}
+        self._names = [f"Block.{one}" if one in shared else one for one in ("width", "height")]
         own = [scene.axis(name, each) for name, each in self._sizes.items()]
         self._axes = read_line_axes(axes, scene, owner=owner, others=_ARGUMENTS, beside=own)
 
@@ -72,7 +76,8 @@ class BlockSizes:
     def _sizes(self) -> dict[str, tuple[Generic, str]]:
         """Sizes, in rows of a table: slenderness by slenderness."""
         unit = str(LENGTH.unit)
-        return {"width": (self.width.ravel(), unit), "height": (self.height.ravel(), unit)}
+        both = (self.width, self.height)
+        return {name: (one.ravel(), unit) for name, one in zip(self._names, both, strict=True)}
 
     @property
     def columns(self) -> dict[str, tuple[Generic, str]]:
@@ -107,7 +112,7 @@ def _block(system: System, owner: str) -> Block:
     block = system.parts.block
     fault = ""
     if block is None or type(block) is not Block:
-        fault = f"a {type(block).__name__}"
+        fault = f"a {type(block or next(iter(system.parts.structural()))).__name__}"
     elif not _in_the_middle(block):
         fault = "a block whose centre of mass is not in its middle"
     elif system.parts.cap is not None:
@@ -165,7 +170,8 @@ def rocking_spectrum(
     xarray.Dataset
         The sweep over ``slenderness``, ``rocking_period`` [s], the axes and ``motion``, whose
         ``peak_relative_rotation`` is the rocking spectrum; with ``width`` and ``height`` [m] of
-        the blocks. :func:`rockframe.case` gives any case back.
+        the blocks, ``Block.height`` beside a wall, which has one too. :func:`rockframe.case`
+        gives any case back.
 
     Raises
     ------

@@ -111,6 +111,14 @@ def test_a_mass_at_a_point_is_a_part_of_the_body():
     np.testing.assert_allclose(runs[1].rotation, runs[0].rotation, rtol=0, atol=1e-10)
 
 
+def test_an_axis_of_masses_may_begin_at_none():
+    system = rf.System(BLOCK, rf.Load(at=("0 m", "8 m"), moving_mass="5 t"))
+    runs = rf.sweep(system, PULSE, moving_mass=["0 t", "5 t"], outputs=None, progress=False)
+    for parts, peak in zip(((BLOCK,), system.parts.structural()), runs.peak_rotation, strict=True):
+        alone = rf.System(*parts).simulate(PULSE, outputs=None)
+        assert peak.item() == pytest.approx(float(alone.peak_rotation), rel=1e-6)
+
+
 def test_on_pads_a_tendon_is_a_tie_from_its_depth():
     tie = rf.Restrainer(
         on=("0.2 m", "0 m"), to=("0.2 m", "-2 m"), stiffness="2.5 MN/m", preload="0.2 MN"

@@ -174,7 +174,7 @@ def case(
 
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
     """Give the study that a dataset is of, if this process has made it."""
-    return _studies.get(str(attributes["study_sha256"]))
+    return _studies.get(str(attributes.get("study_sha256")))
 
 
 def remember(study: Study) -> None:
@@ -217,7 +217,9 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
         return motion_number(wanted, values.tolist(), owner=_OWNER)
     near = ""
     if values.dtype.kind == "f":
-        measure = Measure("a value", Unit(labels.attrs["units"]), f"{values[0]:g}")
+        unit = Unit(labels.attrs["units"])
+        example = f"{values[0]:g}" if unit == Unit.ONE else f"{values[0]:g} {unit}"
+        measure = Measure("a value", unit, example)
         number = (
             _float(wanted)
             if isinstance(wanted, int | float | np.number)

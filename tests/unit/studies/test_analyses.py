@@ -656,3 +656,24 @@ def test_gaps_are_looked_into_where_a_lower_body_alone_moves():
     )  # fmt: skip
     assert found.first_uplift_time.isnull().all()
     assert 0.0 < found.capacity_resolution.item() <= 0.5
+
+
+def test_a_wall_that_has_a_height_leaves_that_of_the_block_to_spectra():
+    block = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
+    wall, pulse = rf.RearWall(side="left"), rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz")
+    found = rf.rocking_spectrum(rf.System(block, wall), pulse, periods=["4 s"], accuracy="fast")
+    width, height = (float(found[name].item()) for name in ("width", "Block.height"))
+    alone = rf.System(block.replace(width=f"{width!r} m", height=f"{height!r} m"), wall)
+    expected = alone.simulate(pulse, accuracy="fast", outputs=None).peak_rotation.item()
+    assert found.peak_rotation.item() == pytest.approx(expected, rel=1e-9)
+    again = rf.case(found, slenderness=4.0, rocking_period=4.0).system.parts.block
+    assert again.si.height == pytest.approx(height, rel=1e-12)
+
+
+def test_spectra_name_what_is_no_block():
+    frame = rf.RockingFrame(
+        rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"), columns=2, beam_mass="1 t"
+    )
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    with pytest.raises(rf.errors.ComponentError, match="got a RockingFrame"):
+        rf.rocking_spectrum(rf.System(frame), pulse, periods=["4 s"])

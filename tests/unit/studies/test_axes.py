@@ -115,3 +115,12 @@ def test_peaks_of_the_motion_have_their_abbreviations() -> None:
         rf.sweep(rf.System(BLOCK), PULSE, PGA=["2 m/s^2"], scale=[1.0], duration="2 s")
     own = rf.sweep(lambda PGA: rf.System(BLOCK), PULSE, PGA=[1, 2], duration="2 s")  # noqa: N803
     assert "PGA" in own.dims
+
+
+def test_a_case_without_its_unit_is_answered_by_one_with_it():
+    column = rf.System(rf.Block(width="1 m", height="4 m", mass="1 t"))
+    pulse = rf.GroundMotion.sine_pulse("2 m/s^2", "2 Hz")
+    runs = rf.sweep(column, pulse, width=["1 m"], outputs=None, progress=False)
+    words = r"got '1' \(no unit\); write for example width='1 m'"
+    with pytest.raises(rf.errors.UnitsError, match=words):
+        rf.case(runs, width="1")

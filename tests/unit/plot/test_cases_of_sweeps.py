@@ -1,0 +1,66 @@
+"""Cases picked from a sweep with histories, and what was made of sweeps, drawn and told."""
+
+import pytest
+
+import rockframe as rf
+from rockframe.errors import SchemaError
+
+BLOCK = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
+PULSE = rf.GroundMotion.sine_pulse("5 m/s^2", "1 Hz")
+QUIET = {"accuracy": "fast", "progress": False}
+
+
+@pytest.fixture(scope="module")
+def fallen():
+    """A case that ends before the other one, from where on its histories are NaN."""
+    runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.5, 1.6], outputs=[], **QUIET)
+    case = runs.isel(scale=1, motion=0)
+    assert case.rotation.isnull().any()
+    return case
+
+
+@pytest.mark.parametrize("draw", [rf.plot.response, rf.plot.phase, rf.plot.state])
+def test_a_case_is_drawn_up_to_its_end(fallen, draw):
+    axes = draw(fallen)
+    figure = axes.figure if hasattr(axes, "figure") else axes[0].figure
+    figure.canvas.draw()
+
+
+def test_a_case_plays_up_to_its_end(fallen):
+    end = float(fallen.time[fallen.rotation.notnull()][-1])
+    assert f"player of {end:.1f} s" in repr(rf.plot.player(fallen))
+    assert "animation of 13 frames" in repr(rf.plot.animation(fallen))
+
+
+def test_a_case_without_a_result_is_refused(fallen):
+    with pytest.raises(SchemaError, match="got a case without a result"):
+        rf.plot.response(fallen.assign(relative_rotation=fallen.relative_rotation * float("nan")))
+
+
+def test_cases_of_stacks_lack_what_is_drawn_of_their_bodies():
+    stone = rf.RigidGround()
+    system = rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[stone]), stone)
+    runs = rf.sweep(system, PULSE, scale=[0.5], outputs=[], duration="0.1 s", **QUIET)
+    with pytest.raises(SchemaError, match=r"lacks 'body_rotation'.*rf\.case"):
+        rf.plot.state(runs.squeeze())
+
+
+def test_reports_take_cases_and_what_was_made_of_sweeps(fallen, tmp_path):
+    system, path = rf.System(BLOCK), tmp_path / "report.html"
+    some = rf.sweep(system, PULSE, scale=[0.5], outputs=["energy"], **QUIET)
+    other = rf.sweep(system, PULSE, scale=[0.6], duration="1 s", **QUIET)
+    given = {
+        "in a row": rf.concat([some, other], "scale"),
+        "of one index": some.stack(both=("scale", "motion")),
+        "with energies alone": some.squeeze(),
+        "a case": fallen,
+    }
+    for name, one in given.items():
+        rf.report(one, path, certify=False, overwrite=True)
+        assert path.stat().st_size > 10_000, name
+
+
+def test_a_fragility_needs_the_motions_of_the_runs():
+    runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.5, 1.6], **QUIET)
+    with pytest.raises(SchemaError, match="without the coordinate 'motion'"):
+        rf.fragility(runs.mean("motion", keep_attrs=True), "PGA")
