@@ -137,6 +137,8 @@ def _whole_may_fall(system: Assembly, ending: Ending) -> bool:
 
     As if it stood on rigid ground.
     """
+    if not system.setting.wholes:  # other bodies of a scene of one's own are no such
+        return False
     size = len(system.model.rotation_weights)
     weights = system.model.other_limits.reshape(-1, 2 + size)[:, 2:]
     rotations, rates = (weights @ ending.state[of : of + size] for of in (0, size))

@@ -474,13 +474,14 @@ def _sentence(found: xr.Dataset, repeated: bool) -> str:
     words = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
     count, fell = found.sizes["run"], int(found["cloud_overturned_count"])
     rest = int(found["resting_count"])
+    response = str(found.attrs["response"]).replace("_", " ")
     text = f"Of {count} runs {fell} overturned"
-    text += f" and {rest} did not move" if rest else ""
+    text += f" and {rest} show no {response}" if rest else ""
     if math.isnan(float(found["regression_slope"])):
         text += "; too few are between for a line"
     else:
         text += (
-            f"; the {str(found.attrs['response']).replace('_', ' ')} of the others grows with "
+            f"; the {response} of the others grows with "
             f"power {float(found['regression_slope']):.3g} of {words}, dispersion "
             f"{float(found['residual_dispersion']):.3g}"
         )

@@ -126,8 +126,8 @@ def compare_intensities(
         if cloud.line is None:
             some = int(((cloud.responses > 0.0) & np.isfinite(cloud.responses)).sum())
             msg = (
-                f"{_OWNER}: {some} of {len(cloud.responses)} runs moved and did not overturn, too "
-                f"few for a line over {measure.name}; give more motions, or others"
+                f"{_OWNER}: {some} of {len(cloud.responses)} runs have a response and did not "
+                f"overturn, too few for a line over {measure.name}; give more motions, or others"
             )
             raise StudyError(msg)
         named.append(measure_words(str(measure.name), told.get(PERIOD_OF)))

@@ -152,7 +152,7 @@ CLOUD: Final = (
     ),
     number("logistic_slope_error", "standard error of that slope"),
     count("cloud_overturned_count", "number of runs that overturned"),
-    count("resting_count", "number of runs in which nothing moved"),
+    count("resting_count", "number of runs without a response"),
     number("response_limit", "level of the response, infinite for overturning"),
     number("cloud_intensity", "intensity of a run, in the unit of the measure", RUN),
     number("cloud_response", "response of a run, infinite where the block overturned", RUN),

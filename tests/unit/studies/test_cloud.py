@@ -211,3 +211,16 @@ def test_what_cannot_be_is_refused(base, options, error, words):
         rf.cloud_analysis(made(base), **{"intensity": "strength", **options})
     with pytest.raises(StudyError, match="3 runs have a verdict"):
         rf.cloud_analysis(made(base).isel(motion=slice(3)), "strength")
+
+
+def test_runs_that_slide_without_rocking_are_not_said_to_stay():
+    block, floor = (
+        rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"),
+        rf.RigidGround(friction=0.2),
+    )
+    pulses = {
+        f"{k}": rf.GroundMotion.sine_pulse(f"{2.0 + 0.05 * k} m/s^2", "1 Hz") for k in range(6)
+    }
+    runs = rf.sweep(rf.System(block, floor), pulses, outputs=None, progress=False)
+    assert (runs.peak_slip > 1e-5).all()
+    assert "0 overturned and 6 show no peak relative rotation" in rf.cloud_analysis(runs).verdict
