@@ -15,10 +15,9 @@ from rockframe.comparison.models import check_system, model_ladder
 from rockframe.comparison.recommend import recommend
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, nearest, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.outcome import LEAST_SLIP, PEAK_SLIPS, verdict_of
+from rockframe.results.outcome import LEAST_SLIP, PEAK_SLIPS, Generic, verdict_of
 from rockframe.results.schema import build_dataset
 from rockframe.shared_arguments import takes
-from rockframe.signals.arrays import Array
 from rockframe.simulation.plan import Plan, plan_run
 from rockframe.simulation.provenance import motion_attributes
 from rockframe.simulation.run import respond, run
@@ -51,7 +50,7 @@ def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
     return max(error, float(np.max(np.abs(_slips(run) - slips))) / slip)
 
 
-def _slips(run: xr.Dataset) -> Array:
+def _slips(run: xr.Dataset) -> Generic:
     """Give the peak slips of all bodies of a run, zero where its model holds them [m]."""
     found = [np.atleast_1d(run[name].to_numpy()) for name in PEAK_SLIPS if name in run]
     return np.concatenate(found) if found else np.zeros(1)

@@ -588,7 +588,10 @@ def test_a_verdict_in_words(found, pads_on_cap, words):
     setting = SimpleNamespace(
         overturning_angles=angles, leans=False, stacked=pads_on_cap, slips_of=lambda _: []
     )
-    model = SimpleNamespace(system=None, links=0, shows_bodies=False, rotation_in=lambda _: 0.1)
+    model = SimpleNamespace(
+        system=None, links=0, shows_bodies=False, rotation_in=lambda _: 0.1,
+        other_share_in=lambda _: 0.0,
+    )  # fmt: skip
     assert verdict(replace(summary, **found), setting, model) == words
     of_several = SimpleNamespace(**vars(model) | {"shows_bodies": True})
     upper = verdict(replace(summary, first_uplift_time=math.nan), setting, of_several)
