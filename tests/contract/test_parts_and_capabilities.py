@@ -81,11 +81,11 @@ SCENES[MIXED] = (
     "TwoSpringSupport.friction", [0.1, 0.2], ("statue on a block", "slippery pads"), "",
 )  # fmt: skip
 ON_CAP = "pads that slip on a cap"
-CAP = rf.CushionCap(height="0.5 m", mass="2 t")
+CAP = rf.CushionCap(width="3 m", height="0.5 m", mass="2 t")
 SCENES[ON_CAP] = (
     (BLOCK, CAP, rf.WinklerSoil(stiffness="20 MPa", damping_ratio=0.2), PADS.replace(friction=0.2)),
     "TwoSpringSupport.friction", [0.1, 0.2], ("block", "slippery pads"),
-    '[cap]\nheight = "0.5 m"\nmass = "2 t"\n'
+    '[cap]\nwidth = "3 m"\nheight = "0.5 m"\nmass = "2 t"\n'
     '[soil]\nstiffness = "20 MPa"\ndamping_ratio = 0.2\n',
 )  # fmt: skip
 SLIPPERY = TIED | {MIXED, ON_CAP}
