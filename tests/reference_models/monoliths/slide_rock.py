@@ -220,7 +220,9 @@ class Block:
             tie.begin(self.height, self.seen_by_ties(z))
         mode = None
         t, piece, peak, peak_slip = 0.0, 0, abs(a), 0.0
+        began, passes = t, 0
         while t < duration - 1e-12:
+            began, passes = (t, 0) if t > began else (began, passes + 1)
             while self.times[piece + 1] <= t + 1e-13:
                 piece += 1
             ground = self.ground(t, piece)
@@ -243,7 +245,7 @@ class Block:
             peak, peak_slip = max(peak, found), max(peak_slip, slipped)
             if fell and stop:
                 break
-            if len(self.events) > MOST_EVENTS:
+            if max(len(self.events), passes) > MOST_EVENTS:
                 msg = "too many events"
                 raise RuntimeError(msg)
         return {"peak": peak, "peak_slip": peak_slip, "time": t, "state": z, "mode": mode,
