@@ -127,8 +127,14 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
         return False
     if beyond or _whole_may_fall(system, ending):
         return True
-    kinetic = _kinetic_energy(system, ending)
+    kinetic, body = _kinetic_energy(system, ending), setting.body
     needed = setting.overturning_energy
+    parts = system.parts
+    if not (parts.links or parts.wall or parts.frame or parts.own):
+        # a base alone holds a body back by no more than its weight at a corner
+        most = body.mass * setting.gravity * max(body.left, body.right) * abs(rotation)
+        if kinetic + most < needed:
+            return False
     return 0.0 < needed <= kinetic + stored_energy(setting, rotation)
 
 
