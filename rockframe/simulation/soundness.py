@@ -127,15 +127,23 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
         return False
     if beyond or _whole_may_fall(system, ending):
         return True
-    kinetic, body = _kinetic_energy(system, ending), setting.body
-    needed = setting.overturning_energy
-    parts = system.parts
-    if not (parts.links or parts.wall or parts.frame or parts.own):
-        # a base alone holds a body back by no more than its weight at a corner
-        most = body.mass * setting.gravity * max(body.left, body.right) * abs(rotation)
-        if kinetic + most < needed:
-            return False
+    kinetic, needed = _kinetic_energy(system, ending), setting.overturning_energy
+    if kinetic + most_stored(system, rotation) < needed:
+        return False
     return 0.0 < needed <= kinetic + stored_energy(setting, rotation)
+
+
+def most_stored(system: Assembly, rotation: float) -> float:
+    """Bound what it takes to hold a body at a rotation, which is costly to work out [J].
+
+    A level base holds it back by no more than its weight at a corner. Infinite where a slope,
+    links, a wall, a beam or what a user adds may do more.
+    """
+    parts, setting = system.parts, system.setting
+    if parts.links or parts.wall or parts.frame or parts.own or not setting.slope.level:
+        return math.inf
+    body = setting.body
+    return body.mass * setting.gravity * max(body.left, body.right) * abs(rotation)
 
 
 def _whole_may_fall(system: Assembly, ending: Ending) -> bool:

@@ -64,6 +64,18 @@ def test_much_friction_holds():
     assert float(run.peak_cap_slip) < 1e-7
 
 
+@pytest.mark.parametrize(
+    ("block", "options"),
+    [(BLOCK, {"inclination": "3 deg"}), (BLOCK.replace(eccentricity="0.05 m"), {})],
+)
+def test_a_block_that_leans_starts_and_moves_as_one_that_is_held(block, options):
+    pads = (PADS.replace(friction=one) for one in (1e3, None))
+    run, held = (rf.System(block, one, CAP, SOIL, **options).simulate(PUSH, **PLAN) for one in pads)
+    assert held.rotation[0] != 0.0
+    np.testing.assert_allclose(run.rotation, held.rotation, atol=1e-5)
+    np.testing.assert_allclose(run.cap_rotation, held.cap_rotation, atol=1e-5)
+
+
 def test_the_mirrored_motion_is_mirrored():
     system = on_cap(0.12, 0.15)
     run, other = system.simulate(PUSH, **PLAN), system.simulate(PUSH.scaled(-1.0), **PLAN)
