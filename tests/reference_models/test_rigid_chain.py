@@ -12,7 +12,15 @@ import rockframe as rf
 from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import rigid_numbers
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.impact import attempt, write_corners
 from rockframe.dynamics.chain.model import chain
+from rockframe.dynamics.chain.motion import (
+    UNKNOWN,
+    load_along,
+    load_bodies,
+    place_bodies,
+    press_at,
+)
 from rockframe.dynamics.chain.rigid import ADMISSIBLE, TAKEN
 from rockframe.dynamics.chain.rows import PLACES
 from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, Ground, Start
@@ -171,3 +179,31 @@ def test_random_impacts_of_two_blocks():
                 assert pattern == theirs.pattern, (kind, number)
     assert others[KINDS[0]] == others[KINDS[1]] == 0
     assert sum(others.values()) > 5
+
+
+def changes():
+    """What changes where bodies lie or what loads them."""
+    return {
+        "places": lambda system, state, room: place_bodies(system, 0, state, room),
+        "loads": lambda system, state, room: load_bodies(system, 0.1, 0.2, room),
+        "press": lambda system, state, room: press_at(system, 0, 1.0, 0.1, room),
+        "friction": lambda system, state, room: load_along(system, 0, 1.0, room),
+        "levers": lambda system, state, room: write_corners(system, True, state),
+        "forces": lambda system, state, room: system.solve(0, room),
+    }
+
+
+@pytest.mark.parametrize("change", changes())
+def test_what_was_eliminated_is_forgotten_as_places_or_loads_change(change):
+    stone, block = rf.RigidGround(friction=0.3), rf.Block(width="1 m", height="1 m", mass="1 t")
+    stack = rf.Stack(block, block, interfaces=[stone])
+    system = rf.System(stack, stone).assembly.model.system
+    state, room = np.zeros(2 * system.coordinates()), system.places()
+    last = (system.body_count - 1) * PLACES + at.TRIED
+    place_bodies(system, 0, state, room)
+    load_bodies(system, 0.0, 9.8, room)
+    write_corners(system, False, state)
+    attempt(system, 0, 0b1111, 0b1111, False, False, 1e-12, state)
+    assert room[last] != UNKNOWN
+    changes()[change](system, state, room)
+    assert room[last] == UNKNOWN
