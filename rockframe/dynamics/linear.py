@@ -8,17 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.statics import (
-    PLACES,
-    RATES,
-    STENCIL,
-    Stand,
-    StandingChain,
-    moved_by,
-    of_base,
-    step_of,
-)
+from rockframe.compiled import Matrix
+from rockframe.dynamics.equilibrium import RATES, of_base, of_bases, of_loads
+from rockframe.dynamics.statics import Stand, StandingChain
 from rockframe.dynamics.trigonometry import sine_cosine
 
 
@@ -33,7 +25,7 @@ class Linear(NamedTuple):
 def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
     """Give small motion about rest."""
     size = 2 * len(stands)
-    damping, stiffness = np.zeros((size, size)), np.zeros((size, size))
+    damping = np.zeros((size, size))
     ties = chain.tied(stands)
     states = [one.state for one in ties]
     for one in ties:
@@ -41,32 +33,9 @@ def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
     for k, (link, stand) in enumerate(zip(chain.links, stands, strict=True)):
         own = slice(2 * k, 2 * k + 2)
         damping[own, own] = np.array([of_base(link, stand, name) for name in RATES]).T
-        stiffness[own, own] = np.array([of_base(link, stand, name) for name in PLACES]).T
-        for i, name in enumerate(PLACES):
-            stiffness[:, 2 * k + i] += _of_weight(chain, stands, k, name, states)
+    stiffness = of_bases(chain, stands)
+    stiffness += of_loads(chain, stands, lambda others: chain.tie_loads(others, states))
     return Linear(_mass(chain, stands), damping, stiffness)
-
-
-def _of_weight(
-    chain: StandingChain, stands: list[Stand], k: int, name: str, states: list[int]
-) -> Vector:
-    """Give minus the changes of the generalised forces of all weights, and of links."""
-    link, stand, step = chain.links[k], stands[k], step_of(chain.links[k], name)
-
-    def weights(by: float) -> Vector:
-        state = moved_by(stand, name, by)
-        reach, across = link.way(link.part.body.attitude(state.rotation), stand.mode.pivot)
-        arm = stand.arm + by if name == PLACES[1] else stand.arm
-        moved = stand._replace(state=state, reach=reach, across=across, arm=arm)
-        others = [*stands[:k], moved, *stands[k + 1 :]]
-        found = np.ravel(chain.weights(others))
-        return found + chain.tie_loads(others, states) if states else found
-
-    return sum(
-        (weight / step * (weights(-place * step) - weights(place * step))
-         for place, weight in STENCIL),
-        start=np.zeros(2 * len(stands)),
-    )  # fmt: skip
 
 
 def _mass(chain: StandingChain, stands: list[Stand]) -> Matrix:

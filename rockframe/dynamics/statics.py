@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from rockframe.compiled import Vector
+from rockframe.compiled import Matrix, Vector
 from rockframe.dynamics.base import BaseForce
 from rockframe.dynamics.bed import both_contacts
 from rockframe.dynamics.body import (
@@ -23,25 +23,23 @@ from rockframe.dynamics.body import (
     BodyState,
     Reach,
 )
-from rockframe.dynamics.following import Path, Sizes, followed
+from rockframe.dynamics.equilibrium import PLACES, Balance, HeldBodies, Path, followed
 from rockframe.dynamics.on_base import Mode, OnBase
 from rockframe.dynamics.trigonometry import sine_cosine, versine
-from rockframe.many import asin, sqrt
+from rockframe.many import asin
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.link_rows import ChainLink
-    from rockframe.dynamics.tied import Tied
+    from rockframe.dynamics.tied import Reached, Tied
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Share of the sizes of heights that is rounding."""
-TRIES: Final = 100
+TRIES: Final = 200
 """Heights that are tried at most."""
-BALANCED: Final = 1e-9
-"""Moments that are rounding, over that of the weight about the middle of the base."""
+SECANTS: Final = 8
+"""Of them by secants alone; where contact ends between two, each second one halves what is left."""
 SHARP: Final = 1e-9
 """Share of the uplift angle by which contact is full before it and partial beyond."""
-LEAST_SHARE: Final = 2.0**-20
-"""Of a step of Newton's, below which it leads no further."""
 HALVINGS: Final = 60
 """Of the rotation at which contact is first lost, where the levels of the ends do not tell it."""
 
@@ -62,6 +60,10 @@ class StandingBody(NamedTuple):
     def allowed_rotation(self) -> float:
         """The rotation that the settlement allows before an end of the base lifts, about."""
         return 2.0 * self.settlement / (self.part.body.left + self.part.body.right)
+
+    def corner_lever(self, stand: "Stand") -> float:
+        """Give by how much its corner rises with its rotation."""
+        return stand.line.right_lever if self.corner > 0 else stand.line.left_lever
 
     def way(self, attitude: Attitude, pivot: int) -> tuple[Reach, float]:
         """Give how the centre of mass moves along the deck beneath, and where it is there."""
@@ -128,72 +130,113 @@ class StandingChain(NamedTuple):
             found.append((normal * cosine + along * sine, along * cosine - normal * sine))
         return found[::-1]
 
+    @property
+    def weight(self) -> float:
+        """The weight of all bodies on a level base."""
+        return self.links[0].part.body.gravity * sum(link.mass for link in self.links)
+
+    @property
+    def sizes(self) -> Vector:
+        """Typical sizes of rotation and height of each body on its base."""
+        return np.array([
+            size for link in self.links for size in (link.allowed_rotation, link.settlement)
+        ])  # fmt: skip
+
     def settled(self, rotations: Sequence[float]) -> list[Stand] | None:
         """Give how the bodies stand at rotations on their bases; None where one would pull."""
-        mass, presses = 0.0, list[float]()
-        for link, (normal, _) in zip(self.links, self.frames(rotations), strict=True):
-            mass += link.mass
-            presses.append(mass * normal)
-        if not self.ties:
-            return self._pressed(rotations, presses)
-        return self._balanced(rotations, np.array(presses))
-
-    def _pressed(self, rotations: Sequence[float], presses: Sequence[float]) -> list[Stand] | None:
-        """Give how the bodies stand on bases that carry some forces."""
-        if not all(press > 0.0 for press in presses):
-            return None
-        stands = [
-            settled(link, rotation, press)
-            for link, rotation, press in zip(self.links, rotations, presses, strict=True)
-        ]
-        if not self.ties:
+        stands = self._under_weight(rotations)
+        if stands is None or not self.ties:
             return stands
+        return self._at(self._loaded(stands, np.eye(len(rotations)).tolist()))
+
+    def _under_weight(self, rotations: Sequence[float]) -> list[Stand] | None:
+        """Give how the bodies stand at rotations on their bases without what links them."""
+        mass, found = 0.0, list[Stand]()
+        frames = self.frames(rotations)
+        for link, rotation, (normal, _) in zip(self.links, rotations, frames, strict=True):
+            mass += link.mass
+            if not mass * normal > 0.0:
+                return None
+            found.append(settled(link, rotation, mass * normal))
+        return self._with_arms(found)
+
+    def _with_arms(self, stands: Sequence[Stand]) -> list[Stand]:
+        """Give the bodies with where they are over what they stand on."""
         decks = [*(link.top for link in self.links[1:]), 0.0]
         return [
             one._replace(arm=deck + link.part.body.height + one.state.vertical)
             for link, one, deck in zip(self.links, stands, decks, strict=True)
         ]
 
-    def _balanced(self, rotations: Sequence[float], weights: Vector) -> list[Stand] | None:
-        """Give how the bodies stand on bases that carry weights and what links pull down."""
+    def stands_at(self, balance: Balance) -> list[Stand]:
+        """Give how the bodies stand on bases that carry some forces, or above them."""
+        places = zip(self.links, *(each.tolist() for each in balance[:3]), strict=True)
+        return self._with_arms([
+            settled(link, rotation, press) if press > 0.0 else lifted(link, rotation, height)
+            for link, rotation, height, press in places
+        ])  # fmt: skip
 
-        def lack(presses: Vector) -> tuple[list[Stand] | None, Vector]:
-            stands = self._pressed(rotations, presses.tolist())
-            if stands is None:
-                return None, np.full(len(presses), math.nan)
-            return stands, weights - self.tie_loads(stands)[1::2] - presses
+    def moved(self, stands: Sequence[Stand], at: int, by: float) -> list[Stand]:
+        """Give the bodies with one coordinate moved, without what their bases do then."""
+        k, found = at // 2, [*stands]
+        link, now = self.links[k], stands[k]
+        state = now.state._replace(**{PLACES[at % 2]: now.state[at % 2] + by})
+        if link.corner:
+            found[k] = _on_corner(link, state.rotation, now.press)
+        else:
+            reach, across = link.way(link.part.body.attitude(state.rotation), now.mode.pivot)
+            found[k] = now._replace(state=state, reach=reach, across=across)
+        return self._with_arms(found)
 
-        presses = weights
-        stands, missing = lack(presses)
-        least = 0.1 * BALANCED * weights[-1]
-        for _ in range(TRIES):
-            if stands is None:
-                return None
-            if np.abs(missing).max() <= ROUNDING * weights[-1]:
-                break
-            step = 1e-6 * weights[-1]
-            slopes = np.array([
-                (lack(presses + move)[1] - lack(presses - move)[1]) / (2.0 * step)
-                for move in step * np.eye(len(presses))
-            ]).T  # fmt: skip
-            if not np.isfinite(slopes).all():
-                return None
-            move, share = np.linalg.solve(slopes, -missing), 1.0
-            further = lack(presses + move)
-            while share > LEAST_SHARE and not (np.abs(further[1]).max() < np.abs(missing).max()):
-                share *= 0.5
-                further = lack(presses + share * move)
-            if share <= LEAST_SHARE:
-                break
-            presses = presses + share * move
-            stands, missing = further
-        return stands if np.abs(missing).max() <= least else None
+    def following(self, stands: Sequence[Stand]) -> Matrix:
+        """Give how coordinates go with those that are free: on a corner no height is."""
+        found = np.eye(2 * len(stands))
+        for k, (link, stand) in enumerate(zip(self.links, stands, strict=True)):
+            if link.corner:
+                found[2 * k + 1, 2 * k] = -link.corner_lever(stand)
+                found[2 * k + 1, 2 * k + 1] = 0.0
+        return found
 
-    def tied(self, stands: Sequence[Stand], states: Sequence[int] | None = None) -> "list[Tied]":
+    def loads(self, stands: Sequence[Stand], of_links: Vector) -> Vector:
+        """Give the generalised forces of weights and links on rotation and height of each body.
+
+        A body that rests on a corner has none on its height: it follows from the rotation.
+        """
+        found = np.ravel(self.weights(stands)) + of_links
+        for k, (link, stand) in enumerate(zip(self.links, stands, strict=True)):
+            if link.corner:
+                found[2 * k] -= link.corner_lever(stand) * found[2 * k + 1]
+                found[2 * k + 1] = 0.0
+        return found
+
+    def _at(self, path: Path | None) -> list[Stand] | None:
+        """Give how the bodies stand where a path has come to; corners bear what is left."""
+        if path is None:
+            return None
+        stands = self.stands_at(path.place)
+        loads = np.ravel(self.weights(stands))
+        for pull, one in zip(path.place.pulls, self.reached(stands), strict=True):
+            loads -= pull @ one.way
+        for k, (link, one) in enumerate(zip(self.links, stands, strict=True)):
+            if link.corner:
+                stands[k] = _on_corner(link, one.state.rotation, -float(loads[2 * k + 1]))
+        bears = all(one.press >= 0.0 for one in stands)
+        return self._with_arms(stands) if bears else None
+
+    def reached(self, stands: Sequence[Stand]) -> "list[Reached]":
+        """Give where the points of what links the bodies are."""
+        from rockframe.dynamics.tied import reached
+
+        return reached(self.links, stands, self.ties)
+
+    def tied(
+        self, stands: Sequence[Stand], states: Sequence[int] | None = None,
+        stretches: Sequence[float] | None = None,
+    ) -> "list[Tied]":  # fmt: skip
         """Give how what links the bodies is stretched."""
         from rockframe.dynamics.tied import tied
 
-        return tied(self.links, stands, self.ties, states)
+        return tied(self.links, stands, self.ties, states, stretches)
 
     def tie_loads(self, stands: Sequence[Stand], states: Sequence[int] | None = None) -> Vector:
         """Give the generalised forces of links on rotation and height of each body."""
@@ -245,59 +288,44 @@ class StandingChain(NamedTuple):
         Eccentricity and slope grow from zero, and rest is followed from upright: a chain that
         leans has a second equilibrium, farther out, from which it falls.
         """
-        if self.upright:
-            return self.settled([0.0] * len(self.links))
-        found = followed(self._turning, self._sizes(self.links), Path.origin(len(self.links)))
-        return None if found is None else self.settled(found.place.tolist())
+        upright = self._under_weight([0.0] * len(self.links))
+        if upright is None or self.upright:
+            return upright
+        return self._at(self._loaded(upright, []))
 
     def curve(self, rotations: Sequence[float]) -> list[list[Stand] | None]:
         """Give how the bodies stand while a couple holds the highest one at each of rotations.
 
         Followed from upright to either side; None from where the bases cannot carry it.
         """
-        lower = self.links[1:]
-        if not lower:
+        if len(self.links) == 1:
             return [self.settled([rotation]) for rotation in rotations]
         found: list[list[Stand] | None] = [None] * len(rotations)
-        sizes, start = self._sizes(lower), Path.origin(len(lower))
-        if not self.upright:
-            loaded = followed(lambda share, others: self._lack(share, 0.0, others), sizes, start)
-            if loaded is None:
-                return found
-            start = start._replace(place=loaded.place)
+        upright = self._under_weight([0.0] * len(self.links))
+        start = None if upright is None else self._loaded(upright, [len(self.links) * [1.0]])
         for side in (1.0, -1.0):
-            path: Path | None = start
+            path = start and Path(0.0, start.place)
             here = [i for i, each in enumerate(rotations) if math.copysign(1.0, each) == side]
             for i in sorted(here, key=lambda i: abs(rotations[i])):
-                path, found[i] = self.held(path, rotations[i])
                 if path is None:
                     break
+                path, found[i] = self.held(path, rotations[i])
         return found
 
     def held(self, path: Path, rotation: float) -> tuple[Path | None, list[Stand] | None]:
         """Give how the bodies stand at a rotation of the highest one, followed along a path."""
-        sizes = self._sizes(self.links[1:])
-        further = followed(lambda at, others: self._lack(1.0, at, others), sizes, path, rotation)
-        if further is None:
-            return None, None
-        others = further.place.tolist()
-        return further, self.settled([rotation - sum(others), *others])
+        highest = np.ones((1, len(self.links)))
+        further = followed(lambda at: HeldBodies(self, highest, np.array([at])), path, rotation)
+        return further, self._at(further)
 
-    def _turning(self, share: float, rotations: Sequence[float]) -> list[float] | None:
-        """Give the moments under a share of what makes the bodies lean."""
-        chain = self.with_share(share)
-        stands = chain.settled(rotations)
-        return None if stands is None else chain.moments(stands)
-
-    def _lack(self, share: float, rotation: float, lower: Sequence[float]) -> list[float] | None:
-        """Give the moments on the lower bodies, less that of the couple that holds the highest."""
-        found = self._turning(share, [rotation - sum(lower), *lower])
-        return None if found is None else [moment - found[0] for moment in found[1:]]
-
-    def _sizes(self, links: Sequence[StandingBody]) -> Sizes:
-        body, mass = links[-1].part.body, sum(link.mass for link in self.links)
-        rounding = BALANCED * body.gravity * mass * body.size()
-        return Sizes(np.array([link.allowed_rotation for link in links]), rounding)
+    def _loaded(self, stands: Sequence[Stand], sums: Sequence[Sequence[float]]) -> Path | None:
+        """Follow bodies as eccentricity, slope and links grow, with sums of rotations held."""
+        rows = np.array(sums).reshape(-1, len(stands))
+        start = Balance.of(self, stands)
+        held = rows @ start.rotations
+        return followed(
+            lambda share: HeldBodies(self.with_share(share), rows, held), Path(0.0, start)
+        )
 
 
 def link_of(
@@ -345,10 +373,22 @@ def settled(link: StandingBody, rotation: float, press: float) -> Stand:
             break
         low, high = (height, high) if excess > 0.0 else (low, height)
         height += step
-        if not low < height < high:
+        halved = tries > SECANTS and tries % 2 == 0 and low > -math.inf and high < math.inf
+        if halved or not low < height < high:
             height = 0.5 * (low + high)
     mode = link.part.standing(contact, state)
     return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, press, own)
+
+
+def lifted(link: StandingBody, rotation: float, height: float) -> Stand:
+    """Give how a body stands that links may have lifted off its base."""
+    body, base = link.part
+    own = link.own if isinstance(link.own, tuple) else np.array(link.own)
+    state, attitude = BodyState(rotation, height, 0.0, 0.0, 0.0, 0.0), body.attitude(rotation)
+    line = body.base_line(state, attitude)
+    contact = base.starting(line, own)
+    force, mode = base.force(contact, line, own), link.part.standing(contact, state)
+    return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, force.upward, own)
 
 
 def _on_corner(link: StandingBody, rotation: float, press: float) -> Stand:
@@ -401,39 +441,3 @@ def uplift_rotation(link: StandingBody, press: float) -> float:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if is_full(middle) else (low, middle)
     return high
-
-
-STEP: Final = 1e-3
-"""By which coordinates are moved, over the settlement and over the rotation that it allows;
-rates, over these times the rate of a vibration that settles as much."""
-STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
-"""Steps to both sides, and weights of a first derivative that is exact to the fourth order."""
-PLACES: Final = ("rotation", "vertical")
-RATES: Final = ("angular_velocity", "vertical_velocity")
-
-
-def of_base(link: StandingBody, stand: Stand, name: str) -> tuple[float, float]:
-    """Give minus the change of a base's moment and force with a coordinate or rate of its body."""
-    body, base = link.part
-    step = step_of(link, name)
-    moment = upward = 0.0
-    for place, weight in STENCIL:
-        before, behind = (
-            base.force(stand.mode.contact, body.base_line_at(moved_by(stand, name, by)), stand.own)
-            for by in (place * step, -place * step)
-        )
-        moment -= weight / step * (before.moment - behind.moment)
-        upward -= weight / step * (before.upward - behind.upward)
-    return moment, upward
-
-
-def step_of(link: StandingBody, name: str) -> float:
-    """Give by how much a coordinate or rate is moved to see what the base answers."""
-    size = link.allowed_rotation if name in (PLACES[0], RATES[0]) else link.settlement
-    rate = sqrt(link.part.body.gravity / link.settlement) if name in RATES else 1.0
-    return STEP * size * rate
-
-
-def moved_by(stand: Stand, name: str, by: float) -> BodyState:
-    """Give a state with another coordinate or rate."""
-    return stand.state._replace(**{name: getattr(stand.state, name) + by})

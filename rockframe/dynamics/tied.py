@@ -23,18 +23,22 @@ Ends = tuple[tuple[float, float], tuple[float, float]]
 
 STEP = 1e-3
 """Rate by which the force's change with the rate is found [m s^-1]."""
+SMALL = 1e-6
+"""Elongation by which that with the elongation is found, over the sizes of what is linked."""
 
 
 class Tied(NamedTuple):
     """A link of bodies that are at rest."""
 
     force: float  # with which it pulls
-    elongation: float
     state: int
-    damping: float  # change of the force with the rate of the elongation
+    stiffness: float  # change of the force with the elongation
+    damping: float  # likewise with its rate
+    elongation: float
     way: Matrix  # how its first point moves from its second, by all coordinates
     direction: Vector  # from the second to the first; zero where they meet without force
     moved: Vector  # how its first point has moved from its second
+    meets: bool  # whether both points are one as it is given
 
     @property
     def loads(self) -> Vector:
@@ -61,51 +65,99 @@ class _Frame(NamedTuple):
     normal: Vector
 
 
+class Reached(NamedTuple):
+    """Where the first point of a link is from its second."""
+
+    moved: Vector  # from where it is given
+    way: Matrix  # how it moves, by all coordinates
+    direction: Vector  # in which the link pulls it back; zero where both meet
+
+
+def reached(
+    links: "Sequence[StandingBody]", stands: "Sequence[Stand]", ties: Sequence[ChainLink]
+) -> list[Reached]:
+    """Give where the points of links are, of bodies that stand."""
+    frames, found = _frames(links, stands) if ties else [], list[Reached]()
+    for one in ties:
+        on, on_way = _point(one.on, one.on_point, stands, frames)
+        to, to_way = _point(one.to, one.to_point, stands, frames)
+        found.append(_reached(one, on - to, on_way - to_way))
+    return found
+
+
 def tied(
     links: "Sequence[StandingBody]",
     stands: "Sequence[Stand]",
     ties: Sequence[ChainLink],
     states: Sequence[int] | None = None,
+    stretches: Sequence[float] | None = None,
 ) -> list[Tied]:
-    """Give how links are stretched between bodies that stand."""
-    frames = _frames(links, stands)
-    found = list[Tied]()
-    for i, one in enumerate(ties):
-        on, on_way = _point(one.on, one.on_point, stands, frames)
-        to, to_way = _point(one.to, one.to_point, stands, frames)
-        state = None if states is None else states[i]
-        found.append(pulled(one, on - to, on_way - to_way, state))
-    return found
+    """Give how links are stretched between bodies that stand.
+
+    Their forces are those of other stretches where these are told.
+    """
+    none = [None] * len(ties)
+    points = reached(links, stands, ties)
+    each = zip(ties, points, states or none, none if stretches is None else stretches, strict=True)
+    return [pulled(*one) for one in each]
 
 
-def pulled(tie: ChainLink, moved: Vector, way: Matrix, state: int | None = None) -> Tied:
-    """Give how a link is stretched as its first point has moved from its second."""
-    law: Any = tie.numbers.law
-    apart, given = np.array(tie.apart), math.hypot(*tie.apart)
-    now = apart + moved
-    length, along = math.hypot(*now), np.array(tie.along)
-    elongation = 0.0 if length == 0.0 else float((2.0 * apart + moved) @ moved) / (length + given)
-    if along.any():
-        elongation = float(along @ moved)
-    reach = given + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
-    stretch = Stretch(elongation, 0.0, 0.0, given, 1e-15 * reach)
-    own = np.zeros(law.variables())
-    found = law.starting(stretch, own)
-    if state is not None:
-        found = state
-    faster, slower = (law.force(found, stretch._replace(rate=rate), own) for rate in (STEP, -STEP))
-    force = law.force(found, stretch, own)
-    direction = np.zeros(2) if length == 0.0 else now / length
-    if along.any():
-        direction = along
-    elif length == 0.0 and force != 0.0:
+def pulled(
+    tie: ChainLink, point: Reached, state: int | None = None, stretch: float | None = None
+) -> Tied:
+    """Give how a link is stretched, and what it pulls."""
+    moved, way, direction = point
+    apart, along, meets = np.array(tie.apart), any(tie.along), False
+    if along:
+        elongation = float(direction @ moved)
+    else:
+        length, meets = math.hypot(*(apart + moved)) + math.hypot(*apart), not apart.any()
+        elongation = float((2.0 * apart + moved) @ moved) / length if length else 0.0
+    found = _answer(tie, elongation if stretch is None or meets else stretch, state)
+    if not direction.any() and found[0] != 0.0:
         direction = np.array([0.0, 1.0])
-    return Tied(force, elongation, found, 0.5 * (faster - slower) / STEP, way, direction, moved)
+    return Tied(*found, elongation, way, direction, moved, meets)
+
+
+def force_at(tie: ChainLink, elongation: float) -> float:
+    """Give what a link pulls that is stretched slowly."""
+    return _answer(tie, elongation, None)[0]
+
+
+def _answer(
+    tie: ChainLink, elongation: float, state: int | None
+) -> tuple[float, int, float, float]:
+    """Give a link's force, its state, and how the force changes with elongation and rate."""
+    law: Any = tie.numbers.law
+    given = math.hypot(*tie.apart)
+    reach = given + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
+    stretch, own = Stretch(elongation, 0.0, 0.0, given, 1e-15 * reach), np.zeros(law.variables())
+    starting = law.starting(stretch, own)
+    found = starting if state is None else state
+    steps = {"elongation": SMALL * (reach or 1.0), "rate": STEP}
+    changes = [
+        0.5 * (more - less) / step
+        for name, step in steps.items()
+        for more, less in [[
+            law.force(found, stretch._replace(**{name: getattr(stretch, name) + by}), own)
+            for by in (step, -step)
+        ]]
+    ]  # fmt: skip
+    return law.force(found, stretch, own), found, changes[0], changes[1]
+
+
+def _reached(tie: ChainLink, moved: Vector, way: Matrix) -> Reached:
+    """Give where a point is that has moved."""
+    if any(tie.along):
+        return Reached(moved, way, np.array(tie.along))
+    now = np.array(tie.apart) + moved
+    length = math.hypot(*now)
+    return Reached(moved, way, now / length if length else np.zeros(2))
 
 
 def at_rest(ties: Sequence[ChainLink]) -> list[Tied]:
     """Give how links are stretched as they are given."""
-    return [pulled(one, np.zeros(2), np.zeros((2, 1))) for one in ties]
+    return [pulled(one, _reached(one, np.zeros(2), np.zeros((2, 1)))) for one in ties]
 
 
 def rocked(
@@ -126,7 +178,7 @@ def rocked(
                 turned = np.array([y * sine - x * lacks, -x * sine - y * lacks])
                 moved += sign * turned
                 way[:, 0] += sign * np.array([y + turned[1], -x - turned[0]])
-        found.append(pulled(tie, moved, way))
+        found.append(pulled(tie, _reached(tie, moved, way)))
     return found
 
 

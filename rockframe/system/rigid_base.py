@@ -5,9 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, cast
 
-import numpy as np
-
-from rockframe.dynamics.following import Path
+from rockframe.dynamics.equilibrium import Balance, Path
 from rockframe.system.statics import Statics, work_against
 from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import uplift_words
@@ -17,7 +15,6 @@ if TYPE_CHECKING:
     from rockframe.dynamics.body import Body
     from rockframe.dynamics.statics import Stand
     from rockframe.dynamics.tied import Tied
-    from rockframe.signals.arrays import Array
     from rockframe.system.stack import StackSetting
 
 NO_VERTICAL_START = (
@@ -205,7 +202,7 @@ def beyond_lift(
                 if lifted is None:
                     before, found[i] = rotations[i], closed[i]
                     continue
-                path = Path(lifted.rotation, lifted.lower, np.zeros(len(lifted.lower)))
+                path = Path(lifted.rotation, lifted.place)
             if path is None:
                 break
             path, stands = lifted.bodies.chain.held(path, rotations[i])
@@ -218,7 +215,7 @@ class _Lift(NamedTuple):
 
     bodies: StandingBodies  # all above that base on its other corner
     rotation: float  # of the highest body
-    lower: "Array"  # rotations of all but the highest of these, on what they stand on
+    place: Balance  # of these
 
 
 def _first_lift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _Lift | None:
@@ -233,8 +230,7 @@ def _first_lift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _
         if joint.spare(before) > 0.0:
             at = cast("float", brentq(joint.spare, before, rotation))
         if first is None or abs(at) < abs(first.rotation):
-            (stands,) = joint.closed.curve([at])
-            first = _Lift(joint.bodies, at, np.array(joint.rotations(stands or [])[1:]))
+            first = _Lift(joint.bodies, at, joint.lifted_from(at))
     return first
 
 
@@ -257,6 +253,12 @@ class _Joint:
         """Give the rotations of all bodies on what they stand on; that on this base has none."""
         found = [one.state.rotation for one in stands]
         return [*found[: self.place], 0.0, *found[self.place :]]
+
+    def lifted_from(self, rotation: float) -> Balance:
+        """Give how the bodies stand as the corner lifts."""
+        chain, (stands,) = self.bodies.chain, self.closed.curve([rotation])
+        found = chain.settled(self.rotations(stands or [])) or []
+        return Balance.of(chain, found)
 
     def spare(self, rotation: float) -> float:
         """Give what the couple that holds the highest body lacks to lift a corner here."""

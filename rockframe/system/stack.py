@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from rockframe.dynamics.vibrations import ChainBody
 
 NO_REST: Final = "the bodies find no rest under their weight: their bases are too soft for them"
-TOO_STIFF: Final = ", or their restrainers too stiff for it to be found"
 
 
 @dataclass(frozen=True)
@@ -245,16 +244,11 @@ class StackSetting(Setting):
             self.bodies[first:last], self.tops[first:last], self.offsets[first:last]
         )
 
-    @property
-    def _no_rest(self) -> str:
-        """What is said where no rest is found."""
-        return NO_REST + (TOO_STIFF if self.ties else "")
-
     @cached_property
     def _rest(self) -> list[Stand]:
         found = self.standing.rest if self.groups else []
         if found is None:
-            raise AssemblyError([self._no_rest])
+            raise AssemblyError([NO_REST])
         faults = list[str]()
         for k, rigid in enumerate(self.rigid):
             if rigid and not (carried := pressed(self, k, self._tied_at_rest)).bears(0.0):
@@ -381,7 +375,7 @@ class StackSetting(Setting):
         """Give the height at which the one body starts at a rotation, with its ties."""
         stands = self.standing.chain.settled([rotation])
         if stands is None:
-            raise AssemblyError([self._no_rest])
+            raise AssemblyError([NO_REST])
         return stands[0].state.vertical
 
 

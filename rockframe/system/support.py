@@ -14,7 +14,8 @@ from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.soil import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
-from rockframe.dynamics.statics import Stand, StandingChain, link_of, of_base, uplift_rotation
+from rockframe.dynamics.equilibrium import of_base
+from rockframe.dynamics.statics import Stand, StandingChain, link_of, uplift_rotation
 from rockframe.many import sqrt
 from rockframe.system.bodies import (
     BaseLoad,
@@ -81,11 +82,12 @@ class StandingBodies:
         attitude = body.attitude(lowest.state.rotation)
         arm = body.height * attitude.sine + 0.5 * (body.left - body.right) * attitude.cosine
         held = [part.base.is_held(stands[0].mode.contact, left) for left in (True, False)]
+        bears = "full" if all(held) else "left" if held[0] else "right"
         return Statics(
             vertical_displacement=self.chain.rise(stands),
             base_moment=self.mass * (lowest.press * arm - lowest.force.moment),
             restoring_moment=-self.mass * self.chain.moments(stands)[0],
-            contact_state="full" if all(held) else "left" if held[0] else "right",
+            contact_state=bears if stands[0].press > 0.0 else "flight",
             reactions=self.reactions(stands),
         )
 

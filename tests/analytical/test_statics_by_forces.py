@@ -15,7 +15,8 @@ from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import CENTRE, BodyState
 from rockframe.dynamics.coupled.model import state_at
 from rockframe.dynamics.coupled.model import system_of as coupled_of
-from rockframe.dynamics.linear import PLACES, RATES, linear, of_base
+from rockframe.dynamics.equilibrium import PLACES, RATES, of_base
+from rockframe.dynamics.linear import linear
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
