@@ -297,6 +297,8 @@ class BaseFriction(NamedTuple):
 
 HELD: Final = BaseFriction(math.inf, math.inf, math.inf)
 """Where a base holds what stands on it."""
+WITHOUT_END: Final = 1e8
+"""Friction from which on it slips alone where what presses is lost in rounding beside weights."""
 
 
 def friction_under(part: Component, options: Options) -> BaseFriction | None:
@@ -305,7 +307,10 @@ def friction_under(part: Component, options: Options) -> BaseFriction | None:
     if static is None or options.sliding is Sliding.CHECKED or isinstance(part, OwnBase):
         return None
     kinetic = static if part.si.kinetic_friction is None else part.si.kinetic_friction
-    sticks = isinstance(part, RigidGround) and part.si.impact is Impact.STICK
+    rigid = isinstance(part, RigidGround)
+    if kinetic >= WITHOUT_END and not rigid:
+        return HELD
+    sticks = rigid and part.si.impact is Impact.STICK
     return BaseFriction(static, kinetic, math.inf if sticks else kinetic)
 
 

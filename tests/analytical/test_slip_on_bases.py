@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from plainly import plainly
 
 import rockframe as rf
 from rockframe.dynamics.chain import model
@@ -213,3 +214,28 @@ def test_friction_in_a_stack_is_computed():
     stack = rf.Stack(STATUE, PLINTH, interfaces=[PADS.replace(friction=0.3)])
     with pytest.raises(AssemblyError, match="is computed"):
         rf.System(stack, SOIL.replace(friction=0.3), sliding="checked")
+
+
+def two_bodies(**friction):
+    """Run two bodies on yielding bases from a jump of the ground, after which both want to slip."""
+    jump = rf.GroundMotion.from_arrays((np.full(7, 1.5), "m/s^2"), "0.05 s")
+    plinth = rf.Block(width="1.5 m", height="2 m", mass="3 t")
+    stack = rf.Stack(BLOCK, plinth, interfaces=[PADS.replace(frequency_ratio=20, **friction)])
+    soil = SOIL.replace(stiffness="20 MPa", **friction)
+    with plainly():
+        found = rf.System(stack, soil).simulate(jump, duration="0.3 s", second_look=False)
+    assert found.status.item() == 0
+    return found
+
+
+@pytest.mark.parametrize("friction", [1e-12, 1e-8, 1e-6])
+def test_hardly_any_friction_is_next_to_none(friction):
+    none, some = (two_bodies(friction=one).body_slip for one in (0.0, friction))
+    assert float(abs(none).max()) > 0.05
+    np.testing.assert_allclose(some, none, rtol=0.0, atol=friction)
+
+
+@pytest.mark.parametrize("friction", [1e5, 1e7, 1e9, 1e15])
+def test_friction_as_great_as_one_likes_holds(friction):
+    held, slippery = (two_bodies(**given).rotation for given in ({}, {"friction": friction}))
+    np.testing.assert_allclose(slippery, held, rtol=0.0, atol=1e-12)

@@ -9,7 +9,7 @@ from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.impact import NEARLY_ZERO
 from rockframe.dynamics.chain.rows import GUARDS, PLACES
 from rockframe.dynamics.chain.slippery import SlipperyBases
-from rockframe.dynamics.chain.slips import KINETIC, OFFSET, ROUNDING, STATIC, TRIES
+from rockframe.dynamics.chain.slips import KINETIC, OFFSET, STATIC, TRIES
 from rockframe.dynamics.events import SILENT
 from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
@@ -80,17 +80,19 @@ class SlippingChain(SlipperyBases):
 
         Where static friction leaves no such mode, what kinetic friction holds is held.
         """
-        most = TRIES * self.body_count
+        most, near = TRIES * self.body_count, NEARLY_ZERO
         for tries in range(2 * most):
             slope = self.accelerate(mode, state, ground)
             self.forces_from(mode, state, slope, ground)
             holding = STATIC if tries < most else KINETIC
             found, push = self.held_in_vain(lets_go, holding, mode)
             if found >= 0:
+                if tries > 0:  # what was let go as its force came to the limit has another now
+                    near = 0.0
                 mode = self.let_go(found, mode, state, memory)
                 mode = self.slipping(mode, found, -push)
             else:
-                found = self.starts_back(mode, state, slope)
+                found = self.starts_back(near, mode, state, slope)
                 if found < 0:
                     break
                 mode = self.with_slip(found, 0.0, mode, state, memory)
@@ -105,18 +107,21 @@ class SlippingChain(SlipperyBases):
             if not self.on_base(j).is_free(self.part_mode(mode, j)):
                 i, friction = j * PLACES, self.friction_of(j, holding)
                 thrust, most = room[i + at.THRUST], friction * max(room[i + at.PRESS], 0.0)
-                if j == lets_go or abs(thrust) > most + ROUNDING * self.number(j, at.GRAVITY):
+                if j == lets_go or abs(thrust) > most + self.rounding(j, friction):
                     return j, float(thrust)
         return -1, 0.0
 
     @kernel
-    def starts_back(self, mode: int, state: Vector, slope: Slope) -> int:
-        """Give a body that would start to slip against the sense in which it slips, or -1."""
+    def starts_back(self, near: float, mode: int, state: Vector, slope: Slope) -> int:
+        """Give a body that would start to slip against the sense in which it slips, or -1.
+
+        By more than an acceleration, over gravity.
+        """
         for j in range(self.body_count):
             part, standing = self.on_base(j), self.part_mode(mode, j)
             if standing.slides and not part.flies(standing.contact):
                 rate, noise = self.slip_rate(j, mode, state)
-                least = NEARLY_ZERO * math.sqrt(part.body.gravity / part.body.size())
+                least = near * math.sqrt(part.body.gravity / part.body.size())
                 found = self.guards_of_slip(j, mode, state, slope, 0.0, 1.0)
                 if abs(rate) <= noise and found.slip_rate < -least:
                     return j

@@ -176,7 +176,17 @@ class SlippingBodies(Chain):
         sway, rotating = body.horizontal_velocity, reach.rate * rate
         # a slip that starts, or is hardly one, is not stopped by rounding
         slip = scale * (sense * (sway - rotating) + NOISE * (abs(sway) + abs(rotating)))
-        return SlidingGuards(1.0, slip, scale * (sense * change + ROUNDING * law.gravity))
+        least = self.rounding(k, self.friction_of(k, KINETIC))
+        return SlidingGuards(1.0, slip, scale * (sense * change + least))
+
+    @inlined
+    def rounding(self, k: int, friction: float) -> float:
+        """Give the acceleration that is rounding beside the friction of what a base presses with.
+
+        That is what forces of the size of weights leave, or that force itself.
+        """
+        thrust = abs(self.places()[k * PLACES + at.THRUST])
+        return ROUNDING * thrust + (ROUNDING + NOISE * friction) * self.number(k, at.GRAVITY)
 
     @kernel
     def go_on(self, mode: int, state: Vector, memory: Vector) -> int:
