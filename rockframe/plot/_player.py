@@ -18,15 +18,17 @@ from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_
 from rockframe.plot._checks import RUN, checked_run, draws
 from rockframe.plot._response import (
     CONTACT_COLOURS,
+    OF_BODIES,
+    OF_CAP,
     SLIP,
     contact_names_of,
-    has_slid,
     of_rotation,
     strips_of,
 )
 from rockframe.plot._runs import Window, runs_of
 from rockframe.plot._scene import Moving
 from rockframe.proposals import proposing
+from rockframe.results.outcome import LEAST_SLIP
 from rockframe.signals.arrays import Array
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import UnitsLike
@@ -38,6 +40,8 @@ _MOST_FRAMES: Final = 900
 """Between which the browser interpolates."""
 _TRACE: Final = 700
 """Parts of the time of which a trace keeps the least and the largest value."""
+_MOST_SLIPS: Final = 4
+"""Traces of slip that have room beside each other."""
 _LEVELS: Final = 30000
 """Of the numbers that a page holds, from the least to the largest of their kind."""
 _NOWHERE: Final = -32768
@@ -135,7 +139,7 @@ def player(
     units: UnitsLike = None,
     title: str | None = None,
 ) -> Player:
-    """Make a page that plays a run: the scene to scale above the traces of rotation and ground.
+    """Make a page that plays a run: the scene to scale above traces of rotation, slips and ground.
 
     The page has a button that plays, a slider, a choice of speeds, a cursor in the traces that
     follows the pointer, and a strip of what bears. It is drawn by the browser from the numbers,
@@ -188,8 +192,8 @@ def player(
     length = chosen.of(LENGTH)
     traces = [
         _trace(of_rotation(drawn, unit), label, BLUE, store),
-        *([_trace(length.of(drawn.dataset[SLIP]), _label(SLIP, length.words), ORANGE, store)]
-          if SLIP in drawn.dataset and has_slid(drawn.dataset) else []),
+        *(_trace(length.of(slip), _label(name, length.words), ORANGE, store)
+          for name, slip in _slips(drawn.dataset)),
         _trace(ground.of(drawn.dataset["ground_acceleration"]),
                _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip
@@ -307,6 +311,20 @@ def _of_contacts(found: Sequence[Layout]) -> Iterator[_Layer]:
             if k < len(one.touching):
                 row[:] = one.touching[k][[0, -1]]
         yield _Layer("contact", "contact", CONTACT, 0.0, points)
+
+
+def _slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
+    """Give the slips of the bodies that slid farthest, and what they are called."""
+    found = {SLIP: run[SLIP]} if SLIP in run else {}
+    if OF_BODIES in run:
+        found = {
+            f"slip of body {int(one.body)}": one for one in run[OF_BODIES].transpose("body", ...)
+        }
+    elif OF_CAP in run:
+        found |= {"slip of the cap": run[OF_CAP]}
+    far = {name: float(np.abs(one).max()) for name, one in found.items()}
+    shown = sorted((name for name in far if far[name] >= LEAST_SLIP), key=far.__getitem__)
+    return [(name, one) for name, one in found.items() if name in shown[-_MOST_SLIPS:]]
 
 
 def _surface(found: Layout) -> Array:

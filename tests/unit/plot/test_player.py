@@ -109,6 +109,21 @@ def test_traces_and_strips_are_those_of_the_run():
     plt.close(panels.figure)
 
 
+def test_the_slips_of_all_bodies_that_slide_are_traced():
+    stone = rf.RigidGround(friction=0.2)
+    stack = rf.Stack(
+        rf.Block(width="0.8 m", height="1 m", mass="1 t"),
+        rf.Block(width="1 m", height="0.6 m", mass="2 t"), interfaces=[stone],
+    )  # fmt: skip
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    run = rf.System(stack, stone.replace(friction=0.3)).simulate(pulse, free_vibration="0.5 s")
+    labels = [one["label"] for one in read(rf.plot.player(run).to_html())[0]["traces"]]
+    assert labels[1:-1] == ["slip of body 1 [m]", "slip of body 2 [m]"]
+    still = run.assign(body_slip=run.body_slip.where(run.body == 2, 0.0))
+    labels = [one["label"] for one in read(rf.plot.player(still).to_html())[0]["traces"]]
+    assert labels[1:-1] == ["slip of body 2 [m]"]
+
+
 def test_pages_are_small_whole_and_ask_for_nothing(tmp_path):
     run = run_of("pads")
     page = rf.plot.player(run)
