@@ -42,6 +42,8 @@ _TRACE: Final = 700
 """Parts of the time of which a trace keeps the least and the largest value."""
 _MOST_SLIPS: Final = 4
 """Traces of slip that have room beside each other."""
+_ROUNDING: Final = 1e-9
+"""Share of the reach of a trace within which it comes back to zero."""
 _LEVELS: Final = 30000
 """Of the numbers that a page holds, from the least to the largest of their kind."""
 _NOWHERE: Final = -32768
@@ -344,6 +346,8 @@ def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict
     least = np.minimum.reduceat(values, edges[:-1])
     most = np.maximum.reduceat(values, edges[:-1])
     low, high = min(0.0, float(least.min())), max(0.0, float(most.max()))
+    rounding = _ROUNDING * (high - low)
+    low, high = (end if abs(end) > rounding else 0.0 for end in (low, high))
     first = store.add(np.column_stack([least, most]), low, high)
     return {"label": label, "colour": colour, "first": first, "parts": least.size, "low": low,
             "high": high}  # fmt: skip
