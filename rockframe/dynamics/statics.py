@@ -8,7 +8,7 @@ what is left are moments, :eq:`eq-static-chain`. All is per unit mass.
 import math
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 import numpy as np
 
@@ -38,6 +38,12 @@ TRIES: Final = 200
 """Heights that are tried at most."""
 SECANTS: Final = 8
 """Of them by secants alone; where contact ends between two, each second one halves what is left."""
+FAR: Final = 10.0
+"""Of the size of a body, a change of its height that leads to no balance."""
+TINY: Final = 1e-30
+"""Height that is nothing [m]."""
+LEFT: Final = 1e-6
+"""Share of the weight that may be left where a link is as stiff as rounding shows."""
 SHARP: Final = 1e-9
 """Share of the uplift angle by which contact is full before it and partial beyond."""
 HALVINGS: Final = 60
@@ -147,7 +153,38 @@ class StandingChain(NamedTuple):
         stands = self._under_weight(rotations)
         if stands is None or not self.ties:
             return stands
+        if len(stands) == 1 and not self.links[0].corner:
+            return self._at_height(stands[0])
         return self._at(self._loaded(stands, np.eye(len(rotations)).tolist()))
+
+    def _at_height(self, stand: Stand) -> list[Stand] | None:
+        """Give how one body stands at its rotation, between heights at which it rises and falls.
+
+        Links that yield or break leave steps of Newton's nothing to go by.
+        """
+        from scipy.optimize import brentq
+
+        link, rotation = self.links[0], stand.state.rotation
+
+        def at(height: float) -> tuple[list[Stand], float]:
+            stands = self._with_arms([lifted(link, rotation, height)])
+            load = self.weights(stands)[0][1] + self.tie_loads(stands)[1]
+            return stands, float(stands[0].force.upward + load)
+
+        here, far = stand.state.vertical, FAR * link.part.body.size()
+        found, lack = at(here)
+        if abs(lack) <= 4.0 * ROUNDING * self.weight:
+            return found
+        step = math.copysign(link.settlement, lack)
+        there = here + step
+        while at(there)[1] * step > 0.0:
+            step *= 2.0
+            here, there = there, there + step
+            if abs(step) > far:
+                return None
+        height = brentq(lambda height: at(height)[1], here, there, xtol=TINY)
+        found, lack = at(cast("float", height))
+        return found if abs(lack) <= LEFT * self.weight else None
 
     def _under_weight(self, rotations: Sequence[float]) -> list[Stand] | None:
         """Give how the bodies stand at rotations on their bases without what links them."""
