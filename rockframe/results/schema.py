@@ -13,15 +13,7 @@ from numpy.typing import NDArray
 
 from rockframe.constants import CONVENTIONS, PAPER_TITLE
 from rockframe.errors import SchemaError
-from rockframe.results.variables import (
-    analyses,
-    bodies,
-    motions,
-    requests,
-    runs,
-    studies,
-    suites,
-)
+from rockframe.results.variables import analyses, bodies, motions, requests, runs, studies
 from rockframe.results.variables.variable import Variable
 from rockframe.version import __version__
 
@@ -51,8 +43,8 @@ _TABLES: Final = (
     runs.MODES,
     motions.MEASURES,
     motions.DIRECTIONS,
-    suites.RECORDS,
-    suites.TARGETS,
+    motions.RECORDS,
+    motions.TARGETS,
     studies.COMPARISON,
     studies.CRITICAL_SCALE,
     studies.SWEEP,
