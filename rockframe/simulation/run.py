@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.compiled import compiling_for
+from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, or_missing, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import (
@@ -34,7 +35,6 @@ from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.proving import proof_of
 from rockframe.simulation.run_arguments import PROVED, Certification
 from rockframe.simulation.soundness import (
-    NOT_LOOKED_AT,
     STILL_MOVING,
     Uniqueness,
     doubtful_residual,
@@ -96,8 +96,11 @@ class Response:
 
     @cached_property
     def uniqueness(self) -> Uniqueness | None:
-        """Impacts on rigid bases after which motion is not unique."""
-        return uniqueness_of(self.system.model, self.trajectory)
+        """Impacts on rigid bases after which motion is not unique; None where it always is."""
+        model = self.system.model
+        if not isinstance(model.system, RigidChain):
+            return None
+        return uniqueness_of(model, model.system, self.trajectory)
 
     def summary(self) -> RunSummary:
         """Tell what a certificate asks of the run."""
@@ -124,14 +127,14 @@ class Response:
             None, "whether another run agrees with this one", missing,
         )  # fmt: skip
         values, falls = self.answers.values, summary.overturning_time
-        leaving = or_missing(
+        leaving = [] if setting.flies else or_missing(
             lambda: list(_leaving(self.system, plan.motion, values, falls)), [], _LEAVING, missing
-        )
+        )  # fmt: skip
         slipping = or_missing(lambda: list(slips(self.answers.slidings)), [], _FRICTION, missing)
         _ = self.scalars  # what is missing of them is said, too
         cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
-        unique = self.uniqueness or NOT_LOOKED_AT
-        of_model = [*unique.cautions, *setting.beyond_edges(summary.ending), *leaving, *slipping]
+        unique = [] if self.uniqueness is None else self.uniqueness.cautions
+        of_model = [*unique, *setting.beyond_edges(summary.ending), *leaving, *slipping]
         return [
             *((SolverWarning, text) for text in (*cut_off, *moving, *filter(None, [audit]))),
             *((ModelWarning, text) for text in of_model),
@@ -302,8 +305,6 @@ def _leaving(
 ) -> Iterator[str]:
     """Warn of a block that would leave ground which the equations do not let it leave."""
     slope = system.options.slope
-    if system.setting.flies:
-        return
     if motion is not None and not (slope.level and motion.si.vertical is None):
         moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
         lowest = float(np.min(moved[:, 1]))

@@ -125,7 +125,8 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     held = upright or (beyond and bool(setting.link_names))
     if held and bool(np.all(np.abs(rates) < AT_REST * sizes)):
         return False
-    if beyond or _whole_may_fall(system, ending):
+    # other bodies of a scene of one's own are no wholes
+    if beyond or (setting.wholes and _whole_may_fall(system, ending)):
         return True
     kinetic, needed = _kinetic_energy(system, ending), setting.overturning_energy
     if kinetic + most_stored(system, rotation) < needed:
@@ -151,8 +152,6 @@ def _whole_may_fall(system: Assembly, ending: Ending) -> bool:
 
     As if it stood on rigid ground.
     """
-    if not system.setting.wholes:  # other bodies of a scene of one's own are no such
-        return False
     size = len(system.model.rotation_weights)
     weights = system.model.other_limits.reshape(-1, 2 + size)[:, 2:]
     rotations, rates = (weights @ ending.state[of : of + size] for of in (0, size))
@@ -199,14 +198,8 @@ class Uniqueness:
         }
 
 
-NOT_LOOKED_AT: Final = Uniqueness(0, 0, 0, ())
-"""Of scenes in which motion is always unique."""
-
-
-def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
-    """Look for changes of contact after which motion is not unique; None where it always is."""
-    if not isinstance(model.system, RigidChain):
-        return None
+def uniqueness_of(model: ContactModel, chain: RigidChain, run: Trajectory) -> Uniqueness:
+    """Look for changes of contact after which the motion of bodies on rigid bases is not unique."""
     events = run.events
     sets, taken, other = (events.memory[:, model.memory.index(name)] for name in KEPT)
     by_force = np.isin(events.kind, (UPLIFT, SEPARATION, SILENT))
@@ -215,7 +208,7 @@ def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
     several, none = impacts & (sets > 1.0), impacts & (sets == 0.0)
     held = events.kind == SILENT
     held &= sets == 0.0
-    rigid = [k for k in range(model.system.bodies()) if model.system.is_rigid(k)]
+    rigid = [k for k in range(chain.bodies()) if chain.is_rigid(k)]
     unsure = slips & (sets != 1.0)
     cautions = list[str]()
 
