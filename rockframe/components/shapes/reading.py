@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Protocol, TypeAlias, TypeVar
+from typing import Any, Final, TypeAlias, TypeVar
 
 import numpy as np
 import pint
@@ -22,41 +22,17 @@ from rockframe.units import (
 )
 
 
-class Placed(Protocol):
-    """A mass, where its centre is, and its moment of inertia about that."""
-
-    @property
-    def mass(self) -> float:
-        """Mass [kg]."""
-        ...
-
-    @property
-    def x(self) -> float:
-        """Horizontal position of its centre, to the right [m]."""
-        ...
-
-    @property
-    def y(self) -> float:
-        """Height of its centre [m]."""
-        ...
-
-    @property
-    def inertia(self) -> float:
-        """About its own centre [kg m^2]."""
-        ...
-
-
-Mass = TypeVar("Mass", bound=Placed)
-
-
 @dataclass(frozen=True)
 class PlaneMass:
-    """A mass in SI units, with its moment of inertia about its own centre."""
+    """A mass in SI units."""
 
     mass: float
-    x: float
+    x: float  # of its centre, to the right
     y: float
-    inertia: float
+    inertia: float  # about its own centre
+
+
+Mass = TypeVar("Mass", bound=PlaneMass)
 
 
 def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> float:
@@ -66,7 +42,7 @@ def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> floa
     return math.fsum(value(one) * (one.mass / total) for one in masses)
 
 
-def centre_of_mass(masses: Sequence[Placed]) -> tuple[float, float]:
+def centre_of_mass(masses: Sequence[PlaneMass]) -> tuple[float, float]:
     """Give the common centre of masses, :eq:`eq-parts-centre`.
 
     Parameters
@@ -82,7 +58,7 @@ def centre_of_mass(masses: Sequence[Placed]) -> tuple[float, float]:
     return mean_by_mass(masses, lambda one: one.x), mean_by_mass(masses, lambda one: one.y)
 
 
-def combined_mass(masses: Sequence[Placed]) -> PlaneMass:
+def combined_mass(masses: Sequence[PlaneMass]) -> PlaneMass:
     """Make one mass of many, by the parallel-axis theorem, :eq:`eq-parts-inertia`."""
     x, y = centre_of_mass(masses)
     total = sum(one.mass for one in masses)
