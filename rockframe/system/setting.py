@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, cast
 
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import largest
@@ -16,6 +16,9 @@ from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, least_overturning_energy, required_states
 from rockframe.system.support import Support
 from rockframe.system.words import Words
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.chain.slips import SlippingBodies
 
 LARGE_LEAN = 0.1
 """Share of the overturning angle above which a lean at rest is worth a warning."""
@@ -32,6 +35,12 @@ class SlipRange(NamedTuple):
     def peak(self) -> float:
         """The greatest to either side."""
         return largest(self.left, self.right)
+
+
+def chain_slips(setting: "Setting", count: int, ending: Ending) -> tuple[SlipRange, ...]:
+    """Tell how far the highest bodies of a chain that slips have slipped, so many of them."""
+    chain = cast("SlippingBodies", setting.compile().system)
+    return tuple(SlipRange(*chain.slips(k, ending)) for k in range(count))
 
 
 @dataclass(frozen=True)

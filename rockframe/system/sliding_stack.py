@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final
 
 from rockframe.components import Component, RigidGround, Tendon, TwoSpringSupport
 from rockframe.components.ground import Impact
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Sliding
-from rockframe.system.setting import SlipRange
+from rockframe.system.setting import SlipRange, chain_slips
 from rockframe.system.sliding_ground import (
     friction_to_roll_over,
     ill_posed,
@@ -21,7 +21,6 @@ from rockframe.system.stack import StackSetting
 from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.slips import SlippingBodies
     from rockframe.dynamics.protocol import ContactModel, Ending
 
 LEAST_OVERHANG: Final = 0.1
@@ -48,22 +47,14 @@ class SlidingStackSetting(StackSetting):
 
     def words(self) -> Words:
         """Tell bodies and bases, and their friction."""
-        told = super().words()
-        numbers = [
+        return super().words().sliding(*(
             (f"base {k}: friction at rest, and of slip", friction.words())
             for k, friction in enumerate(self.frictions, 1)
-        ]
-        return replace(
-            told,
-            equations=[*told.equations, SLIPS],
-            numbers=[*told.numbers, *numbers],
-            left_out=[one for one in told.left_out if one != "sliding"],
-        )
+        ))  # fmt: skip
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far each body slipped."""
-        system = cast("SlippingBodies", self.compile().system)
-        return tuple(SlipRange(*system.slips(k, ending)) for k in range(len(self.bodies)))
+        return chain_slips(self, len(self.bodies), ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
         """Warn of bodies that slipped beyond the edge of what they stand on, which has no end."""
@@ -194,7 +185,13 @@ class TiedSlidingSetting(TiedSetting):
     def words(self) -> Words:
         """Tell the block, its links and its friction."""
         told = super().words()
-        return Words(
+        slides = told.sliding(
+            ("friction at rest, and of slip", self.friction.words()),
+            ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
+            restraint=HELD_BY_FRICTION,
+        )
+        return replace(
+            slides,
             equations=[
                 ("full", "at rest while friction holds the base, and until it tips; else it slides "
                  "on its whole base"),
@@ -206,13 +203,6 @@ class TiedSlidingSetting(TiedSetting):
                  "are finite, have no part in it"),
                 *(one for one in told.equations if one[0] == "restrainers"),
             ],
-            restraint=HELD_BY_FRICTION,
-            numbers=[
-                *told.numbers,
-                ("friction at rest, and of slip", self.friction.words()),
-                ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
-            ],
-            left_out=[one for one in told.left_out if one != "sliding"],
         )  # fmt: skip
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:

@@ -2,9 +2,9 @@
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -15,15 +15,14 @@ from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
 from rockframe.system.fitting import HELD, BaseFriction
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting, SlipRange
+from rockframe.system.setting import Setting, SlipRange, chain_slips
 from rockframe.system.sliding_stack import beyond_edge
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
-from rockframe.system.words import SLIPS, Words
+from rockframe.system.words import Words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.slips import SlippingBodies
     from rockframe.dynamics.coupled.model import StackRest
     from rockframe.dynamics.protocol import ContactModel, Ending
     from rockframe.dynamics.vibrations import ChainBody
@@ -231,18 +230,11 @@ class SlidingCoupledSetting(CoupledSetting):
 
     def words(self) -> Words:
         """Tell block, cap and soil, and their friction."""
-        told, names = super().words(), ("pads", "soil")
-        numbers = [
+        return super().words().sliding(*(
             (f"{name}: friction at rest, and of slip", friction.words())
-            for name, friction in zip(names, self.frictions, strict=True)
+            for name, friction in zip(("pads", "soil"), self.frictions, strict=True)
             if friction != HELD
-        ]
-        return replace(
-            told,
-            equations=[*told.equations, SLIPS],
-            numbers=[*told.numbers, *numbers],
-            left_out=[one for one in told.left_out if one != "sliding"],
-        )
+        ))  # fmt: skip
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of two bodies upon one another that slip."""
@@ -256,10 +248,7 @@ class SlidingCoupledSetting(CoupledSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the block slipped on the cap and, where that may, the cap on the soil."""
-        system, count = cast("SlippingBodies", self.compile().system), 2
-        if self.frictions[-1] == HELD:
-            count = 1
-        return tuple(SlipRange(*system.slips(k, ending)) for k in range(count))
+        return chain_slips(self, 1 if self.frictions[-1] == HELD else 2, ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
         """Warn of a block that slipped beyond the edge of its cap."""

@@ -43,6 +43,15 @@ class Words:
     numbers: list[tuple[str, str]]
     left_out: list[str]
 
+    def sliding(self, *frictions: tuple[str, str], restraint: str | None = None) -> "Words":
+        """Tell the same of what slips, with its coefficients of friction by their names."""
+        return Words(
+            equations=[*self.equations, SLIPS],
+            restraint=self.restraint if restraint is None else restraint,
+            numbers=[*self.numbers, *frictions],
+            left_out=[one for one in self.left_out if one != "sliding"],
+        )
+
 
 def angle_words(radians: float) -> str:
     """Write an angle in radians and degrees."""
