@@ -6,11 +6,11 @@ from typing import ClassVar, Literal, TypeAlias
 from rockframe.components.base import Component
 from rockframe.components.parameters import (
     Choice,
-    Friction,
-    KineticFriction,
     Ratio,
     SIValues,
     check_frictions,
+    friction_at_rest,
+    friction_of_slip,
 )
 from rockframe.units import UNIT_INTERVAL, RatioLike
 
@@ -58,8 +58,8 @@ class RigidGround(Component):
         default=None,
         example="0.9",
     )
-    friction = Friction(of="the block")
-    kinetic_friction = KineticFriction()
+    friction = friction_at_rest("the block")
+    kinetic_friction = friction_of_slip()
     impact = Choice(
         Impact.COULOMB,
         doc="Whether a corner that strikes slips as far as kinetic friction lets it, or is held.",

@@ -6,12 +6,12 @@ from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import (
     DampingRatio,
-    Friction,
-    KineticFriction,
     Parameter,
     Ratio,
     SIValues,
     check_frictions,
+    friction_at_rest,
+    friction_of_slip,
 )
 from rockframe.units import (
     DAMPING,
@@ -88,8 +88,8 @@ class TwoSpringSupport(Component):
         example="0.9",
     )
 
-    friction = Friction(of="the block")
-    kinetic_friction = KineticFriction()
+    friction = friction_at_rest("the block")
+    kinetic_friction = friction_of_slip()
 
     def __init__(
         self,

@@ -420,42 +420,16 @@ class SIValues(SimpleNamespace):
         raise AccessError(msg)
 
 
-class SIProperty:
-    """A read-only property: the float ``si.<name>`` as a quantity with its unit."""
-
-    def __init__(self, measure: Measure, doc: str) -> None:
-        self._measure = measure
-        self.__doc__ = f"{doc} [{measure.unit}]"
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    @overload
-    def __get__(self, instance: None, owner: type) -> Self: ...
-    @overload
-    def __get__(self, instance: object, owner: type) -> Quantity: ...
-    def __get__(self, instance: Any, owner: type) -> Any:
-        if instance is None:
-            return self
-        return quantity(getattr(instance.si, self._name), self._measure)
+def friction_at_rest(of: str) -> Ratio[None]:
+    """Declare a coefficient of friction at rest under something."""
+    words = f"Coefficient of friction under {of} while it does not slip; without one it is held."
+    return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.5")
 
 
-class Friction(Ratio[None]):
-    """A coefficient of friction at rest."""
-
-    def __init__(self, *, of: str) -> None:
-        words = (
-            f"Coefficient of friction under {of} while it does not slip; without one it is held."
-        )
-        super().__init__(NOT_NEGATIVE, doc=words, default=None, example="0.5")
-
-
-class KineticFriction(Ratio[None]):
-    """A coefficient of friction of slip."""
-
-    def __init__(self) -> None:
-        words = "Coefficient of friction of slip; that at rest unless given."
-        super().__init__(NOT_NEGATIVE, doc=words, default=None, example="0.45")
+def friction_of_slip() -> Ratio[None]:
+    """Declare a coefficient of friction of slip."""
+    words = "Coefficient of friction of slip; that at rest unless given."
+    return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.45")
 
 
 def check_frictions(owner: str, given: SIValues) -> SIValues:

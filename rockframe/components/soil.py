@@ -8,11 +8,11 @@ from rockframe.components.base import Component
 from rockframe.components.parameters import (
     Choice,
     DampingRatio,
-    Friction,
-    KineticFriction,
     Parameter,
     SIValues,
     check_frictions,
+    friction_at_rest,
+    friction_of_slip,
 )
 from rockframe.proposals import hinted
 from rockframe.units import (
@@ -88,8 +88,8 @@ class WinklerSoil(Component):
         "paper; or also where the dashpots would have to pull.",
     )
 
-    friction = Friction(of="what stands on it")
-    kinetic_friction = KineticFriction()
+    friction = friction_at_rest("what stands on it")
+    kinetic_friction = friction_of_slip()
 
     _depth: float | None = None
 

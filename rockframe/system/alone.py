@@ -14,7 +14,7 @@ from rockframe.system.setting import Setting, SlipRange, chain_slips
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, static_values
 from rockframe.system.support import Support
-from rockframe.system.words import Words, angle_words
+from rockframe.system.words import Words, angle_words, sliding_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel, Ending
@@ -123,7 +123,7 @@ class SlidingAloneSetting(AloneSetting):
         held = super().words()
         restraint = f"{held.restraint.partition(';')[0]}; as far as friction can"
         friction = ("friction at rest, and of slip", self.friction.words())
-        return held.sliding(friction, restraint=restraint)
+        return sliding_words(held, friction, restraint=restraint)
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of slip, rotation and rise: those of a chain of one."""

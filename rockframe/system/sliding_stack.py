@@ -18,7 +18,7 @@ from rockframe.system.sliding_ground import (
     slips_on_ground,
 )
 from rockframe.system.stack import StackSetting
-from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words
+from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words, sliding_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel, Ending
@@ -47,7 +47,7 @@ class SlidingStackSetting(StackSetting):
 
     def words(self) -> Words:
         """Tell bodies and bases, and their friction."""
-        return super().words().sliding(*(
+        return sliding_words(super().words(), *(
             (f"base {k}: friction at rest, and of slip", friction.words())
             for k, friction in enumerate(self.frictions, 1)
         ))  # fmt: skip
@@ -185,7 +185,8 @@ class TiedSlidingSetting(TiedSetting):
     def words(self) -> Words:
         """Tell the block, its links and its friction."""
         told = super().words()
-        slides = told.sliding(
+        slides = sliding_words(
+            told,
             ("friction at rest, and of slip", self.friction.words()),
             ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
             restraint=HELD_BY_FRICTION,

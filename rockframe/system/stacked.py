@@ -20,7 +20,7 @@ from rockframe.system.sliding_stack import beyond_edge
 from rockframe.system.small_motion import SmallMotion
 from rockframe.system.statics import Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
-from rockframe.system.words import Words
+from rockframe.system.words import Words, sliding_words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.coupled.model import StackRest
@@ -230,7 +230,7 @@ class SlidingCoupledSetting(CoupledSetting):
 
     def words(self) -> Words:
         """Tell block, cap and soil, and their friction."""
-        return super().words().sliding(*(
+        return sliding_words(super().words(), *(
             (f"{name}: friction at rest, and of slip", friction.words())
             for name, friction in zip(("pads", "soil"), self.frictions, strict=True)
             if friction != HELD

@@ -43,14 +43,15 @@ class Words:
     numbers: list[tuple[str, str]]
     left_out: list[str]
 
-    def sliding(self, *frictions: tuple[str, str], restraint: str | None = None) -> "Words":
-        """Tell the same of what slips, with its coefficients of friction by their names."""
-        return Words(
-            equations=[*self.equations, SLIPS],
-            restraint=self.restraint if restraint is None else restraint,
-            numbers=[*self.numbers, *frictions],
-            left_out=[one for one in self.left_out if one != "sliding"],
-        )
+
+def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | None = None) -> Words:
+    """Tell the same of what slips, with its coefficients of friction by their names."""
+    return Words(
+        equations=[*held.equations, SLIPS],
+        restraint=held.restraint if restraint is None else restraint,
+        numbers=[*held.numbers, *frictions],
+        left_out=[one for one in held.left_out if one != "sliding"],
+    )
 
 
 def angle_words(radians: float) -> str:

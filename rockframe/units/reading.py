@@ -9,7 +9,6 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from decimal import Context, Decimal
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
@@ -53,31 +52,18 @@ _NAME: Final = re.compile(r"[^\W\d]\w*")
 _FOREIGN: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
 
 
-@dataclass(frozen=True)
-class WrittenQuantity:
-    """A text that is one number and a unit."""
-
-    number: float  # the number
-    unit: str  # the unit as it is written, empty where there is none
-
-    @property
-    def plain(self) -> str:
-        """The same, in a spelling of which pint drops nothing."""
-        return f"{self.number!r} {self.unit.translate(_SPELLINGS)}"
-
-
 def number_and_unit(text: str) -> tuple[str, str] | None:
     """Part a text behind the number that it begins with."""
     parts = _NUMBER_AND_UNIT.fullmatch(text)
     return None if parts is None else (parts["number"], parts["unit"])
 
 
-def parse_quantity(text: str) -> WrittenQuantity | None:
-    """Read a text as one number and a unit."""
+def _plain_spelling(text: str) -> str | None:
+    """Write a text that is one number and a unit so that pint drops nothing; None of any other."""
     parts = number_and_unit(text)
     if parts is None or not _is_unit(parts[1]):
         return None
-    return WrittenQuantity(float(parts[0]), parts[1])
+    return f"{float(parts[0])!r} {parts[1].translate(_SPELLINGS)}"
 
 
 def foreign_sign(text: str) -> str | None:
@@ -161,11 +147,6 @@ def _weight(given: Any, text: str, measure: Measure) -> str:
     return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if heavy else ""
 
 
-def other_kind(given: Any, text: str, measure: Measure) -> str:
-    """Say how what is needed follows from a related quantity, where that was given."""
-    return _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
-
-
 def _subgrade(given: Any, measure: Measure) -> str:
     """Say what takes the subgrade modulus, where it was given for the stiffness of a bed."""
     if measure.unit != BED_STIFFNESS.unit or not _is_in(given, SUBGRADE_MODULUS.unit):
@@ -191,13 +172,6 @@ def _is_in(given: Any, unit: Unit) -> bool:
         return given.is_compatible_with(str(unit)) and getattr(given.magnitude, "ndim", 0) == 0
     except Exception:  # offset units such as degC cannot be compared
         return False
-
-
-def without_unit(measure: Measure) -> str:
-    """Say which argument takes the bare number that was given for one with a unit."""
-    if measure.unit in _SHARE:
-        return "; a share of critical damping is a damping_ratio"
-    return ""
 
 
 def misread(text: str, measure: Measure) -> str:
@@ -397,7 +371,8 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
     example = measure.example_of(name)
     if not isinstance(value, str):
         kind = "a bare number" if isinstance(value, Real) else f"a {type(value).__name__}"
-        why = foreign_quantity(value) or f"{kind} has no unit{without_unit(measure)}"
+        share = "; a share of critical damping is a damping_ratio" if measure.unit in _SHARE else ""
+        why = foreign_quantity(value) or f"{kind} has no unit{share}"
         if isinstance(value, tuple):
             why = "one number and its unit are needed"
         msg = f"{needed}, got {shown(value)} ({why}); {example}"
@@ -407,14 +382,14 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
         if re.search(pattern, value):
             msg = f"{needed}, got {shown(value)} ({words}); {example}"
             raise UnitsError(msg)
-    written = parse_quantity(value)
+    written = _plain_spelling(value)
     if written is None:
         hint = misread(value, measure)
         wanted = "a number" if measure.unit == Unit.ONE else "one number and a unit"
         msg = f"{needed}, got {shown(value)}, which is not {wanted}{hint}; {example}"
         raise UnitsError(msg)
     try:
-        return pint.get_application_registry().Quantity(written.plain)
+        return pint.get_application_registry().Quantity(written)
     except Exception as problem:  # pint's parser raises many unrelated types
         hint = misread(value, measure)
         msg = f"{needed}, got {shown(value)}, whose unit cannot be read{hint}; {example}"
@@ -455,9 +430,12 @@ def _check_kind(given: Quantity, value: object, measure: Measure, *, owner: str,
         return
     unit = f"{given.units:~}" or "no unit"
     unit_needed = "" if measure.unit == Unit.ONE else f" in a unit such as {measure.unit}"
+    text = str(value)
+    # how what is needed follows from a related quantity, where that was given
+    hint = _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
     msg = (
-        f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(str(value))} ({unit})"
-        f"{other_kind(given, str(value), measure) or misread(str(value), measure)}; "
+        f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(text)} ({unit})"
+        f"{hint or misread(text, measure)}; "
         f"{measure.example_of(name)}"
     )
     raise UnitsError(msg)
