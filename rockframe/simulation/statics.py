@@ -11,7 +11,7 @@ from rockframe.errors import AssemblyError, ComponentError, shown
 from rockframe.results.outcome import Generic, slope_attributes
 from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.system.assembly import Assembly
-from rockframe.system.small_motion import modes_of
+from rockframe.system.statics import modes_of
 from rockframe.units import ANGLE, to_si_values
 
 

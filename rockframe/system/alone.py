@@ -11,8 +11,7 @@ from rockframe.many import isnan
 from rockframe.system.fitting import BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange, chain_slips
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, static_values
+from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import Support
 from rockframe.system.words import Words, angle_words, sliding_words
 

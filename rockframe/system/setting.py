@@ -12,8 +12,7 @@ from rockframe.signals.motion import Slope
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
 from rockframe.system.rigid_base import NO_VERTICAL_START
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, least_overturning_energy, required_states
+from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, required_states
 from rockframe.system.support import Support
 from rockframe.system.words import Words
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rockframe.components.ground import Impact
+from rockframe.components.bases import Impact
 from rockframe.errors import AssemblyError
 from rockframe.many import largest, plain
 from rockframe.system.bodies import SupportedBody, load_of, resolve_restitution

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from rockframe.components import Component, RigidGround, Tendon, TwoSpringSupport
-from rockframe.components.ground import Impact
+from rockframe.components.bases import Impact
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Sliding

@@ -24,8 +24,7 @@ from rockframe.system.rigid_base import (
     rocking_energy,
 )
 from rockframe.system.setting import Setting
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, least_overturning_energy, static_values
+from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, static_values
 from rockframe.system.support import StandingBodies, Support
 from rockframe.system.words import Words
 

@@ -17,8 +17,7 @@ from rockframe.system.fitting import HELD, BaseFriction
 from rockframe.system.options import restraint_words
 from rockframe.system.setting import Setting, SlipRange, chain_slips
 from rockframe.system.sliding_stack import beyond_edge
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, static_values
+from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
 from rockframe.system.words import Words, sliding_words
 

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from rockframe.components import TwoSpringSupport, WinklerSoil
-from rockframe.components.soil import Separation
+from rockframe.components.bases import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.statics import Stand, StandingChain, link_of, of_base, uplift_rotation
