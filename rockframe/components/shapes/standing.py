@@ -1,7 +1,7 @@
 """How a body stands on level ground: the ends of its base, and what else would touch."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
@@ -58,29 +58,15 @@ class Stance:
         return math.atan2(side * (end - whole.x), whole.y - self.ground)
 
 
-@dataclass(frozen=True)
-class ShapedBody:
-    """A body that stands: the arguments of a block, and what a user should know."""
-
-    owner: str
-    arguments: dict[str, str]
-    cautions: tuple[str, ...] = ()
-
-    def build(self, kind: Callable[..., Made]) -> Made:
-        """Make the block, and warn."""
-        with (
-            collected_warnings()
-        ):  # a shape may reach out beside its base, beyond the bound of its inertia
-            made = kind(**self.arguments)
-        for caution in self.cautions:
-            warn(f"{self.owner}: {caution}", ModelWarning)
-        return made
-
-
 def shaped_body(
-    whole: PlaneMass, stance: Stance, top: float, corners: Iterable[OutlineCorner], owner: str
-) -> ShapedBody:
-    """Put mass and base together; refuse a centre of mass that is not above the base.
+    kind: Callable[..., Made],
+    whole: PlaneMass,
+    stance: Stance,
+    top: float,
+    corners: Sequence[OutlineCorner],
+    owner: str,
+) -> Made:
+    """Make a block of its mass and base; refuse a centre of mass that is not above the base.
 
     `top` is the height of the highest point [m]; `corners` may touch the ground beside the base.
     """
@@ -100,10 +86,14 @@ def shaped_body(
     }
     if abs(beside) > CENTRED * width:
         arguments["eccentricity"] = _written(beside, LENGTH)
-    return ShapedBody(owner, arguments, tuple(_touching(whole, stance, list(corners))))
+    with collected_warnings():  # it may reach out beside its base, beyond the bound of its inertia
+        made = kind(**arguments)
+    for caution in _touching(whole, stance, corners):
+        warn(f"{owner}: {caution}", ModelWarning)
+    return made
 
 
-def _touching(whole: PlaneMass, stance: Stance, corners: list[OutlineCorner]) -> Iterable[str]:
+def _touching(whole: PlaneMass, stance: Stance, corners: Sequence[OutlineCorner]) -> Iterator[str]:
     for side, word in ((1.0, "right"), (-1.0, "left")):
         limit = stance.overturning_angle(whole, side)
         corner = min(corners, key=lambda one: stance.touching_angle(one, side), default=None)
