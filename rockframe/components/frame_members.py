@@ -247,22 +247,7 @@ _COLUMNS: Final = {
 def members_table(
     members: Sequence[Member], height: float, attributes: dict[str, float | None]
 ) -> xr.Dataset:
-    """Put members into a table, one row each.
-
-    Parameters
-    ----------
-    members : sequence of Member
-        Members with different names.
-    height : float
-        Height of the building [m].
-    attributes : dict
-        What the sums come to; None is left out.
-
-    Returns
-    -------
-    xarray.Dataset
-        Dimension ``member``, labelled by name and kind. What is unknown is NaN.
-    """
+    """Put members of a building of a height [m] into a table, with what the sums come to."""
     variables: dict[str, Any] = {}
     rows = [_row(member.si, height) for member in members]
     for name, (unit, words) in _COLUMNS.items():

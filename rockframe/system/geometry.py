@@ -41,19 +41,19 @@ class Geometry:
     """
 
     outline: Array  # of the block, from the middle of its own base
-    members: tuple[Array, ...]  # outlines of a frame's members, in the same coordinates
     half_width: float  # of the block's base
     centre: tuple[float, float]  # the block's centre of mass, in the coordinates of its outline
     # the centre of mass of the body that results are of, from the middle of the lowest base: that
     # of the block, or of block and cap where these are one body
     moved: tuple[float, float]
-    cap: tuple[float, float] | None  # half the width and the height of the cap
-    # settlements under the weight of pads and of soil, where the scene has them
-    pads_sink: float | None
-    bed_sinks: float | None
-    stacked: bool  # whether pads stand between block and cap, which then move apart
-    inclination: float  # by which the base line rises to the right [rad]
     small_rotation: bool  # whether the kinematics are expanded in the rotation
+    inclination: float = 0.0  # by which the base line rises to the right [rad]
+    members: tuple[Array, ...] = ()  # outlines of a frame's members, as that of the block
+    cap: tuple[float, float] | None = None  # half the width and the height of the cap
+    # settlements under the weight of pads and of soil, where the scene has them
+    pads_sink: float | None = None
+    bed_sinks: float | None = None
+    stacked: bool = False  # whether pads stand between block and cap, which then move apart
     lower: tuple[LowerBody, ...] = ()  # bodies of a stack beneath the block, from the top down
     ties: tuple[LinkedPoints, ...] = ()  # points that restrainers link
     # of columns under a beam, how far each is to the right of the middle; the block is one of them
@@ -187,15 +187,10 @@ def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
     place = sum(offsets[k:]), sum(one.height for one in bodies[k + 1 :])
     return Geometry(
         outline=rectangle(block.half_width, block.height),
-        members=(),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
         moved=(beside + block.eccentricity, level + block.centre_height),
-        cap=None,
-        pads_sink=None,
         bed_sinks=None if scene.parts.soil is None else scene.setting.supports[-1].settlement,
-        stacked=False,
-        inclination=0.0,
         small_rotation=scene.options.small,
         lower=tuple(lower),
         ties=_ties_of(scene.setting),

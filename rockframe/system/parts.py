@@ -68,14 +68,9 @@ def slots() -> tuple[str, ...]:
     return (*SHIPPED[:-1], *own, SHIPPED[-1])
 
 
-def add_base(kind: type[OwnBase]) -> None:
-    """Make a user's own base known."""
-    _KINDS[kind] = Kind(kind.slot, kind.support)
-
-
-def add_link(kind: type[Link]) -> None:
-    """Make a user's own link known."""
-    _KINDS[kind] = Kind(RESTRAINER)
+def add_kind(of: type, kind: Kind) -> None:
+    """Make a part of a user's own known: a link, a base, or what a scene of its own is made of."""
+    _KINDS[of] = kind
 
 
 def numbered(slot: str, number: int) -> str:
@@ -87,11 +82,6 @@ def kind_of_slot(slot: str) -> str:
     """Give the slot of a kind of which there may be several parts."""
     head, _, number = slot.rpartition("_")
     return head if head == RESTRAINER and number.isdigit() else slot
-
-
-def add_part(kind: type[Component], slot: str) -> None:
-    """Make a part of a user's own scene known."""
-    _KINDS[kind] = Kind(slot)
 
 
 def known_kind(of: type) -> type | None:

@@ -42,11 +42,6 @@ class StackedSetting(Setting):
     stacked: ClassVar[bool] = True
 
     @property
-    @abstractmethod
-    def cap_lean(self) -> float:
-        """Rotation of the cap at rest [rad]."""
-
-    @property
     def supports(self) -> tuple[Support, ...]:
         """Pads and soil."""
         return self.upper.support, self.lower.support
@@ -203,11 +198,6 @@ class CoupledSetting(StackedSetting):
             return found
         return found | static_values(self._moving.reactions(self._rest))
 
-    @property
-    def cap_lean(self) -> float:
-        """Rotation of the cap at rest [rad]."""
-        return self.rest.cap_rotation
-
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the block at rest, with the cap [rad]."""
@@ -298,12 +288,7 @@ class CascadeSetting(StackedSetting):
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the block at rest, of both stages together [rad]."""
-        return self.cap_lean + self.upper.rest_rotation
-
-    @property
-    def cap_lean(self) -> float:
-        """Rotation of the cap at rest [rad]."""
-        return self.lower.rest_rotation
+        return self.lower.rest_rotation + self.upper.rest_rotation
 
 
 def _uplift_row(setting: AloneSetting, on: str, base: BaseWords, whose: str) -> tuple[str, str]:

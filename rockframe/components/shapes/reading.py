@@ -43,18 +43,7 @@ def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> floa
 
 
 def centre_of_mass(masses: Sequence[PlaneMass]) -> tuple[float, float]:
-    """Give the common centre of masses, :eq:`eq-parts-centre`.
-
-    Parameters
-    ----------
-    masses : sequence
-        One or more.
-
-    Returns
-    -------
-    tuple of float
-        Coordinates x, y [m].
-    """
+    """Give the coordinates of the common centre of masses, :eq:`eq-parts-centre` [m]."""
     return mean_by_mass(masses, lambda one: one.x), mean_by_mass(masses, lambda one: one.y)
 
 
