@@ -63,7 +63,14 @@ class Declared(Generic[Public, Usual]):
     def __init__(
         self, measure: Measure | None, condition: Condition | None, *, doc: str, default: Usual
     ) -> None:
-        _check_declaration(type(self).__name__, measure, condition, doc)
+        for name, given, kind in (
+            ("measure", measure, Measure), ("condition", condition, Condition), ("doc", doc, str)
+        ):  # fmt: skip
+            missing = given is None and name != "doc"
+            if not missing and not isinstance(given, kind):
+                wanted = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
+                msg = f"{type(self).__name__}: {name} must be {wanted}, got {shown(given)}"
+                raise ComponentError(msg)
         self.measure = measure
         self.condition = condition
         self.default = default
@@ -112,18 +119,6 @@ class Declared(Generic[Public, Usual]):
     def caution(self, value: Any) -> str | None:
         """Say what is unusual about a value, if anything is."""
         return None
-
-
-def _check_declaration(owner: str, measure: object, condition: object, doc: object) -> None:
-    """Refuse a declaration that is none."""
-    for name, given, kind in (
-        ("measure", measure, Measure), ("condition", condition, Condition), ("doc", doc, str)
-    ):  # fmt: skip
-        missing = given is None and name != "doc"
-        if not missing and not isinstance(given, kind):
-            wanted = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
-            msg = f"{owner}: {name} must be {wanted}, got {shown(given)}"
-            raise ComponentError(msg)
 
 
 class Parameter(Declared[Quantity, Usual]):
