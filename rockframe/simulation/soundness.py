@@ -148,10 +148,7 @@ def most_stored(system: Assembly, rotation: float) -> float:
 
 
 def _whole_may_fall(system: Assembly, ending: Ending) -> bool:
-    """Tell whether a lower body, and all above it as one, has the energy to fall over its corner.
-
-    As if it stood on rigid ground.
-    """
+    """Tell whether a lower body with all above it can fall, as if on rigid ground."""
     size = len(system.model.rotation_weights)
     weights = system.model.other_limits.reshape(-1, 2 + size)[:, 2:]
     rotations, rates = (weights @ ending.state[of : of + size] for of in (0, size))

@@ -54,10 +54,7 @@ class AloneSetting(Setting):
 
     @cached_property
     def rest_rotation(self) -> float:
-        """Rotation at rest: a body leans to the side to which its weight turns it [rad].
-
-        At small rotation on pads or a bed that of :eq:`eq-incline-lean`.
-        """
+        """Rotation to which its weight turns a body; :eq:`eq-incline-lean` if small [rad]."""
         if not self.leans:
             return 0.0
         found = self.support.standing.rest

@@ -238,10 +238,7 @@ def _own(kind: type[OwnScene], parts: Parts, options: Options) -> OwnScene:
 
 @dataclass(frozen=True)
 class Assembly:
-    """Parts and options that have been checked and make a supported scene.
-
-    Two are equal if they have equal parts, in whatever order, and equal options.
-    """
+    """Parts, whatever their order, and options that were checked and make a scene."""
 
     parts: Parts  # by what they are
     options: Options  # all options, and gravity

@@ -94,10 +94,7 @@ class SupportedBody(BodyGeometry):
 
 
 class OverturningAngles(NamedTuple):
-    """Rotations at which a body stands on edge, to either side, both positive [rad].
-
-    The lesser of both is theta.
-    """
+    """Rotations, both positive, at which a body stands on edge; the lesser is theta [rad]."""
 
     left: float
     right: float

@@ -134,10 +134,7 @@ class Setting(ABC):
 
     @cached_property
     def uplift_angle(self) -> float:
-        """Rotation on its base at which a body loses full contact; NaN if never [rad].
-
-        Any rotation lifts a corner from rigid ground.
-        """
+        """Rotation at which a body loses full contact; any on rigid ground, NaN if never [rad]."""
         return self.supports[0].uplift_angle if self.supports else 0.0
 
     @cached_property

@@ -387,10 +387,7 @@ class StackSetting(Setting):
 def combined_body(
     bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> SupportedBody:
-    """Give bodies upon one another, from the top down, as one upright body.
-
-    `offsets` are those of all but the lowest, whose base is that of the whole.
-    """
+    """Give bodies upon one another, from the top down, as one on the base of the lowest."""
     lowest = bodies[-1]
     places, base, beside = [(lowest, lowest.centre_height, 0.0)], 0.0, 0.0
     for k in range(len(bodies) - 2, -1, -1):

@@ -108,10 +108,7 @@ class SmallMotion:
 
 @dataclass(frozen=True)
 class VibrationMode:
-    """A mode: frequency without damping, damping ratio, and shape.
-
-    The frequency and the damping ratio of a mode that does not return are NaN.
-    """
+    """A mode: frequency without damping, damping ratio, both NaN if it does not return; shape."""
 
     angular_frequency: float
     damping_ratio: float

@@ -397,10 +397,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
 
 
 def _gravity(text: str, measure: Measure) -> str:
-    """Read ``g`` as the acceleration of gravity where an acceleration is asked for.
-
-    Elsewhere it is the gram, which is no acceleration.
-    """
+    """Read ``g``, elsewhere the gram, as that of gravity where an acceleration is asked for."""
     parts = number_and_unit(text)
     gravity = measure.unit == Unit.METRE_PER_SECOND_SQUARED and parts and parts[1] in _GRAVITY
     return f"{parts[0]} g_0" if parts and gravity else text
