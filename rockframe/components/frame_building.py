@@ -14,8 +14,7 @@ from typing import Any, Final
 from rockframe.arguments import one_of_words
 from rockframe.components.frame_members import Member, MemberSI
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
-from rockframe.components.shapes.reading import centre_of_mass, mean_by_mass
-from rockframe.components.shapes.standing import CENTRED
+from rockframe.components.shapes.standing import CENTRED, centre_of_mass, mean_by_mass
 from rockframe.errors import ComponentError, shown
 from rockframe.units import INERTIA, LENGTH, MASS, POSITIVE, to_si
 

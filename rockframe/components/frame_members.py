@@ -10,7 +10,7 @@ import xarray as xr
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import DERIVED, Parameter, SIValues, Text
-from rockframe.components.shapes.reading import PlaneMass
+from rockframe.components.shapes.standing import PlaneMass
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError
 from rockframe.units import (

@@ -8,12 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.shapes.reading import PlaneMass, Points, read_mass, read_points
 from rockframe.components.shapes.standing import (
     ROUNDING,
     Made,
     OutlineCorner,
+    PlaneMass,
+    Points,
     Stance,
+    read_mass,
+    read_points,
     shaped_body,
 )
 from rockframe.errors import ComponentError

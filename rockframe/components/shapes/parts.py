@@ -5,19 +5,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypedDict, cast
 
 from rockframe.components.shapes.outline import outline_mass
-from rockframe.components.shapes.reading import (
-    Place,
-    PlaneMass,
-    Points,
-    combined_mass,
-    read_mass,
-    read_place,
-)
 from rockframe.components.shapes.standing import (
     ROUNDING,
     Made,
     OutlineCorner,
+    Place,
+    PlaneMass,
+    Points,
     Stance,
+    combined_mass,
+    read_mass,
+    read_place,
     shaped_body,
 )
 from rockframe.errors import ComponentError, shown
