@@ -84,8 +84,7 @@ def beyond_edge(
 def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
     """Give the setting of bodies with links: of those that slip where bases have friction."""
     slips = any(getattr(one.si, "friction", None) is not None for one in bases)
-    if refused := too_many_modes(bases, slips):
-        raise AssemblyError([refused])
+    _refuse_many_modes(bases, slips)
     if not slips:
         return held
     found = [friction_under(one, held.options) for one in bases]
@@ -115,7 +114,7 @@ def _same(held: StackSetting) -> dict[str, Any]:
     return {name: getattr(held, name) for name in names}
 
 
-def too_many_modes(bases: Sequence[Component], slips: bool) -> str | None:
+def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
     """Refuse bodies whose contacts have more combinations than can be numbered."""
     from rockframe.dynamics.chain.rows import BED_MODES, PAD_MODES, RIGID_MODES
     from rockframe.dynamics.protocol import MOST_MODES
@@ -127,12 +126,12 @@ def too_many_modes(bases: Sequence[Component], slips: bool) -> str | None:
         else:
             modes = PAD_MODES if isinstance(base, TwoSpringSupport) else BED_MODES
         count *= 2 * modes if slips else modes
-    if count <= MOST_MODES:
-        return None
-    return (
-        f"the contacts of {len(bases)} bodies on these bases have {count:.2g} combinations, more "
-        f"than the {MOST_MODES:.2g} that can be numbered: give fewer bodies, or rigid joints"
-    )
+    if count > MOST_MODES:
+        raise AssemblyError([
+            f"the contacts of {len(bases)} bodies on these bases have {count:.2g} combinations, "
+            f"more than the {MOST_MODES:.2g} that can be numbered: give fewer bodies, or rigid "
+            "joints"
+        ])  # fmt: skip
 
 
 def sheared(held: StackSetting) -> list[str]:
