@@ -130,17 +130,12 @@ def squat(si: BlockSI, owner: str) -> list[str]:
     ]
 
 
-def least_shape_factor(si: BlockSI) -> float:
-    """Give mu of a body with all its mass in the corners, :eq:`eq-greatest-inertia`."""
+def unphysical_inertia(si: BlockSI) -> list[str]:
+    """Warn of an inertia that no body within the rectangle has, :eq:`eq-greatest-inertia`."""
     radius = si.radius  # by which sizes are divided, so that squares hold any of them
     beside = (si.left / radius) * (si.right / radius)
     above = (si.centre_height / radius) * ((si.height - si.centre_height) / radius)
-    return 1.0 / (beside + above)
-
-
-def unphysical_inertia(si: BlockSI) -> list[str]:
-    """Warn of an inertia that no body within the rectangle has, :eq:`eq-greatest-inertia`."""
-    least = least_shape_factor(si)
+    least = 1.0 / (beside + above)  # of all the mass in the corners
     if si.shape_factor >= (1.0 - _ROUNDING) * least:
         return []
     greatest = si.inertia * (si.shape_factor / least)

@@ -34,13 +34,6 @@ class MemberSI(PlaneMass):
     height: float | None
     depth: float | None
 
-    @property
-    def volume(self) -> float | None:
-        """Volume, or None where a size is unknown [m^3]."""
-        if self.width is None or self.height is None or self.depth is None:
-            return None
-        return self.width * self.height * self.depth
-
     def distance(self, height: float) -> float:
         """Distance L of the member's centre from O, half way up a building [m]."""
         return math.hypot(self.x, self.y - 0.5 * height)
@@ -276,5 +269,8 @@ def members_table(
 def _row(si: MemberSI, height: float) -> dict[str, float | None]:
     distance = si.distance(height)
     about_middle = si.inertia + si.mass * distance**2
-    own = {"volume": si.volume, "distance": distance, "inertia_about_middle": about_middle}
+    volume = None
+    if si.width is not None and si.height is not None and si.depth is not None:
+        volume = si.width * si.height * si.depth
+    own = {"volume": volume, "distance": distance, "inertia_about_middle": about_middle}
     return {**vars(si), **own}
