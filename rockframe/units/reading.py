@@ -243,11 +243,18 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
         alone = isinstance(items[0], str | pint.Quantity | None) if items else True
         if len(items) == 2 and isinstance(items[1], str) and not alone:
             factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
-            numbers = items[0] if isinstance(items[0], Iterable) else [items[0]]
-            several = _floats_times(numbers, factor)
-            if several is not None:
-                return several
-            return [_times(number, factor, items[1], owner=owner, name=name) for number in numbers]
+            numbers: Any = items[0]
+            single = getattr(numbers, "ndim", 1) == 0 or not isinstance(items[0], Iterable)
+            if single or not hasattr(numbers, "tolist"):
+                numbers = [numbers] if single else list(numbers)
+            floats: list[Any] = numbers if isinstance(numbers, list) else numbers.tolist()
+            if all(type(number) is float for number in floats):
+                products = _products(floats, factor)
+                if all(map(math.isfinite, products)):
+                    return products
+            return [  # of other values, which may be wrong
+                _times(number, factor, items[1], owner=owner, name=name) for number in numbers
+            ]
         return [to_si(item, measure, owner=owner, name=name) for item in items]
     return [to_si(value, measure, owner=owner, name=name)]
 
@@ -266,15 +273,6 @@ def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> f
         )
         raise UnitsError(msg)
     return _check_value(_product(_float(number), factor), number, None, owner=owner, name=name)
-
-
-def _floats_times(numbers: Any, factor: float) -> list[float] | None:
-    """Do so for many floats; None where there are other values, which may be wrong."""
-    found: list[Any] = numbers.tolist() if hasattr(numbers, "tolist") else list(numbers)
-    if not all(type(number) is float for number in found):
-        return None
-    products = _products(found, factor)
-    return products if all(map(math.isfinite, products)) else None
 
 
 def _float(number: Real) -> float:
