@@ -36,13 +36,12 @@ from rockframe.simulation.proving import proof_of
 from rockframe.simulation.run_arguments import PROVED, Certification
 from rockframe.simulation.soundness import (
     STILL_MOVING,
-    Uniqueness,
+    ambiguities,
     doubtful_residual,
     friction_words,
     may_overturn_later,
     slips,
     unbalanced,
-    uniqueness_of,
 )
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
@@ -95,12 +94,12 @@ class Response:
         return in_motion(self.system, self.trajectory, self.missing)
 
     @cached_property
-    def uniqueness(self) -> Uniqueness | None:
-        """Impacts on rigid bases after which motion is not unique; None where it always is."""
+    def ambiguities(self) -> tuple[dict[str, int], list[str]]:
+        """How often motion was not unique, and the same in words; nothing where it always is."""
         model = self.system.model
         if not isinstance(model.system, RigidChain):
-            return None
-        return uniqueness_of(model, model.system, self.trajectory)
+            return {}, []
+        return ambiguities(model, model.system, self.trajectory)
 
     def summary(self) -> RunSummary:
         """Tell what a certificate asks of the run."""
@@ -133,8 +132,8 @@ class Response:
         slipping = or_missing(lambda: list(slips(self.answers.slidings)), [], _FRICTION, missing)
         _ = self.scalars  # what is missing of them is said, too
         cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
-        unique = [] if self.uniqueness is None else self.uniqueness.cautions
-        of_model = [*unique, *setting.beyond_edges(summary.ending), *leaving, *slipping]
+        beyond = setting.beyond_edges(summary.ending)
+        of_model = [*self.ambiguities[1], *beyond, *leaving, *slipping]
         return [
             *((SolverWarning, text) for text in (*cut_off, *moving, *filter(None, [audit]))),
             *((ModelWarning, text) for text in of_model),
@@ -175,8 +174,7 @@ def run(
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)
     attributes[END_STATE] = json.dumps(ending_as_json(summary.ending))
-    if response.uniqueness is not None:
-        attributes |= response.uniqueness.attributes()
+    attributes |= response.ambiguities[0]
     if summary.status.finished and not system.setting.slides:
         answers = response.answers
         friction = or_missing(

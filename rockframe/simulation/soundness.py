@@ -177,26 +177,10 @@ _STANDS: Final = ("flies", "on its left corner", "on its right corner", "in full
 _ONE_OF: Final = "what follows is one of several motions"
 
 
-@dataclass(frozen=True)
-class Uniqueness:
-    """How often the motion of a run was not unique."""
-
-    several: int  # impacts with several admissible modes, and with none
-    none: int
-    held: int  # corners that were held for a while though they did not press
-    cautions: tuple[str, ...]  # the same in words
-
-    def attributes(self) -> dict[str, int]:
-        """Give the numbers by their names among a run's attributes."""
-        return {
-            "impacts_of_several_modes": self.several,
-            "impacts_of_no_mode": self.none,
-            "corners_held_without_pressing": self.held,
-        }
-
-
-def uniqueness_of(model: ContactModel, chain: RigidChain, run: Trajectory) -> Uniqueness:
-    """Look for changes of contact after which the motion of bodies on rigid bases is not unique."""
+def ambiguities(
+    model: ContactModel, chain: RigidChain, run: Trajectory
+) -> tuple[dict[str, int], list[str]]:
+    """Count changes of contact after which motion on rigid bases is not unique; also in words."""
     events = run.events
     sets, taken, other = (events.memory[:, model.memory.index(name)] for name in KEPT)
     by_force = np.isin(events.kind, (UPLIFT, SEPARATION, SILENT))
@@ -232,7 +216,12 @@ def uniqueness_of(model: ContactModel, chain: RigidChain, run: Trajectory) -> Un
         "a corner is held though it does not press, since it would come back at once if it were "
         f"let go; this happens {held.sum()} times"
     ))  # fmt: skip
-    return Uniqueness(int(several.sum()), int(none.sum()), int(held.sum()), tuple(cautions))
+    counts = {
+        "impacts_of_several_modes": int(several.sum()),
+        "impacts_of_no_mode": int(none.sum()),
+        "corners_held_without_pressing": int(held.sum()),
+    }
+    return counts, cautions
 
 
 def _named(corners: int, rigid: Sequence[int]) -> str:
