@@ -52,13 +52,13 @@ _TABLES: Final = (
     analyses.DYNAMIC_ANALYSIS,
     analyses.FRACTILES,
     analyses.FRAGILITY,
-    analyses.HAZARD,
     analyses.MEASURE_COMPARISON,
     analyses.OVERTURNING_MAP,
     analyses.SPECTRA,
     analyses.PROBABILITY,
     analyses.SUBSETS,
     analyses.ENSEMBLE,
+    analyses.HAZARD,
     analyses.SEQUENCES,
     studies.FREE_DECAY,
 )
@@ -76,36 +76,9 @@ def schema_row(name: str) -> Variable:
     return row
 
 
-COORDINATES: Final = (
-    "time",
-    "angle",
-    "mode",
-    "point",
-    "point_x",
-    "point_y",
-    "body",
-    "restrainer",
-    "scale",
-    studies.CASE,
-    studies.MOTION,
-    studies.MESSAGE,
-    "limit_state",
-    "rotation_limit",
-    "coefficient",
-    "amplitude",
-    "rocking_period",
-    "slenderness",
-    "parameter",
-    "quantile",
-    "response_level",
-    "measure",
-    "covariate",
-    "contributing_intensity",
-    "sequence",
-    "earthquake",
-    "sampling_level",
-)
-"""Variables that label a dimension, or a case: arithmetic and means leave them alone."""
+LABELS: Final = ("point_x", "point_y", studies.MESSAGE, "rotation_limit")
+"""Variables that label a case, or a dimension of another name: arithmetic leaves them alone, as it
+does those that label the dimension of their name."""
 
 ENERGIES: Final = tuple(row.name for row in runs.ENERGY_HISTORIES)
 """Histories that are integrated only on request."""
@@ -152,9 +125,8 @@ def build_dataset(
             raise SchemaError(msg)
         variables[name] = (dims, data)
         labels[name] = row.attributes("float64" if gaps else None)
-    own = [name for name in variables if schema_row(name).dims == (name,)]  # labels
-    names = dict.fromkeys((*COORDINATES, *own))
-    coordinates = {name: variables.pop(name) for name in names if name in variables}
+    own = [name for name in variables if SCHEMA[name].dims == (name,) or name in LABELS]
+    coordinates = {name: variables.pop(name) for name in sorted(own, key=[*SCHEMA].index)}
     dataset = xr.Dataset(
         variables,
         coords=coordinates,
