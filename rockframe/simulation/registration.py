@@ -238,11 +238,8 @@ def _faults_in_diagnostic(given: Diagnostic) -> list[str]:
 
 
 def _faults_in_name(name: str, what: str) -> list[str]:
-    return (
-        []
-        if name.isidentifier()
-        else [f"{what} is called {name!r}; expected one such as 'left_set'"]
-    )
+    fault = f"{what} is called {name!r}; expected one such as 'left_set'"
+    return [] if name.isidentifier() else [fault]
 
 
 def _faults_in_unit(unit: Any, owner: str) -> list[str]:

@@ -255,25 +255,20 @@ class SlidingCheck:
     @property
     def words(self) -> str:
         """Say it, without the body."""
-        digits = DIGITS
-        needed = ""
-        if math.isfinite(self.needed):
-            while f"{self.needed:.{digits}g}" == f"{self.friction:.{digits}g}":
-                digits += 1
-                if digits > MOST_DIGITS:
-                    break
-            needed = f"{self.needed:.{digits}g}"
-        if not needed:
+        digits, both = DIGITS, (self.needed, self.friction)
+        needed, friction = (f"{one:.{digits}g}" for one in both)
+        while needed == friction and digits <= MOST_DIGITS:
+            digits += 1
+            needed, friction = (f"{one:.{digits}g}" for one in both)
+        slides = f"would slide from {self.first:.4g} s on: needs"
+        if not math.isfinite(self.needed):
             return (
-                f"would slide from {self.first:.4g} s on: needs more than any floor has, and more "
-                f"than {self.friction:.{digits}g} for {self.lasted:.3g} s in all"
+                f"{slides} more than any floor has, and more than {friction} for "
+                f"{self.lasted:.3g} s in all"
             )
         if not self.slides:
-            return f"would not slide: needs {needed} of {self.friction:.{digits}g}"
-        return (
-            f"would slide from {self.first:.4g} s on: needs {needed} of "
-            f"{self.friction:.{digits}g}, and more than that for {self.lasted:.3g} s in all"
-        )
+            return f"would not slide: needs {needed} of {friction}"
+        return f"{slides} {needed} of {friction}, and more than that for {self.lasted:.3g} s in all"
 
 
 def has_limit(system: Assembly) -> bool:
