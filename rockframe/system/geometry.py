@@ -1,11 +1,11 @@
 """Where the parts of a scene are, upright and at rest, and what notebooks show of it."""
 
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.components import FrameEquivalent, RearWall, RockingFrame, Stack, Tendon
+from rockframe.components import FrameEquivalent, RearWall, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
@@ -110,7 +110,7 @@ def geometry_of(scene: Assembly) -> Geometry:
     parts, setting = scene.parts, scene.setting
     if parts.stack is not None:
         return _of_stack(parts.stack, scene)
-    block = parts.the_block
+    block, frame = parts.the_block, None if parts.frame is None else parts.frame.si
     cap = None if parts.cap is None else parts.the_cap
     body, sinks = setting.body, [each.settlement for each in setting.supports]
     level = 2.0 * cap.half_height if setting.stacked and cap is not None else 0.0
@@ -127,7 +127,8 @@ def geometry_of(scene: Assembly) -> Geometry:
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
         ties=_ties_of(setting),
-        **_of_frame(parts.frame),
+        columns=() if frame is None else tuple(column_places(frame)),
+        beam=None if frame is None else np.array(frame_outlines(frame)[-1]),
         wall=_of_wall(parts.wall, block),
     )
 
@@ -143,14 +144,6 @@ def _of_wall(
         return None
     beside = wall.direction * (2.0 * body.half_width + (wall.given.gap or 0.0))
     return rectangle(body.half_width, body.height, place[0] + beside, place[1])
-
-
-def _of_frame(frame: RockingFrame | None) -> dict[str, Any]:
-    """Give what is drawn of columns under a beam."""
-    if frame is None:
-        return {}
-    beam = np.array(frame_outlines(frame.si)[-1])
-    return {"columns": tuple(column_places(frame.si)), "beam": beam}
 
 
 def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
@@ -261,13 +254,9 @@ def shapes_of(geometry: Geometry) -> list[Polygon]:
     level_up = geometry.place
     found += [("member", member + level_up + raised) for member in geometry.members]
     centre = np.array([geometry.centre]) + level_up + raised
+    sine, cosine = np.sin(geometry.inclination), np.cos(geometry.inclination)
+    along_base = np.array([(cosine, sine), (-sine, cosine)])
     return [
-        Polygon(tone, [(float(x), float(y)) for x, y in _turned(points, geometry)])
+        Polygon(tone, [(float(x), float(y)) for x, y in points @ along_base])
         for tone, points in (*found, ("block", centre))
     ]
-
-
-def _turned(points: Array, geometry: Geometry) -> Array:
-    """Turn the base line up to the right."""
-    sine, cosine = np.sin(geometry.inclination), np.cos(geometry.inclination)
-    return points @ np.array([(cosine, sine), (-sine, cosine)])
