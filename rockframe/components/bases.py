@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import ClassVar, Literal, Self, TypeAlias
+from typing import ClassVar, Final, Literal, Self, TypeAlias
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
@@ -291,6 +291,12 @@ class Separation(StrEnum):
 SeparationLike: TypeAlias = Separation | Literal["displacement", "pressure"]
 
 
+_BY_DEPTH: Final = (
+    "WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it, with the depth of "
+    "the base"
+)
+
+
 class WinklerSoil(Component):
     """A bed of springs and dashpots side by side that take no tension.
 
@@ -344,12 +350,7 @@ class WinklerSoil(Component):
 
     _depth: float | None = None
 
-    @hinted(
-        subgrade_modulus="WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes "
-        "it, with the depth of the base",
-        modulus="WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it, with "
-        "the depth of the base",
-    )
+    @hinted(subgrade_modulus=_BY_DEPTH, modulus=_BY_DEPTH)
     def __init__(
         self,
         *,

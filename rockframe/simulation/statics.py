@@ -28,10 +28,8 @@ def equilibrium(system: Assembly) -> xr.Dataset:
             "right_overturning_angle": right,
             "rest_rotation": setting.rest_rotation,
         }
-    values |= {
-        "overturning_angle": setting.overturning_angle,
-        "uplift_angle": setting.uplift_angle,
-    }
+    values["overturning_angle"] = setting.overturning_angle
+    values["uplift_angle"] = setting.uplift_angle
     return build_dataset(
         values, _attributes_of(system), title="Rest", source="vertical equilibrium"
     )
