@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 _TABLES: Final = (
     runs.HISTORIES,
+    runs.HELD,
+    runs.MODES,
+    requests.POINT_LABELS,
     runs.MOTION_AFTER_END,
     runs.ENERGY_HISTORIES,
     bodies.BODIES,
@@ -38,9 +41,7 @@ _TABLES: Final = (
     requests.FORCE_SCALARS,
     runs.CERTIFICATE,
     runs.PROOF,
-    runs.HELD,
     runs.REST,
-    runs.MODES,
     motions.MEASURES,
     motions.DIRECTIONS,
     motions.RECORDS,
@@ -78,7 +79,8 @@ def schema_row(name: str) -> Variable:
 
 LABELS: Final = ("point_x", "point_y", studies.MESSAGE, "rotation_limit")
 """Variables that label a case, or a dimension of another name: arithmetic leaves them alone, as it
-does those that label the dimension of their name."""
+does those that label the dimension of their name. In a dataset they stand in the order of the
+schema."""
 
 ENERGIES: Final = tuple(row.name for row in runs.ENERGY_HISTORIES)
 """Histories that are integrated only on request."""

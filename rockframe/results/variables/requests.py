@@ -51,13 +51,15 @@ OTHERS: Final = rows_over(
 )
 """On request one by one."""
 
+POINT_LABELS: Final = rows_over(
+    POINT,
+    point=("name of a point of the body", str),
+    point_x="place of the point, to the right of the base's middle [m]",
+    point_y="height of the point above the base at rest [m]",
+)
+
 POINTS: Final = (
-    *rows_over(
-        POINT,
-        point=("name of a point of the body", str),
-        point_x="place of the point, to the right of the base's middle [m]",
-        point_y="height of the point above the base at rest [m]",
-    ),
+    *POINT_LABELS,
     *rows_over(
         POINT_TIME,
         point_horizontal_displacement="horizontal displacement of the point from rest relative to "
