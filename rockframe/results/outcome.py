@@ -245,10 +245,10 @@ def verdict_of(run: xr.Dataset) -> bool | None:
 
 def overturned_by(status: Generic) -> Array:
     """Give the verdicts of statuses: 1, 0, or NaN where there is none."""
-    shown = [np.nan if one.overturned is None else float(one.overturned) for one in Status]
     found = np.full(np.shape(status), np.nan)
-    for one, verdict in zip(Status, shown, strict=True):
-        found[status == one] = verdict
+    for one in Status:
+        if one.overturned is not None:
+            found[status == one] = one.overturned
     return found
 
 
