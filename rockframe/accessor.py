@@ -214,8 +214,7 @@ class RockframeAccessor:
             return ""
         from rockframe.notebook import drawing
         from rockframe.plot._checks import system_of_run
-        from rockframe.system.geometry import geometry_of
-        from rockframe.system.html import shapes_of
+        from rockframe.system.geometry import geometry_of, shapes_of
 
         try:
             system = system_of_run(self._dataset, "card")

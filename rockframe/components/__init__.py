@@ -2,21 +2,23 @@
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
+from rockframe.components.bases import (
+    CushionCap,
+    RigidGround,
+    Separation,
+    TwoSpringSupport,
+    WinklerSoil,
+)
 from rockframe.components.block import Block
-from rockframe.components.cap import CushionCap
 from rockframe.components.frame import FrameEquivalent
 from rockframe.components.frame_members import Member
 from rockframe.components.frame_regular import RegularFrame
-from rockframe.components.ground import RigidGround
 from rockframe.components.initial_state import InitialState
-from rockframe.components.link import Link, Load, PointLink, Restrainer, Tendon
-from rockframe.components.pads import TwoSpringSupport
+from rockframe.components.link import Link, Load, PointLink, RearWall, Restrainer, Tendon
 from rockframe.components.parameters import DERIVED, Choice, Parameter, Ratio, Text
 from rockframe.components.registry import component_from_dict
 from rockframe.components.rocking_frame import RockingFrame
-from rockframe.components.soil import Separation, WinklerSoil
 from rockframe.components.stack import Stack
-from rockframe.components.wall import RearWall
 
 __all__ = [
     "DERIVED",

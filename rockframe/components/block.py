@@ -17,7 +17,6 @@ from rockframe.components.parameters import (
     Declared,
     Parameter,
     Ratio,
-    SIProperty,
     SIValues,
 )
 from rockframe.components.shapes import outline, parts
@@ -35,6 +34,7 @@ from rockframe.units import (
     Quantity,
     QuantityLike,
     RatioLike,
+    quantity,
     to_ratio,
     to_si,
 )
@@ -124,11 +124,6 @@ class Block(Component):
         LENGTH,
         doc="How far the centre of mass is to the right of the middle of the base.",
         default=DERIVED,
-    )
-    radius = SIProperty(LENGTH, "R0, distance from a corner to the centre of mass.")
-    overturning_angle = SIProperty(ANGLE, "theta = arctan(B/H), Eq. (1).")
-    frequency = SIProperty(
-        ANGULAR_VELOCITY, "Angular frequency omega under standard gravity, Eq. (6)."
     )
 
     def __init__(
@@ -458,6 +453,21 @@ class Block(Component):
     from_outline = classmethod(outline.from_outline)
     cylinder = classmethod(outline.cylinder)
     from_parts = classmethod(parts.from_parts)
+
+    @property
+    def radius(self) -> Quantity:
+        """R0, distance from a corner to the centre of mass [m]."""
+        return quantity(self.si.radius, LENGTH)
+
+    @property
+    def overturning_angle(self) -> Quantity:
+        """Theta = arctan(B/H), Eq. (1) [rad]."""
+        return quantity(self.si.overturning_angle, ANGLE)
+
+    @property
+    def frequency(self) -> Quantity:
+        """Angular frequency omega under standard gravity, Eq. (6) [rad s^-1]."""
+        return quantity(self.si.frequency, ANGULAR_VELOCITY)
 
     @property
     def slenderness(self) -> float:

@@ -1,8 +1,8 @@
 """The numbers of a block in SI units, whether they make one that rocks, and one that can be."""
 
 import math
-from dataclasses import dataclass
-from typing import Final, Protocol
+from dataclasses import dataclass, field
+from typing import Final
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
@@ -12,48 +12,23 @@ _ROUNDING: Final = 1e-9
 _PERCENT: Final = 0.01
 
 
-class Shape(Protocol):
-    """A body with a straight base, by what its angles, radii and restitutions follow from."""
-
-    @property
-    def shape_factor(self) -> float:
-        """Mu."""
-        ...
-
-    @property
-    def half_width(self) -> float:
-        """Of the base, b [m]."""
-        ...
-
-    @property
-    def centre_height(self) -> float:
-        """H [m]."""
-        ...
-
-    @property
-    def eccentricity(self) -> float:
-        """e_c [m]."""
-        ...
-
-    @property
-    def radius(self) -> float:
-        """R0 [m]."""
-        ...
-
-
 class BodyGeometry:
     """What follows from where the centre of mass of a body is above its base."""
 
+    half_width: float  # of the base, b [m]
+    centre_height: float  # h [m]
+    eccentricity: float  # of the centre of mass to the right of the middle, e_c [m]
+    shape_factor: float  # mu
     # from the foot of the centre of mass to both ends of the base, b + e_c and b - e_c [m]
     left: float
     right: float
     radius: float  # R0, from an end of the base to that centre, were it above the middle [m]
 
-    def __post_init__(self: Shape) -> None:
+    def __post_init__(self) -> None:
         b, beside = self.half_width, self.eccentricity
         vars(self).update(left=b + beside, right=b - beside, radius=hypot(b, self.centre_height))
 
-    def frequency_at(self: Shape, gravity: float) -> float:
+    def frequency_at(self, gravity: float) -> float:
         """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
         mu = self.shape_factor
         return sqrt(mu / (1.0 + mu) * gravity / self.radius)
@@ -73,11 +48,11 @@ class BlockSI(BodyGeometry):
     shape_factor: float
     centre_height: float
     eccentricity: float = 0.0
+    half_width: float = field(init=False, repr=False, compare=False)
 
-    @property
-    def half_width(self) -> float:
-        """Half the width, b [m]."""
-        return 0.5 * self.width
+    def __post_init__(self) -> None:
+        vars(self).update(half_width=0.5 * self.width)
+        super().__post_init__()
 
     @property
     def half_height(self) -> float:
@@ -105,7 +80,7 @@ class BlockSI(BodyGeometry):
         return min(greatest_restitutions(self))
 
 
-def greatest_restitutions(body: Shape) -> tuple[float, float]:
+def greatest_restitutions(body: BodyGeometry) -> tuple[float, float]:
     """Give the ratio of angular velocities at an impact on the left and on the right corner.
 
     Of a rigid body that rolls over without bouncing, :eq:`eq-eccentric-impact`; Eq. (4) where
@@ -155,17 +130,12 @@ def squat(si: BlockSI, owner: str) -> list[str]:
     ]
 
 
-def least_shape_factor(si: BlockSI) -> float:
-    """Give mu of a body with all its mass in the corners, :eq:`eq-greatest-inertia`."""
+def unphysical_inertia(si: BlockSI) -> list[str]:
+    """Warn of an inertia that no body within the rectangle has, :eq:`eq-greatest-inertia`."""
     radius = si.radius  # by which sizes are divided, so that squares hold any of them
     beside = (si.left / radius) * (si.right / radius)
     above = (si.centre_height / radius) * ((si.height - si.centre_height) / radius)
-    return 1.0 / (beside + above)
-
-
-def unphysical_inertia(si: BlockSI) -> list[str]:
-    """Warn of an inertia that no body within the rectangle has, :eq:`eq-greatest-inertia`."""
-    least = least_shape_factor(si)
+    least = 1.0 / (beside + above)  # of all the mass in the corners
     if si.shape_factor >= (1.0 - _ROUNDING) * least:
         return []
     greatest = si.inertia * (si.shape_factor / least)

@@ -304,15 +304,13 @@ class FrameEquivalent(Block):
     @property
     def depth(self) -> Quantity | None:
         """Depth B_y, perpendicular to the plane of rocking, if known [m]."""
-        depth = None if self._building is None else self._building.outline.depth
+        depth = None if self._building is None else self._building.depth
         return None if depth is None else quantity(depth, LENGTH)
 
     @property
     def space_proportion(self) -> float | None:
         """Chi of Eq. (23), None where the depth or a member's volume is unknown [1]."""
-        if self._building is None:
-            return None
-        return self._building.outline.space_proportion(self._building.members)
+        return None if self._building is None else self._building.space_proportion
 
     @property
     def centre_of_mass_height(self) -> Quantity | None:
@@ -358,7 +356,7 @@ class FrameEquivalent(Block):
             {
                 "width": self.si.width,
                 "height": self.si.height,
-                "depth": building.outline.depth,
+                "depth": building.depth,
                 "mass": self.si.mass,
                 "shape_factor": self.si.shape_factor,
                 "space_proportion": self.space_proportion,

@@ -6,16 +6,15 @@ Also the mass, inertia, shape factor and space proportion of members.
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 from rockframe.arguments import one_of_words
 from rockframe.components.frame_members import Member, MemberSI
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
-from rockframe.components.shapes.reading import centre_of_mass, mean_by_mass
-from rockframe.components.shapes.standing import CENTRED
+from rockframe.components.shapes.standing import CENTRED, centre_of_mass, mean_by_mass
 from rockframe.errors import ComponentError, shown
 from rockframe.units import INERTIA, LENGTH, MASS, POSITIVE, to_si
 
@@ -24,13 +23,25 @@ _FAR: Final = 0.1  # offset of the centre of mass, relative to the outline, that
 _REMEDY: Final = "centre_of_mass='members' takes it where it is"
 
 
-@dataclass(frozen=True)
-class Outline:
-    """Outer sizes of a building [m]; the depth may be unknown."""
+class CentreOfMass(StrEnum):
+    """Where the centre of mass of a frame is taken to be."""
 
+    MEMBERS = "members"
+    """Where the members have it."""
+    MIDDLE = "middle"
+    """In the middle of the outline, as in Eqs. (21) and (22)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Building:
+    """Members within outer sizes [m], and the arguments that build them again."""
+
+    members: tuple[Member, ...]
     width: float
     height: float
-    depth: float | None
+    depth: float | None  # where it is known
+    arguments: dict[str, float | str]
+    taken: CentreOfMass
 
     @property
     def radius(self) -> float:
@@ -42,31 +53,78 @@ class Outline:
         """O, half way up the middle: coordinates x, y [m]."""
         return 0.0, 0.5 * self.height
 
-    def shape_factor(self, members: Sequence[Member]) -> float:
-        """Mu of :eq:`eq-frame-shape-factor`, summed up as :eq:`eq-frame-mean` [1]."""
-        inverse = self._mean_spread(members, self.middle, self.radius)
-        # members may reach over the outline by rounding
-        return max(1.0, 1.0 / inverse) if inverse > 0.0 else math.inf
+    @property
+    def centre_of_mass(self) -> tuple[float, float]:
+        """Coordinates x, y of that of the members, wherever it is taken to be [m]."""
+        return centre_of_mass([member.si for member in self.members])
 
-    def shape_factor_about_centre(self, members: Sequence[Member]) -> float:
-        """Mu of :eq:`eq-frame-about-centre`, about the members' own centre of mass [1]."""
-        centre = self.centre_of_mass(members)
-        radius = math.hypot(0.5 * self.width, centre[1])
-        inverse = self._mean_spread(members, centre, radius)
+    @property
+    def space_proportion(self) -> float | None:
+        """Chi of :eq:`eq-frame-space-proportion`; None where a volume is unknown [1]."""
+        shares = list[float]()
+        for si in (member.si for member in self.members):
+            if self.depth is None or si.width is None or si.height is None or si.depth is None:
+                return None
+            shares.append(
+                (si.width / self.width) * (si.height / self.height) * (si.depth / self.depth)
+            )
+        return math.fsum(shares)
+
+    def shape_factor(self, point: tuple[float, float], radius: float) -> float:
+        """Mu about a point by a radius, summed up as :eq:`eq-frame-mean` [1]."""
+        inverse = mean_by_mass(
+            [member.si for member in self.members], lambda si: _spread(si, point, radius)
+        )
         return 1.0 / inverse if inverse > 0.0 else math.inf
 
-    def space_proportion(self, members: Sequence[Member]) -> float | None:
-        """Chi of :eq:`eq-frame-space-proportion`; None where a volume is unknown [1]."""
-        shares = [self._share(member) for member in members]
-        known = [share for share in shares if share is not None]
-        return math.fsum(known) if len(known) == len(shares) else None
+    def block_arguments(self, owner: str) -> dict[str, float | str]:
+        """Give the arguments of the equivalent block."""
+        mass = sum(member.si.mass for member in self.members)
+        arguments: dict[str, float | str] = {
+            "width": f"{self.width!r} {LENGTH.unit}",
+            "height": f"{self.height!r} {LENGTH.unit}",
+            "mass": f"{mass!r} {MASS.unit}",
+        }
+        if self.taken is CentreOfMass.MIDDLE:  # of eq-frame-shape-factor
+            # members may reach over the outline by rounding
+            mu = max(1.0, self.shape_factor(self.middle, self.radius))
+            return {**arguments, "shape_factor": mu}
+        x, y = self.centre_of_mass
+        if abs(x) > CENTRED * self.width:
+            arguments["eccentricity"] = f"{x!r} {LENGTH.unit}"
+        # of eq-frame-about-centre
+        about_centre = self.shape_factor((x, y), math.hypot(0.5 * self.width, y))
+        if math.isinf(about_centre) and math.isfinite(mass):
+            msg = f"{owner}: all mass is in one point, so that the building has no inertia"
+            raise ComponentError(msg)
+        centre_height = f"{y!r} {LENGTH.unit}"
+        return {**arguments, "centre_height": centre_height, "shape_factor": about_centre}
 
-    def centre_of_mass(self, members: Sequence[Member]) -> tuple[float, float]:
-        """Coordinates x, y of the members' centre of mass [m]."""
-        return centre_of_mass([member.si for member in members])
+    def cautions(self) -> list[str]:
+        """Say where the centre of mass is far from where it is taken to be."""
+        if self.taken is CentreOfMass.MEMBERS:
+            return []
+        x, y = self.centre_of_mass
+        beside, above = x / self.width, y / self.height - 0.5
+        cautions: list[str] = []
+        if abs(above) > _FAR:
+            cautions.append(
+                f"the centre of mass lies {y:.4g} m above the base, at {0.5 + above:.3g} of the "
+                "height; the model takes it at half the height, and an overturning angle of "
+                f"{math.atan2(self.width, self.height):.4g} rad instead of "
+                f"{math.atan2(0.5 * self.width, y):.4g} rad; {_REMEDY}"
+            )
+        if abs(beside) > _FAR:
+            cautions.append(
+                f"the centre of mass lies {abs(x):.4g} m {'right' if x > 0.0 else 'left'} of the "
+                f"middle of a base of {self.width:.4g} m; the model takes it in the middle; "
+                f"{_REMEDY}"
+            )
+        return cautions
 
-    def check(self, members: Sequence[Member], owner: str) -> None:
+    def check(self, owner: str) -> None:
         """Refuse members that do not make a building of this outline."""
+        members = self.members
         if not 0.0 < self.radius < math.inf:
             msg = f"{owner}: {self.width} m by {self.height} m is no building's size"
             raise ComponentError(msg)
@@ -79,7 +137,7 @@ class Outline:
             raise ComponentError(msg)
         for member in members:
             self._check_within(member, owner)
-        chi = self.space_proportion(members)
+        chi = self.space_proportion
         if chi is not None and chi > 1.0 + _ROUNDING:
             msg = (
                 f"{owner}: the members together fill {chi:.4g} times the building of "
@@ -89,21 +147,6 @@ class Outline:
         if not any(_spread(member.si, self.middle, self.radius) for member in members):
             msg = f"{owner}: all mass is in the middle of the building, so that it has no inertia"
             raise ComponentError(msg)
-
-    def _share(self, member: Member) -> float | None:
-        """Part of the building's volume that a member fills."""
-        si = member.si
-        if self.depth is None or si.width is None or si.height is None or si.depth is None:
-            return None
-        return (si.width / self.width) * (si.height / self.height) * (si.depth / self.depth)
-
-    def _mean_spread(
-        self, members: Sequence[Member], point: tuple[float, float], radius: float
-    ) -> float:
-        """Mean square distance of all mass from a point, over the square of a radius."""
-        return mean_by_mass(
-            [member.si for member in members], lambda si: _spread(si, point, radius)
-        )
 
     def _check_within(self, member: Member, owner: str) -> None:
         si = member.si
@@ -147,80 +190,8 @@ def _spread(si: MemberSI, point: tuple[float, float], radius: float) -> float:
     return turning + (math.hypot(si.x - point[0], si.y - point[1]) / radius) ** 2
 
 
-def outline_cautions(outline: Outline, members: Sequence[Member]) -> list[str]:
-    """Say where the centre of mass is far from where the model takes it."""
-    x, y = outline.centre_of_mass(members)
-    beside, above = x / outline.width, y / outline.height - 0.5
-    cautions: list[str] = []
-    if abs(above) > _FAR:
-        cautions.append(
-            f"the centre of mass lies {y:.4g} m above the base, at {0.5 + above:.3g} of the "
-            "height; the model takes it at half the height, and an overturning angle of "
-            f"{math.atan2(outline.width, outline.height):.4g} rad instead of "
-            f"{math.atan2(0.5 * outline.width, y):.4g} rad; {_REMEDY}"
-        )
-    if abs(beside) > _FAR:
-        cautions.append(
-            f"the centre of mass lies {abs(x):.4g} m {'right' if x > 0.0 else 'left'} of the "
-            f"middle of a base of {outline.width:.4g} m; the model takes it in the middle; "
-            f"{_REMEDY}"
-        )
-    return cautions
-
-
 _DEFAULTS: Final = {"slab_thickness": SLAB_THICKNESS, "infill_thickness": INFILL_THICKNESS}
 _OUTLINE: Final = ("width", "height", "depth")
-
-
-class CentreOfMass(StrEnum):
-    """Where the centre of mass of a frame is taken to be."""
-
-    MEMBERS = "members"
-    """Where the members have it."""
-    MIDDLE = "middle"
-    """In the middle of the outline, as in Eqs. (21) and (22)."""
-
-
-@dataclass(frozen=True)
-class Building:
-    """Members, their outline, and the arguments that build them again."""
-
-    members: tuple[Member, ...]
-    outline: Outline
-    arguments: Mapping[str, float | str]
-    taken: CentreOfMass
-
-    @property
-    def centre_of_mass(self) -> tuple[float, float]:
-        """Coordinates x, y of that of the members, wherever it is taken to be [m]."""
-        return self.outline.centre_of_mass(self.members)
-
-    def block_arguments(self, owner: str) -> dict[str, float | str]:
-        """Give the arguments of the equivalent block."""
-        outline, members = self.outline, self.members
-        mass = sum(member.si.mass for member in members)
-        arguments: dict[str, float | str] = {
-            "width": f"{outline.width!r} {LENGTH.unit}",
-            "height": f"{outline.height!r} {LENGTH.unit}",
-            "mass": f"{mass!r} {MASS.unit}",
-        }
-        if self.taken is CentreOfMass.MIDDLE:
-            return {**arguments, "shape_factor": outline.shape_factor(members)}
-        x, y = self.centre_of_mass
-        if abs(x) > CENTRED * outline.width:
-            arguments["eccentricity"] = f"{x!r} {LENGTH.unit}"
-        about_centre = outline.shape_factor_about_centre(members)
-        if math.isinf(about_centre) and math.isfinite(mass):
-            msg = f"{owner}: all mass is in one point, so that the building has no inertia"
-            raise ComponentError(msg)
-        centre_height = f"{y!r} {LENGTH.unit}"
-        return {**arguments, "centre_height": centre_height, "shape_factor": about_centre}
-
-    def cautions(self) -> list[str]:
-        """Say where the centre of mass is far from where it is taken to be."""
-        if self.taken is CentreOfMass.MEMBERS:
-            return []
-        return outline_cautions(self.outline, self.members)
 
 
 def building_of(
@@ -232,20 +203,16 @@ def building_of(
     if centre_of_mass is not None:
         taken = one_of_words(CentreOfMass, centre_of_mass, owner=owner, name="centre_of_mass")
     if members is None:
-        found, outline, arguments = regular_members(measures, owner)
+        found = _regular(measures, owner, taken)
     else:
-        found, outline, arguments = listed_members(members, measures, owner)
+        found = _of_list(members, measures, owner, taken)
     if taken is not usual:
-        arguments["centre_of_mass"] = str(taken)
-    outline.check(found, owner)
-    return Building(found, outline, arguments, taken)
+        found.arguments["centre_of_mass"] = str(taken)
+    found.check(owner)
+    return found
 
 
-_Found: TypeAlias = tuple[tuple[Member, ...], Outline, dict[str, float | str]]
-"""Members, their outline, and the arguments that give them again."""
-
-
-def regular_members(measures: Mapping[str, Any], owner: str) -> _Found:
+def _regular(measures: Mapping[str, Any], owner: str, taken: CentreOfMass) -> Building:
     """Take a regular frame apart."""
     needed = ["column_width", "beam_height", "beam_width", "density"]
     if measures.get("storey_heights") is None:
@@ -260,10 +227,15 @@ def regular_members(measures: Mapping[str, Any], owner: str) -> _Found:
     frame = RegularFrame(**measures)
     si = frame.si
     arguments = {name: value for name, value in frame.to_dict().items() if name != "type"}
-    return frame.members, Outline(si.width, si.height, si.depth), arguments
+    return Building(
+        members=frame.members, width=si.width, height=si.height, depth=si.depth,
+        arguments=arguments, taken=taken,
+    )  # fmt: skip
 
 
-def listed_members(members: object, measures: Mapping[str, Any], owner: str) -> _Found:
+def _of_list(
+    members: object, measures: Mapping[str, Any], owner: str, taken: CentreOfMass
+) -> Building:
     """Read a list of members, and the sizes of their building."""
     foreign = [
         name
@@ -283,7 +255,7 @@ def listed_members(members: object, measures: Mapping[str, Any], owner: str) -> 
         return to_si(measures.get(name), LENGTH, owner=owner, name=name, condition=POSITIVE)
 
     depth = None if measures.get("depth") is None else length("depth")
-    outline = Outline(length("width"), length("height"), depth)
+    width, height = length("width"), length("height")
     if isinstance(members, str | Member | Mapping) or not isinstance(members, Iterable):
         msg = f"{owner}: members must be a list of Member, got {shown(members)}"
         raise ComponentError(msg)
@@ -292,8 +264,12 @@ def listed_members(members: object, measures: Mapping[str, Any], owner: str) -> 
         {word: value for word, value in member.to_dict().items() if word != "type"}
         for member in built
     ]
-    arguments = {name: f"{value!r} {LENGTH.unit}" for name, value in vars(outline).items() if value}
-    return built, outline, {**arguments, "members": json.dumps(written)}
+    sizes = {"width": width, "height": height, "depth": depth}
+    arguments = {name: f"{value!r} {LENGTH.unit}" for name, value in sizes.items() if value}
+    return Building(
+        members=built, width=width, height=height, depth=depth, taken=taken,
+        arguments={**arguments, "members": json.dumps(written)},
+    )  # fmt: skip
 
 
 def _member(entry: object, number: int, owner: str) -> Member:

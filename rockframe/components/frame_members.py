@@ -1,7 +1,7 @@
 """A member of a building: what Eqs. (22) and (23) sum over; the table of members."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final, Self
 
@@ -10,6 +10,7 @@ import xarray as xr
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
 from rockframe.components.parameters import DERIVED, Parameter, SIValues, Text
+from rockframe.components.shapes.standing import PlaneMass
 from rockframe.constants import CONVENTIONS
 from rockframe.errors import ComponentError
 from rockframe.units import (
@@ -26,23 +27,12 @@ from rockframe.version import __version__
 
 
 @dataclass(frozen=True)
-class MemberSI:
+class MemberSI(PlaneMass):
     """A member in SI units; its size is None where only its inertia is known."""
 
-    mass: float
-    x: float
-    y: float
-    inertia: float
     width: float | None
     height: float | None
     depth: float | None
-
-    @property
-    def volume(self) -> float | None:
-        """Volume, or None where a size is unknown [m^3]."""
-        if self.width is None or self.height is None or self.depth is None:
-            return None
-        return self.width * self.height * self.depth
 
     def distance(self, height: float) -> float:
         """Distance L of the member's centre from O, half way up a building [m]."""
@@ -230,79 +220,31 @@ class Member(Component):
         return MemberSI(mass, given.x, given.y, inertia, given.width, given.height, given.depth)
 
 
-_Column = tuple[str, str, str, Callable[[Member, float], float | None]]
-_COLUMNS: Final[tuple[_Column, ...]] = (
-    ("mass", Unit.KILOGRAM, "mass", lambda member, _: member.si.mass),
-    ("volume", Unit.CUBIC_METRE, "volume", lambda member, _: member.si.volume),
-    (
-        "x",
-        Unit.METRE,
-        "horizontal position of the centre, from the middle of the base",
-        lambda member, _: member.si.x,
-    ),
-    (
-        "y",
-        Unit.METRE,
-        "height of the centre above the base",
-        lambda member, _: member.si.y,
-    ),
-    (
-        "width",
-        Unit.METRE,
-        "horizontal size in the plane of rocking",
-        lambda member, _: member.si.width,
-    ),
-    ("height", Unit.METRE, "vertical size", lambda member, _: member.si.height),
-    (
-        "depth",
-        Unit.METRE,
-        "size perpendicular to the plane of rocking",
-        lambda member, _: member.si.depth,
-    ),
-    (
-        "inertia",
-        Unit.KILOGRAM_METRE_SQUARED,
-        "moment of inertia about the member's own centre",
-        lambda member, _: member.si.inertia,
-    ),
-    (
-        "distance",
-        Unit.METRE,
-        "distance of the centre from O, the middle of the building",
-        lambda member, height: member.si.distance(height),
-    ),
-    (
-        "inertia_about_middle",
+_COLUMNS: Final = {
+    "mass": (Unit.KILOGRAM, "mass"),
+    "volume": (Unit.CUBIC_METRE, "volume"),
+    "x": (Unit.METRE, "horizontal position of the centre, from the middle of the base"),
+    "y": (Unit.METRE, "height of the centre above the base"),
+    "width": (Unit.METRE, "horizontal size in the plane of rocking"),
+    "height": (Unit.METRE, "vertical size"),
+    "depth": (Unit.METRE, "size perpendicular to the plane of rocking"),
+    "inertia": (Unit.KILOGRAM_METRE_SQUARED, "moment of inertia about the member's own centre"),
+    "distance": (Unit.METRE, "distance of the centre from O, the middle of the building"),
+    "inertia_about_middle": (
         Unit.KILOGRAM_METRE_SQUARED,
         "moment of inertia about O, the middle of the building",
-        lambda member, height: member.si.inertia + member.si.mass * member.si.distance(height) ** 2,
     ),
-)
+}
 
 
 def members_table(
     members: Sequence[Member], height: float, attributes: dict[str, float | None]
 ) -> xr.Dataset:
-    """Put members into a table, one row each.
-
-    Parameters
-    ----------
-    members : sequence of Member
-        Members with different names.
-    height : float
-        Height of the building [m].
-    attributes : dict
-        What the sums come to; None is left out.
-
-    Returns
-    -------
-    xarray.Dataset
-        Dimension ``member``, labelled by name and kind. What is unknown is NaN.
-    """
+    """Put members of a building of a height [m] into a table, with what the sums come to."""
     variables: dict[str, Any] = {}
-    for name, unit, words, read in _COLUMNS:
-        values = [read(member, height) for member in members]
-        column = [math.nan if value is None else value for value in values]
+    rows = [_row(member.si, height) for member in members]
+    for name, (unit, words) in _COLUMNS.items():
+        column = [math.nan if row[name] is None else row[name] for row in rows]
         variables[name] = ("member", column, {"long_name": words, "units": str(unit)})
     labels = {
         "member": ("member", [member.name for member in members], {"long_name": "name"}),
@@ -322,3 +264,13 @@ def members_table(
             **known,
         },
     )
+
+
+def _row(si: MemberSI, height: float) -> dict[str, float | None]:
+    distance = si.distance(height)
+    about_middle = si.inertia + si.mass * distance**2
+    volume = None
+    if si.width is not None and si.height is not None and si.depth is not None:
+        volume = si.width * si.height * si.depth
+    own = {"volume": volume, "distance": distance, "inertia_about_middle": about_middle}
+    return {**vars(si), **own}

@@ -67,16 +67,6 @@ class RegularFrameSI:
         """Level of the topmost slab's top [m]."""
         return self.levels[-1]
 
-    @property
-    def clear_width(self) -> float:
-        """Distance between the columns in the plane of rocking [m]."""
-        return self.width - 2.0 * self.column_width
-
-    @property
-    def clear_depth(self) -> float:
-        """Distance between the columns perpendicular to the plane of rocking [m]."""
-        return self.depth - 2.0 * self.column_depth
-
 
 class StoreyCount(Declared[int, Missing]):
     """A number of storeys."""
@@ -323,6 +313,8 @@ def _members(si: RegularFrameSI) -> Iterator[Member]:
     ) -> Member:
         return Member.box(name, kind, si.density, (x, y), size)
 
+    # distances between the columns, in the plane of rocking and perpendicular to it
+    clear_width, clear_depth = si.width - 2.0 * si.column_width, si.depth - 2.0 * si.column_depth
     at_column = 0.5 * (si.width - si.column_width)
     at_beam = 0.5 * (si.width - si.beam_width)
     for side, sign in sides:
@@ -334,22 +326,22 @@ def _members(si: RegularFrameSI) -> Iterator[Member]:
     drop = si.beam_height - si.slab_thickness
     for number, (level, storey) in enumerate(zip(si.levels, si.storey_heights, strict=True), 1):
         y = level - 0.5 * si.slab_thickness
-        size = (si.clear_width, si.slab_thickness, si.depth)
+        size = (clear_width, si.slab_thickness, si.depth)
         yield member(f"slab {number} middle", "slab", 0.0, y, size)
         for side, sign in sides:  # the strips between the columns of one side
-            size = (si.column_width, si.slab_thickness, si.clear_depth)
+            size = (si.column_width, si.slab_thickness, clear_depth)
             yield member(f"slab {number} {side}", "slab", sign * at_column, y, size)
         if drop > 0.0:
             y = level - si.slab_thickness - 0.5 * drop
             for face in faces:
-                size = (si.clear_width, drop, si.beam_width)
+                size = (clear_width, drop, si.beam_width)
                 yield member(f"beam {number} {face}", "beam", 0.0, y, size)
             for side, sign in sides:
-                size = (si.beam_width, drop, si.clear_depth)
+                size = (si.beam_width, drop, clear_depth)
                 yield member(f"beam {number} {side}", "beam", sign * at_beam, y, size)
         if si.infill_thickness > 0.0:
             clear = storey - si.beam_height
             y = level - si.beam_height - 0.5 * clear
             for face in faces:
-                size = (si.clear_width, clear, si.infill_thickness)
+                size = (clear_width, clear, si.infill_thickness)
                 yield member(f"wall {number} {face}", "wall", 0.0, y, size)

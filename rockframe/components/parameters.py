@@ -63,7 +63,14 @@ class Declared(Generic[Public, Usual]):
     def __init__(
         self, measure: Measure | None, condition: Condition | None, *, doc: str, default: Usual
     ) -> None:
-        _check_declaration(type(self).__name__, measure, condition, doc)
+        for name, given, kind in (
+            ("measure", measure, Measure), ("condition", condition, Condition), ("doc", doc, str)
+        ):  # fmt: skip
+            missing = given is None and name != "doc"
+            if not missing and not isinstance(given, kind):
+                wanted = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
+                msg = f"{type(self).__name__}: {name} must be {wanted}, got {shown(given)}"
+                raise ComponentError(msg)
         self.measure = measure
         self.condition = condition
         self.default = default
@@ -112,18 +119,6 @@ class Declared(Generic[Public, Usual]):
     def caution(self, value: Any) -> str | None:
         """Say what is unusual about a value, if anything is."""
         return None
-
-
-def _check_declaration(owner: str, measure: object, condition: object, doc: object) -> None:
-    """Refuse a declaration that is none."""
-    for name, given, kind in (
-        ("measure", measure, Measure), ("condition", condition, Condition), ("doc", doc, str)
-    ):  # fmt: skip
-        missing = given is None and name != "doc"
-        if not missing and not isinstance(given, kind):
-            wanted = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
-            msg = f"{owner}: {name} must be {wanted}, got {shown(given)}"
-            raise ComponentError(msg)
 
 
 class Parameter(Declared[Quantity, Usual]):
@@ -420,42 +415,16 @@ class SIValues(SimpleNamespace):
         raise AccessError(msg)
 
 
-class SIProperty:
-    """A read-only property: the float ``si.<name>`` as a quantity with its unit."""
-
-    def __init__(self, measure: Measure, doc: str) -> None:
-        self._measure = measure
-        self.__doc__ = f"{doc} [{measure.unit}]"
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    @overload
-    def __get__(self, instance: None, owner: type) -> Self: ...
-    @overload
-    def __get__(self, instance: object, owner: type) -> Quantity: ...
-    def __get__(self, instance: Any, owner: type) -> Any:
-        if instance is None:
-            return self
-        return quantity(getattr(instance.si, self._name), self._measure)
+def friction_at_rest(of: str) -> Ratio[None]:
+    """Declare a coefficient of friction at rest under something."""
+    words = f"Coefficient of friction under {of} while it does not slip; without one it is held."
+    return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.5")
 
 
-class Friction(Ratio[None]):
-    """A coefficient of friction at rest."""
-
-    def __init__(self, *, of: str) -> None:
-        words = (
-            f"Coefficient of friction under {of} while it does not slip; without one it is held."
-        )
-        super().__init__(NOT_NEGATIVE, doc=words, default=None, example="0.5")
-
-
-class KineticFriction(Ratio[None]):
-    """A coefficient of friction of slip."""
-
-    def __init__(self) -> None:
-        words = "Coefficient of friction of slip; that at rest unless given."
-        super().__init__(NOT_NEGATIVE, doc=words, default=None, example="0.45")
+def friction_of_slip() -> Ratio[None]:
+    """Declare a coefficient of friction of slip."""
+    words = "Coefficient of friction of slip; that at rest unless given."
+    return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.45")
 
 
 def check_frictions(owner: str, given: SIValues) -> SIValues:

@@ -32,10 +32,7 @@ height of the centre of mass."""
 
 
 def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
-    """Give absolute accelerations, the moment of the base, and the friction demand.
-
-    By :eq:`eq-base-moment` and :eq:`eq-friction-demand`.
-    """
+    """Give absolute accelerations, :eq:`eq-base-moment`, and the friction demand."""
     thrust, press = values["horizontal_reaction"], values["vertical_reaction"]
     rotation = values.get(STACKED, values["rotation"])
     body, small = load.body, load.options.small
@@ -72,10 +69,7 @@ def friction_demands(values: Values, load: BaseLoad) -> dict[str, Generic]:
 
 
 def friction_demand(thrust: Array, press: Array, least: float) -> Array:
-    """Give the coefficient of friction that keeps a body from sliding, :eq:`eq-friction-demand`.
-
-    Forces up to `least` are none.
-    """
+    """Give the friction that holds a body, :eq:`eq-friction-demand`; forces to `least` are none."""
     held = np.abs(thrust) > least
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(thrust) / press

@@ -52,20 +52,10 @@ def peak_share(run: Summary, angles: OverturningAngles) -> float:
     return largest(own, run.other_share)
 
 
-def contact_histories(model: ContactModel, run: Trajectory) -> dict[str, Generic]:
-    """Give the contact states at the output times, by their names in the schema."""
-    return {
-        name: model.contact_states(run.mode, body).astype(np.int8)
-        for body, name in enumerate(model.contacts)
-    }
-
-
 def body_histories(
     model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
 ) -> dict[str, Generic]:
     """Give histories with those of all bodies, and of all restrainers, in one array each."""
-    if not model.selects:
-        return dict(values)
     kept = {name: each for name, each in values.items() if name in SCHEMA}
     if model.links:
         links = range(model.links)
@@ -125,11 +115,11 @@ def sines_cosines(rotation: Array, *, small: bool) -> tuple[Array, Array]:
     return np.sin(rotation), np.cos(rotation)
 
 
-def cap_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
+def cap_histories(
+    values: Mapping[str, Generic], setting: Setting, offset: float
+) -> dict[str, Generic]:
     """Give the motion of a cap that is a part of the body, :eq:`eq-carried`."""
-    offset, rotation = setting.cap_offset, values["rotation"]
-    if offset is None:
-        return {}
+    rotation = values["rotation"]
     small, beside = setting.options.small, setting.body.eccentricity
     sine, cosine = sines_cosines(rotation, small=small)
     versine = 0.5 * rotation**2 if small else 2.0 * np.sin(0.5 * rotation) ** 2
@@ -255,10 +245,10 @@ def verdict_of(run: xr.Dataset) -> bool | None:
 
 def overturned_by(status: Generic) -> Array:
     """Give the verdicts of statuses: 1, 0, or NaN where there is none."""
-    shown = [np.nan if one.overturned is None else float(one.overturned) for one in Status]
     found = np.full(np.shape(status), np.nan)
-    for one, verdict in zip(Status, shown, strict=True):
-        found[status == one] = verdict
+    for one in Status:
+        if one.overturned is not None:
+            found[status == one] = one.overturned
     return found
 
 

@@ -28,10 +28,7 @@ class BodyPoint:
 def rotated_points(
     right: Array, up: Array, rotation: Array, *, small_rotation: bool
 ) -> tuple[Array, Array]:
-    """Give how a rotation moves points about the point that they are measured from.
-
-    By :eq:`eq-point-motion`.
-    """
+    """Give how points move by a rotation about their origin, :eq:`eq-point-motion`."""
     if small_rotation:
         half = 0.5 * rotation
         return up * rotation, -right * rotation - up * (2.0 * half * half)

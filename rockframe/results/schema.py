@@ -13,15 +13,7 @@ from numpy.typing import NDArray
 
 from rockframe.constants import CONVENTIONS, PAPER_TITLE
 from rockframe.errors import SchemaError
-from rockframe.results.variables import (
-    analyses,
-    bodies,
-    motions,
-    requests,
-    runs,
-    studies,
-    suites,
-)
+from rockframe.results.variables import analyses, bodies, motions, requests, runs, studies
 from rockframe.results.variables.variable import Variable
 from rockframe.version import __version__
 
@@ -30,6 +22,9 @@ if TYPE_CHECKING:
 
 _TABLES: Final = (
     runs.HISTORIES,
+    runs.HELD,
+    runs.MODES,
+    requests.POINT_LABELS,
     runs.MOTION_AFTER_END,
     runs.ENERGY_HISTORIES,
     bodies.BODIES,
@@ -46,13 +41,11 @@ _TABLES: Final = (
     requests.FORCE_SCALARS,
     runs.CERTIFICATE,
     runs.PROOF,
-    runs.HELD,
     runs.REST,
-    runs.MODES,
     motions.MEASURES,
     motions.DIRECTIONS,
-    suites.RECORDS,
-    suites.TARGETS,
+    motions.RECORDS,
+    motions.TARGETS,
     studies.COMPARISON,
     studies.CRITICAL_SCALE,
     studies.SWEEP,
@@ -60,13 +53,13 @@ _TABLES: Final = (
     analyses.DYNAMIC_ANALYSIS,
     analyses.FRACTILES,
     analyses.FRAGILITY,
-    analyses.HAZARD,
     analyses.MEASURE_COMPARISON,
     analyses.OVERTURNING_MAP,
     analyses.SPECTRA,
     analyses.PROBABILITY,
     analyses.SUBSETS,
     analyses.ENSEMBLE,
+    analyses.HAZARD,
     analyses.SEQUENCES,
     studies.FREE_DECAY,
 )
@@ -84,36 +77,10 @@ def schema_row(name: str) -> Variable:
     return row
 
 
-COORDINATES: Final = (
-    "time",
-    "angle",
-    "mode",
-    "point",
-    "point_x",
-    "point_y",
-    "body",
-    "restrainer",
-    "scale",
-    studies.CASE,
-    studies.MOTION,
-    studies.MESSAGE,
-    "limit_state",
-    "rotation_limit",
-    "coefficient",
-    "amplitude",
-    "rocking_period",
-    "slenderness",
-    "parameter",
-    "quantile",
-    "response_level",
-    "measure",
-    "covariate",
-    "contributing_intensity",
-    "sequence",
-    "earthquake",
-    "sampling_level",
-)
-"""Variables that label a dimension, or a case: arithmetic and means leave them alone."""
+LABELS: Final = ("point_x", "point_y", studies.MESSAGE, "rotation_limit")
+"""Variables that label a case, or a dimension of another name: arithmetic leaves them alone, as it
+does those that label the dimension of their name. In a dataset they stand in the order of the
+schema."""
 
 ENERGIES: Final = tuple(row.name for row in runs.ENERGY_HISTORIES)
 """Histories that are integrated only on request."""
@@ -160,9 +127,8 @@ def build_dataset(
             raise SchemaError(msg)
         variables[name] = (dims, data)
         labels[name] = row.attributes("float64" if gaps else None)
-    own = [name for name in variables if schema_row(name).dims == (name,)]  # labels
-    names = dict.fromkeys((*COORDINATES, *own))
-    coordinates = {name: variables.pop(name) for name in names if name in variables}
+    own = [name for name in variables if SCHEMA[name].dims == (name,) or name in LABELS]
+    coordinates = {name: variables.pop(name) for name in sorted(own, key=[*SCHEMA].index)}
     dataset = xr.Dataset(
         variables,
         coords=coordinates,

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from enum import StrEnum
-from typing import Any, Final, cast
+from typing import Any, Final
 
 import pandas as pd
 import xarray as xr
@@ -101,12 +101,18 @@ def table(
     kind = one_of_words(Contents, contents, owner=_OWNER, name="contents")
     chosen = reader_units(units, owner=_OWNER)
     if isinstance(runs, xr.Dataset):
-        return _of_one(_each_alone(chosen.of_all(runs), kind), kind)
+        run = _each_alone(chosen.of_all(runs), kind)
+        if kind is Contents.SCALARS and not _dimensions(run, _names(run, kind)):
+            return _below_one_another([run], kind, _labels([run]))
+        return _rows(run, kind)
     labels: pd.MultiIndex | pd.Index | None = None
+    several: Any = runs
     if isinstance(runs, Mapping):
-        labels, runs = _keys(runs), runs.values()
+        labels, several = _keys(runs), runs.values()
+    elif not isinstance(several, Iterable) or isinstance(several, str | xr.DataArray):
+        several = [several]
     given = [
-        _each_alone(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in _each(runs)
+        _each_alone(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in several
     ]
     if not given:
         msg = f"{_OWNER}: found no runs; expected one at least"
@@ -127,17 +133,6 @@ def _each_alone(run: xr.Dataset, kind: Contents) -> xr.Dataset:
             for k, label in enumerate(run[place].to_numpy()):
                 alone[f"{name} {label}"] = values.isel({place: k}, drop=True)
     return run.assign(alone)
-
-
-def _each(runs: object) -> Iterable[Any]:
-    several = isinstance(runs, Iterable) and not isinstance(runs, str | xr.DataArray)
-    return cast("Iterable[Any]", runs) if several else [runs]
-
-
-def _of_one(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
-    if kind is Contents.SCALARS and not _dimensions(run, _names(run, kind)):
-        return _below_one_another([run], kind, _labels([run]))
-    return _rows(run, kind)
 
 
 def _below_one_another(
@@ -244,13 +239,10 @@ def _headed(
 
 def _names(run: xr.Dataset, kind: Contents) -> list[str]:
     """Find the variables of a kind."""
+    dims_of = {str(name): set(run.variables[name].dims) for name in run.data_vars}
     if kind in _ALONG:
-        return [name for name, values in _variables(run) if _ALONG[kind] in values.dims]
-    still = {
-        name: set(values.dims)
-        for name, values in _variables(run)
-        if not {*TIME, *EVENT} & set(values.dims)
-    }
+        return [name for name, dims in dims_of.items() if _ALONG[kind] in dims]
+    still = {name: dims for name, dims in dims_of.items() if not {*TIME, *EVENT} & dims}
     scalars = [dims for name, dims in still.items() if name in SCHEMA and not SCHEMA[name].dims]
     # the dimensions of many runs are those of their scalars; an answer without scalars, such
     # as a spectrum, has a row for each of its points
@@ -262,11 +254,6 @@ def _dimensions(run: xr.Dataset, names: Sequence[str]) -> tuple[Hashable, ...]:
     """Give the dimensions of variables, those of time and events last."""
     dims = dict.fromkeys(dim for name in names for dim in run.variables[name].dims)
     return tuple(sorted(dims, key=lambda dim: dim in (*TIME, *EVENT)))
-
-
-def _variables(run: xr.Dataset) -> list[tuple[str, xr.Variable]]:
-    """Give the variables that are no coordinates."""
-    return [(str(name), run.variables[name]) for name in run.data_vars]
 
 
 def _head(name: Hashable, values: xr.Variable) -> str:

@@ -1,5 +1,6 @@
 """Histories, forces and points of a run, as far as they are asked for."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -25,7 +26,6 @@ from rockframe.results.outcome import (
     Generic,
     body_histories,
     cap_histories,
-    contact_histories,
     energy_histories,
     ground_histories,
     ground_on_slope,
@@ -74,18 +74,24 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 
 def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
     """Give what the samples of a run tell: histories, if they are kept, peaks and points."""
-    setting, load = system.setting, system.setting.load
-    columns, values, events, ground, moved = _everything_of(system, plan, run)
+    setting, load, model = system.setting, system.setting.load, system.model
+    whole = bool(plan.points or plan.diagnostics)  # all that is shown along the steps is needed
+    columns, values, events, ground, moved = _observed(system, plan, run, whole)
     # energies are worked out apart; what else is no column may follow from columns
-    if _everything(plan) or set(plan.requested).difference(values, ENERGIES):
+    if whole or set(plan.requested).difference(values, ENERGIES):
         values |= force_histories(values, moved, load)
-    values |= contact_histories(system.model, run)
-    values |= cap_histories(values, setting)
-    values = body_histories(system.model, run, values)
+    values |= {
+        name: model.contact_states(run.mode, body).astype(np.int8)
+        for body, name in enumerate(model.contacts)
+    }
+    if setting.cap_offset is not None:
+        values |= cap_histories(values, setting, setting.cap_offset)
+    if model.selects:
+        values = body_histories(model, run, values)
     values |= relative_histories(values, setting)
     values |= ground_histories(ground, has_vertical_motion=plan.has_vertical_motion)
     values["time"] = run.time
-    along, upright = _along(system, plan, run, columns, events), events
+    along, upright = _along(system, plan, run, columns, events, whole), events
     if not along.steps.complete:
         missing.append(
             f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
@@ -100,14 +106,14 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     }  # fmt: skip
     if "slip" in values:
         scalars["residual_displacement"] = float(values["horizontal_displacement"][-1])
-    if system.model.shows_bodies:
-        rotations = rotations_of(system.model.system.bodies())
+    if model.shows_bodies:
+        rotations = rotations_of(model.system.bodies())
         scalars["peak_body_rotation"] = _peaks_of(rotations, along)
     places: dict[str, Generic] = {}
-    if system.model.links:
-        forces = forces_of_links(system.model.links)
+    if model.links:
+        forces = forces_of_links(model.links)
         scalars["peak_restrainer_force"] = _peaks_of(forces, along)
-        places = {"restrainer": np.array(system.setting.link_names)}
+        places = {"restrainer": np.array(setting.link_names)}
     if plan.points:
         scalars |= point_peaks(plan.points, along, load)
         places |= point_labels(plan.points)
@@ -119,9 +125,10 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     everything = values | impulses
     if plan.energies:
         displacement = values["horizontal_displacement"]
-        everything |= energy_histories(system.model, run, displacement, system.options.slope)
-    if plan.histories:
-        own = _own_answers(system, everything, events.those(shown), missing)
+        everything |= energy_histories(model, run, displacement, system.options.slope)
+    owners = [one for one in (setting, *system.parts.structural()) if isinstance(one, OwnAnswers)]
+    if plan.histories and owners:
+        own = _own_answers(owners, everything, events.those(shown), missing)
         scalars |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
         everything |= {name: each for name, each in own.items() if SCHEMA[name].dims}
     for one in plan.diagnostics:
@@ -140,24 +147,21 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     return Answers(kept if plan.histories else {}, scalars, places, found)
 
 
-def _everything(plan: Plan) -> bool:
-    """Whether a run needs all that its system shows along its steps."""
-    return bool(plan.points or plan.diagnostics)
-
-
 def _own_answers(
-    system: Assembly, values: dict[str, Generic], events: EventStates, missing: list[str]
+    owners: Sequence[OwnAnswers],
+    values: dict[str, Generic],
+    events: EventStates,
+    missing: list[str],
 ) -> dict[str, Generic]:
     """Give what bases and scenes of users' own tell beside what their equations show."""
     sides = [{**side, "time": events.time} for side in (events.before, events.after)]
     sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
     found: dict[str, Generic] = {}
-    for own in (system.setting, *system.parts.structural()):
-        if isinstance(own, OwnAnswers):
-            what = f"what {type(own).__name__} tells of the run"
-            found |= or_missing(
-                lambda own=own: fitting(own.answers(values, *sides), sizes), {}, what, missing
-            )
+    for own in owners:
+        what = f"what {type(own).__name__} tells of the run"
+        found |= or_missing(
+            lambda own=own: fitting(own.answers(values, *sides), sizes), {}, what, missing
+        )
     return found
 
 
@@ -166,8 +170,8 @@ def _peak_of(one: Diagnostic, along: AlongSteps) -> float:
     return along.largest(lambda state: np.abs(one.of(state))[None])[0].item()
 
 
-def _everything_of(
-    system: Assembly, plan: Plan, run: Trajectory
+def _observed(
+    system: Assembly, plan: Plan, run: Trajectory, whole: bool
 ) -> tuple[dict[str, Generic], dict[str, Generic], EventStates, Array, Array]:
     """Give what the model shows along the steps, at samples, and on both sides of events.
 
@@ -178,8 +182,9 @@ def _everything_of(
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
     moved, resolved = ground_on_slope(ground, slope)
     names: tuple[str, ...] | None = None
-    if not _everything(plan):  # those whose peaks are told
-        names = BODY_FORCES + OF_SETTLEMENT + forces_of_links(system.model.links)
+    if not whole:  # those whose peaks are told
+        names = BODY_FORCES + OF_SETTLEMENT
+        names += forces_of_links(system.model.links) if system.model.links else ()
         names += OF_SOIL_FRICTION if system.setting.stacked else ()
         if system.model.shows_bodies:
             names += rotations_of(system.model.system.bodies())
@@ -200,6 +205,7 @@ def _along(
     run: Trajectory,
     columns: dict[str, Generic],
     events: EventStates,
+    whole: bool,
 ) -> AlongSteps:
     """Give what is shown along the steps, up to overturning, by what is shown along all.
 
@@ -210,12 +216,12 @@ def _along(
     until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
     steps = run.kept_steps.until(until)
     shown = {name: each[: len(steps.time)] for name, each in columns.items()}
-    stops = _stops(run, events, STOPPED_WITHIN * 2.0 * load.body.half_width)
-    if len(stops):
+    if STICK in run.events.kind:
+        stops = _stops(run, events, STOPPED_WITHIN * 2.0 * load.body.half_width)
         kept = ~np.isin(steps.memory_row, stops)
         steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
         shown = {name: each[kept] for name, each in shown.items()}
-    if _everything(plan):
+    if whole:
         shown = without_gravity(shown, slope)
         moved = steps.ground - np.array([slope.along_gravity, 0.0])
         shown |= force_histories(shown, moved, load)
@@ -234,7 +240,7 @@ def _along(
         states = states.reshape(-1, states.shape[-1])
         found = observe_states(system.model, modes, states, memory, rows, resolved)
         found = without_gravity(found, slope)
-        if not _everything(plan):
+        if not whole:
             return found | friction_demands(found, load)
         found |= force_histories(found, moved, load)
         return found | _state_of(found, time, ground)
@@ -260,8 +266,6 @@ def _peaks_of(names: tuple[str, ...], along: AlongSteps) -> Array:
 def _stops(run: Trajectory, events: EventStates, within: float) -> Integers:
     """Give the numbers, from one, of events whose small velocity friction stops `within` a way."""
     kind = run.events.kind
-    if STICK not in kind:
-        return np.empty(0, dtype=np.int64)
     changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
     of_caps = ("slip", "cap_slip")
     for name in (one for one in events.after if one in of_caps or one.startswith("slip_of_")):

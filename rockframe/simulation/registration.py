@@ -16,7 +16,7 @@ from rockframe.system.assembly import add_scene, twin_of
 from rockframe.system.links import OwnLink
 from rockframe.system.own_base import OwnAnswers, OwnBase
 from rockframe.system.own_scene import OwnScene
-from rockframe.system.parts import SHIPPED, add_base, add_link, add_part, slot_of_kind
+from rockframe.system.parts import RESTRAINER, SHIPPED, Kind, add_kind, slot_of_kind
 from rockframe.units import Unit
 
 _OWNER: Final = "register"
@@ -90,14 +90,14 @@ def register(
         )
     _refuse(faults)
     if issubclass(kind, OwnBase):
-        add_base(kind)
+        add_kind(kind, Kind(kind.slot, kind.support))
     elif issubclass(kind, OwnLink):
-        add_link(kind)
+        add_kind(kind, Kind(RESTRAINER))
     else:
         add_scene(kind)
         for slot, part in kind.made_of.items():
             if slot not in SHIPPED:
-                add_part(part, slot)
+                add_kind(part, Kind(slot))
     SCHEMA.update({row.name: row for row in columns})
 
 
@@ -238,11 +238,8 @@ def _faults_in_diagnostic(given: Diagnostic) -> list[str]:
 
 
 def _faults_in_name(name: str, what: str) -> list[str]:
-    return (
-        []
-        if name.isidentifier()
-        else [f"{what} is called {name!r}; expected one such as 'left_set'"]
-    )
+    fault = f"{what} is called {name!r}; expected one such as 'left_set'"
+    return [] if name.isidentifier() else [fault]
 
 
 def _faults_in_unit(unit: Any, owner: str) -> list[str]:

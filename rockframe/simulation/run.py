@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.compiled import compiling_for
+from rockframe.dynamics.chain.rigid import RigidChain
 from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, or_missing, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import (
@@ -34,15 +35,13 @@ from rockframe.simulation.provenance import motion_after_end, motion_attributes
 from rockframe.simulation.proving import proof_of
 from rockframe.simulation.run_arguments import PROVED, Certification
 from rockframe.simulation.soundness import (
-    NOT_LOOKED_AT,
     STILL_MOVING,
-    Uniqueness,
+    ambiguities,
     doubtful_residual,
     friction_words,
     may_overturn_later,
     slips,
     unbalanced,
-    uniqueness_of,
 )
 from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.solve.integrate import STILL_INTERVAL, integrate
@@ -95,9 +94,12 @@ class Response:
         return in_motion(self.system, self.trajectory, self.missing)
 
     @cached_property
-    def uniqueness(self) -> Uniqueness | None:
-        """Impacts on rigid bases after which motion is not unique."""
-        return uniqueness_of(self.system.model, self.trajectory)
+    def ambiguities(self) -> tuple[dict[str, int], list[str]]:
+        """How often motion was not unique, and the same in words; nothing where it always is."""
+        model = self.system.model
+        if not isinstance(model.system, RigidChain):
+            return {}, []
+        return ambiguities(model, model.system, self.trajectory)
 
     def summary(self) -> RunSummary:
         """Tell what a certificate asks of the run."""
@@ -124,14 +126,14 @@ class Response:
             None, "whether another run agrees with this one", missing,
         )  # fmt: skip
         values, falls = self.answers.values, summary.overturning_time
-        leaving = or_missing(
+        leaving = [] if setting.flies else or_missing(
             lambda: list(_leaving(self.system, plan.motion, values, falls)), [], _LEAVING, missing
-        )
+        )  # fmt: skip
         slipping = or_missing(lambda: list(slips(self.answers.slidings)), [], _FRICTION, missing)
         _ = self.scalars  # what is missing of them is said, too
         cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
-        unique = self.uniqueness or NOT_LOOKED_AT
-        of_model = [*unique.cautions, *setting.beyond_edges(summary.ending), *leaving, *slipping]
+        beyond = setting.beyond_edges(summary.ending)
+        of_model = [*self.ambiguities[1], *beyond, *leaving, *slipping]
         return [
             *((SolverWarning, text) for text in (*cut_off, *moving, *filter(None, [audit]))),
             *((ModelWarning, text) for text in of_model),
@@ -172,8 +174,7 @@ def run(
     summary, missing = response.trajectory, response.missing
     attributes = _attributes(system, plan, summary, missing)
     attributes[END_STATE] = json.dumps(ending_as_json(summary.ending))
-    if response.uniqueness is not None:
-        attributes |= response.uniqueness.attributes()
+    attributes |= response.ambiguities[0]
     if summary.status.finished and not system.setting.slides:
         answers = response.answers
         friction = or_missing(
@@ -302,8 +303,6 @@ def _leaving(
 ) -> Iterator[str]:
     """Warn of a block that would leave ground which the equations do not let it leave."""
     slope = system.options.slope
-    if system.setting.flies:
-        return
     if motion is not None and not (slope.level and motion.si.vertical is None):
         moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
         lowest = float(np.min(moved[:, 1]))

@@ -30,15 +30,17 @@ VERDICT: Final = Argument(
     "beyond the angle while the ground moves.",
 )
 
+_STEPS: Final = (
+    "the steps of the integration are its own, as fine as accuracy asks for; output_step is the "
+    "spacing of the histories"
+)
 NO_ARGUMENTS: Final = {
     "damping": "dampers belong to the parts, such as TwoSpringSupport(damping_ratio=0.1) or "
     "WinklerSoil(damping_ratio=0.2); a block on rigid ground loses energy in impacts, by "
     "RigidGround(restitution=...)",
     "damping_ratio": "it belongs to the parts, such as TwoSpringSupport(damping_ratio=0.1)",
-    "dt": "the steps of the integration are its own, as fine as accuracy asks for; output_step "
-    "is the spacing of the histories",
-    "time_step": "the steps of the integration are its own, as fine as accuracy asks for; "
-    "output_step is the spacing of the histories",
+    "dt": _STEPS,
+    "time_step": _STEPS,
     "gravity": "it is an option of System(..., gravity='9.81 m/s^2')",
     "scale": "write simulate(motion.scaled(1.5))",
 }

@@ -125,7 +125,8 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     held = upright or (beyond and bool(setting.link_names))
     if held and bool(np.all(np.abs(rates) < AT_REST * sizes)):
         return False
-    if beyond or _whole_may_fall(system, ending):
+    # other bodies of a scene of one's own are no wholes
+    if beyond or (setting.wholes and _whole_may_fall(system, ending)):
         return True
     kinetic, needed = _kinetic_energy(system, ending), setting.overturning_energy
     if kinetic + most_stored(system, rotation) < needed:
@@ -147,12 +148,7 @@ def most_stored(system: Assembly, rotation: float) -> float:
 
 
 def _whole_may_fall(system: Assembly, ending: Ending) -> bool:
-    """Tell whether a lower body, and all above it as one, has the energy to fall over its corner.
-
-    As if it stood on rigid ground.
-    """
-    if not system.setting.wholes:  # other bodies of a scene of one's own are no such
-        return False
+    """Tell whether a lower body with all above it can fall, as if on rigid ground."""
     size = len(system.model.rotation_weights)
     weights = system.model.other_limits.reshape(-1, 2 + size)[:, 2:]
     rotations, rates = (weights @ ending.state[of : of + size] for of in (0, size))
@@ -181,32 +177,10 @@ _STANDS: Final = ("flies", "on its left corner", "on its right corner", "in full
 _ONE_OF: Final = "what follows is one of several motions"
 
 
-@dataclass(frozen=True)
-class Uniqueness:
-    """How often the motion of a run was not unique."""
-
-    several: int  # impacts with several admissible modes, and with none
-    none: int
-    held: int  # corners that were held for a while though they did not press
-    cautions: tuple[str, ...]  # the same in words
-
-    def attributes(self) -> dict[str, int]:
-        """Give the numbers by their names among a run's attributes."""
-        return {
-            "impacts_of_several_modes": self.several,
-            "impacts_of_no_mode": self.none,
-            "corners_held_without_pressing": self.held,
-        }
-
-
-NOT_LOOKED_AT: Final = Uniqueness(0, 0, 0, ())
-"""Of scenes in which motion is always unique."""
-
-
-def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
-    """Look for changes of contact after which motion is not unique; None where it always is."""
-    if not isinstance(model.system, RigidChain):
-        return None
+def ambiguities(
+    model: ContactModel, chain: RigidChain, run: Trajectory
+) -> tuple[dict[str, int], list[str]]:
+    """Count changes of contact after which motion on rigid bases is not unique; also in words."""
     events = run.events
     sets, taken, other = (events.memory[:, model.memory.index(name)] for name in KEPT)
     by_force = np.isin(events.kind, (UPLIFT, SEPARATION, SILENT))
@@ -215,7 +189,7 @@ def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
     several, none = impacts & (sets > 1.0), impacts & (sets == 0.0)
     held = events.kind == SILENT
     held &= sets == 0.0
-    rigid = [k for k in range(model.system.bodies()) if model.system.is_rigid(k)]
+    rigid = [k for k in range(chain.bodies()) if chain.is_rigid(k)]
     unsure = slips & (sets != 1.0)
     cautions = list[str]()
 
@@ -242,7 +216,12 @@ def uniqueness_of(model: ContactModel, run: Trajectory) -> Uniqueness | None:
         "a corner is held though it does not press, since it would come back at once if it were "
         f"let go; this happens {held.sum()} times"
     ))  # fmt: skip
-    return Uniqueness(int(several.sum()), int(none.sum()), int(held.sum()), tuple(cautions))
+    counts = {
+        "impacts_of_several_modes": int(several.sum()),
+        "impacts_of_no_mode": int(none.sum()),
+        "corners_held_without_pressing": int(held.sum()),
+    }
+    return counts, cautions
 
 
 def _named(corners: int, rigid: Sequence[int]) -> str:
@@ -276,25 +255,20 @@ class SlidingCheck:
     @property
     def words(self) -> str:
         """Say it, without the body."""
-        digits = DIGITS
-        needed = ""
-        if math.isfinite(self.needed):
-            while f"{self.needed:.{digits}g}" == f"{self.friction:.{digits}g}":
-                digits += 1
-                if digits > MOST_DIGITS:
-                    break
-            needed = f"{self.needed:.{digits}g}"
-        if not needed:
+        digits, both = DIGITS, (self.needed, self.friction)
+        needed, friction = (f"{one:.{digits}g}" for one in both)
+        while needed == friction and digits <= MOST_DIGITS:
+            digits += 1
+            needed, friction = (f"{one:.{digits}g}" for one in both)
+        slides = f"would slide from {self.first:.4g} s on: needs"
+        if not math.isfinite(self.needed):
             return (
-                f"would slide from {self.first:.4g} s on: needs more than any floor has, and more "
-                f"than {self.friction:.{digits}g} for {self.lasted:.3g} s in all"
+                f"{slides} more than any floor has, and more than {friction} for "
+                f"{self.lasted:.3g} s in all"
             )
         if not self.slides:
-            return f"would not slide: needs {needed} of {self.friction:.{digits}g}"
-        return (
-            f"would slide from {self.first:.4g} s on: needs {needed} of "
-            f"{self.friction:.{digits}g}, and more than that for {self.lasted:.3g} s in all"
-        )
+            return f"would not slide: needs {needed} of {friction}"
+        return f"{slides} {needed} of {friction}, and more than that for {self.lasted:.3g} s in all"
 
 
 def has_limit(system: Assembly) -> bool:

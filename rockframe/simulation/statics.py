@@ -11,7 +11,7 @@ from rockframe.errors import AssemblyError, ComponentError, shown
 from rockframe.results.outcome import Generic, slope_attributes
 from rockframe.results.schema import SCHEMA, build_dataset
 from rockframe.system.assembly import Assembly
-from rockframe.system.small_motion import modes_of
+from rockframe.system.statics import modes_of
 from rockframe.units import ANGLE, to_si_values
 
 
@@ -28,10 +28,8 @@ def equilibrium(system: Assembly) -> xr.Dataset:
             "right_overturning_angle": right,
             "rest_rotation": setting.rest_rotation,
         }
-    values |= {
-        "overturning_angle": setting.overturning_angle,
-        "uplift_angle": setting.uplift_angle,
-    }
+    values["overturning_angle"] = setting.overturning_angle
+    values["uplift_angle"] = setting.uplift_angle
     return build_dataset(
         values, _attributes_of(system), title="Rest", source="vertical equilibrium"
     )

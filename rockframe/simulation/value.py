@@ -102,6 +102,6 @@ class SystemValue(metaclass=Proposing):
         return [n for n in super().__dir__() if not n.startswith("_") and n not in inner]
 
     def _repr_html_(self) -> str:
-        from rockframe.system.html import system_html
+        from rockframe.system.geometry import system_html
 
         return system_html(self._assembly, type(self).__name__)

@@ -13,7 +13,7 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.description import peak_words
 from rockframe.notebook import CELL, TABLE, card, curve
 from rockframe.results.schema import SCHEMA
-from rockframe.results.variables.suites import RECORDS
+from rockframe.results.variables.motions import RECORDS
 from rockframe.units import Measure, Unit, to_ratio, to_si
 
 if TYPE_CHECKING:

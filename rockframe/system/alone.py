@@ -4,20 +4,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from rockframe.errors import AssemblyError
 from rockframe.many import isnan
 from rockframe.system.fitting import BaseFriction
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting, SlipRange
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, static_values
+from rockframe.system.setting import Setting, SlipRange, chain_slips
+from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import Support
-from rockframe.system.words import SLIPS, Words, angle_words
+from rockframe.system.words import Words, angle_words, sliding_words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.slips import SlippingBodies
     from rockframe.dynamics.protocol import ContactModel, Ending
 
 
@@ -56,10 +54,7 @@ class AloneSetting(Setting):
 
     @cached_property
     def rest_rotation(self) -> float:
-        """Rotation at rest: a body leans to the side to which its weight turns it [rad].
-
-        At small rotation on pads or a bed that of :eq:`eq-incline-lean`.
-        """
+        """Rotation to which its weight turns a body; :eq:`eq-incline-lean` if small [rad]."""
         if not self.leans:
             return 0.0
         found = self.support.standing.rest
@@ -121,18 +116,10 @@ class SlidingAloneSetting(AloneSetting):
 
     def words(self) -> Words:
         """Tell the base, and the friction that holds the body on it."""
-        base = super().words()
-        return Words(
-            equations=[
-                *base.equations, SLIPS,
-            ],
-            restraint=f"{base.restraint.partition(';')[0]}; as far as friction can",
-            numbers=[
-                *base.numbers,
-                ("friction at rest, and of slip", self.friction.words()),
-            ],
-            left_out=[one for one in base.left_out if one != "sliding"],
-        )  # fmt: skip
+        held = super().words()
+        restraint = f"{held.restraint.partition(';')[0]}; as far as friction can"
+        friction = ("friction at rest, and of slip", self.friction.words())
+        return sliding_words(held, friction, restraint=restraint)
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of slip, rotation and rise: those of a chain of one."""
@@ -147,5 +134,4 @@ class SlidingAloneSetting(AloneSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the body slipped."""
-        system = cast("SlippingBodies", self.compile().system)
-        return (SlipRange(*system.slips(0, ending)),)
+        return chain_slips(self, 1, ending)

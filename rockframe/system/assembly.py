@@ -36,7 +36,7 @@ from rockframe.system.rocking_frame import rocking_frame_setting
 from rockframe.system.setting import Setting
 from rockframe.system.sliding_ground import rigid_ground_setting
 from rockframe.system.sliding_stack import stack_on, tied_on_ground
-from rockframe.system.stack import StackSetting, block_setting, stack_setting
+from rockframe.system.stack import StackSetting, refuse_options, stack_setting
 from rockframe.system.stacked import (
     CascadeSetting,
     CoupledSetting,
@@ -128,14 +128,17 @@ def _coupled(parts: Parts, options: Options) -> StackedSetting:
 
 def _upon_one_another(slot: str, parts: Parts, options: Options) -> StackSetting:
     """Put a stack, or a block with restrainers, on the base in a slot."""
-    base = parts.components.get(slot, RigidGround())
-    if parts.stack is not None:
-        held = stack_setting(parts.stack, base, options, parts.links)
-        return stack_on((*parts.stack.interfaces, base), held)
-    held = block_setting(parts.the_block, base, options, parts.links)
-    if isinstance(base, RigidGround):
+    base, stack = parts.components.get(slot, RigidGround()), parts.stack
+    if stack is None:
+        refuse_options("a block with restrainers", options, small=False)
+        blocks, offsets, bases = (parts.the_block,), (0.0,), (base,)
+    else:
+        refuse_options("a Stack", options, small=not parts.links)
+        blocks, offsets, bases = stack.si.bodies, stack.si.offsets, (*stack.interfaces, base)
+    held = stack_setting(blocks, offsets, bases, options, parts.links)
+    if stack is None and isinstance(base, RigidGround):
         return tied_on_ground(base, held)
-    return stack_on((base,), held)
+    return stack_on(bases, held)
 
 
 _STACK = frozenset({"block", "pads", "cap", "soil"})
@@ -238,10 +241,7 @@ def _own(kind: type[OwnScene], parts: Parts, options: Options) -> OwnScene:
 
 @dataclass(frozen=True)
 class Assembly:
-    """Parts and options that have been checked and make a supported scene.
-
-    Two are equal if they have equal parts, in whatever order, and equal options.
-    """
+    """Parts, whatever their order, and options that were checked and make a scene."""
 
     parts: Parts  # by what they are
     options: Options  # all options, and gravity

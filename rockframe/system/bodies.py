@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, Final, NamedTuple
 
+from rockframe.components.bases import CushionCapSI
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
-from rockframe.components.cap import CushionCapSI
 from rockframe.dynamics.body import Body
 from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
@@ -94,10 +94,7 @@ class SupportedBody(BodyGeometry):
 
 
 class OverturningAngles(NamedTuple):
-    """Rotations at which a body stands on edge, to either side, both positive [rad].
-
-    The lesser of both is theta.
-    """
+    """Rotations, both positive, at which a body stands on edge; the lesser is theta [rad]."""
 
     left: float
     right: float

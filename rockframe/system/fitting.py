@@ -13,8 +13,8 @@ from rockframe.components import (
     Stack,
     Tendon,
 )
+from rockframe.components.bases import Impact
 from rockframe.components.block_numbers import BlockSI, squat
-from rockframe.components.ground import Impact
 from rockframe.many import isfinite
 from rockframe.system.links import link_labels
 from rockframe.system.options import Coupling, Options, Restraint, Sliding

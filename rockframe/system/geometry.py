@@ -1,13 +1,14 @@
-"""Where the parts of a scene are, upright and at rest: what a drawing of it shows."""
+"""Where the parts of a scene are, upright and at rest, and what notebooks show of it."""
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.components import FrameEquivalent, RearWall, RockingFrame, Stack, Tendon
+from rockframe.components import FrameEquivalent, RearWall, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
+from rockframe.notebook import Polygon, arguments_in_words, card, drawing
 from rockframe.signals.arrays import Array
 from rockframe.system.assembly import Assembly
 from rockframe.system.rocking_frame import TiedFrameSetting
@@ -40,19 +41,19 @@ class Geometry:
     """
 
     outline: Array  # of the block, from the middle of its own base
-    members: tuple[Array, ...]  # outlines of a frame's members, in the same coordinates
     half_width: float  # of the block's base
     centre: tuple[float, float]  # the block's centre of mass, in the coordinates of its outline
     # the centre of mass of the body that results are of, from the middle of the lowest base: that
     # of the block, or of block and cap where these are one body
     moved: tuple[float, float]
-    cap: tuple[float, float] | None  # half the width and the height of the cap
-    # settlements under the weight of pads and of soil, where the scene has them
-    pads_sink: float | None
-    bed_sinks: float | None
-    stacked: bool  # whether pads stand between block and cap, which then move apart
-    inclination: float  # by which the base line rises to the right [rad]
     small_rotation: bool  # whether the kinematics are expanded in the rotation
+    inclination: float = 0.0  # by which the base line rises to the right [rad]
+    members: tuple[Array, ...] = ()  # outlines of a frame's members, as that of the block
+    cap: tuple[float, float] | None = None  # half the width and the height of the cap
+    # settlements under the weight of pads and of soil, where the scene has them
+    pads_sink: float | None = None
+    bed_sinks: float | None = None
+    stacked: bool = False  # whether pads stand between block and cap, which then move apart
     lower: tuple[LowerBody, ...] = ()  # bodies of a stack beneath the block, from the top down
     ties: tuple[LinkedPoints, ...] = ()  # points that restrainers link
     # of columns under a beam, how far each is to the right of the middle; the block is one of them
@@ -109,7 +110,7 @@ def geometry_of(scene: Assembly) -> Geometry:
     parts, setting = scene.parts, scene.setting
     if parts.stack is not None:
         return _of_stack(parts.stack, scene)
-    block = parts.the_block
+    block, frame = parts.the_block, None if parts.frame is None else parts.frame.si
     cap = None if parts.cap is None else parts.the_cap
     body, sinks = setting.body, [each.settlement for each in setting.supports]
     level = 2.0 * cap.half_height if setting.stacked and cap is not None else 0.0
@@ -126,7 +127,8 @@ def geometry_of(scene: Assembly) -> Geometry:
         inclination=scene.options.inclination,
         small_rotation=scene.options.small,
         ties=_ties_of(setting),
-        **_of_frame(parts.frame),
+        columns=() if frame is None else tuple(column_places(frame)),
+        beam=None if frame is None else np.array(frame_outlines(frame)[-1]),
         wall=_of_wall(parts.wall, block),
     )
 
@@ -142,14 +144,6 @@ def _of_wall(
         return None
     beside = wall.direction * (2.0 * body.half_width + (wall.given.gap or 0.0))
     return rectangle(body.half_width, body.height, place[0] + beside, place[1])
-
-
-def _of_frame(frame: RockingFrame | None) -> dict[str, Any]:
-    """Give what is drawn of columns under a beam."""
-    if frame is None:
-        return {}
-    beam = np.array(frame_outlines(frame.si)[-1])
-    return {"columns": tuple(column_places(frame.si)), "beam": beam}
 
 
 def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
@@ -186,15 +180,10 @@ def _of_stack(stack: Stack, scene: Assembly) -> Geometry:
     place = sum(offsets[k:]), sum(one.height for one in bodies[k + 1 :])
     return Geometry(
         outline=rectangle(block.half_width, block.height),
-        members=(),
         half_width=block.half_width,
         centre=(block.eccentricity, block.centre_height),
         moved=(beside + block.eccentricity, level + block.centre_height),
-        cap=None,
-        pads_sink=None,
         bed_sinks=None if scene.parts.soil is None else scene.setting.supports[-1].settlement,
-        stacked=False,
-        inclination=0.0,
         small_rotation=scene.options.small,
         lower=tuple(lower),
         ties=_ties_of(scene.setting),
@@ -211,3 +200,63 @@ def members_of(block: object) -> tuple[Array, ...]:
         for one in (member.si for member in block.members)
         if one.width is not None and one.height is not None
     )
+
+
+_PAD: Final = 0.06
+"""Thickness with which pads are drawn, over the width of the base."""
+
+
+def system_html(scene: Assembly, name: str) -> str:
+    """Give drawing and numbers of a scene as HTML."""
+    setting, options = scene.setting, scene.options
+    rows = {"model": setting.model}
+    for part in scene.parts.structural():
+        numbers = arguments_in_words(part.to_dict())
+        rows[type(part).__name__] = ", ".join(f"{one} {value}" for one, value in numbers.items())
+    left, right = setting.overturning_angles
+    to_left, to_right = (f"{np.degrees(side):.4g}°" for side in (left, right))
+    both = f"{to_left} to the left, {to_right} to the right"
+    rows["overturning angle"] = to_left if left == right else both
+    if np.isfinite(setting.uplift_angle):
+        rows["uplift angle"] = f"{np.degrees(setting.uplift_angle):.4g}°"
+    if options.inclination:
+        rows["inclination"] = f"{np.degrees(options.inclination):.4g}°"
+    if scene.parts.motion is not None:
+        rows["motion"] = scene.parts.motion.name
+    return card(name, rows, drawing(shapes_of(geometry_of(scene))))
+
+
+def shapes_of(geometry: Geometry) -> list[Polygon]:
+    """Give the parts of a scene, upright and at rest, from back to front."""
+    half, width = geometry.base_half_width, 2.0 * geometry.half_width
+    pad = 0.0 if geometry.pads_sink is None else _PAD * width
+    lift = np.array([0.0, pad])
+    below = 0.0 if geometry.stacked else pad
+    reach, depth = 1.7 * half, 0.5 * half
+    band = rectangle(reach, depth, y=-depth - below)
+    found = [("ground" if geometry.bed_sinks is None else "soil", band)]
+    if geometry.wall is not None:
+        found.append(("ground", geometry.wall))
+    if geometry.cap_outline is not None:
+        found.append(("cap", geometry.cap_outline))
+    found += [("cap", one.outline) for one in geometry.lower]
+    raised = lift if geometry.stacked else np.zeros(2)
+    if pad:
+        level = geometry.level if geometry.stacked else -pad
+        for side in (-0.83, 0.83):
+            place = side * geometry.half_width
+            found.append(("pad", rectangle(0.17 * geometry.half_width, pad, place, level)))
+    if geometry.beam is not None:
+        found += [("member", geometry.block + np.array([x, 0.0])) for x in geometry.columns]
+        found.append(("member", geometry.beam))
+    else:
+        found.append(("block", geometry.block + raised))
+    level_up = geometry.place
+    found += [("member", member + level_up + raised) for member in geometry.members]
+    centre = np.array([geometry.centre]) + level_up + raised
+    sine, cosine = np.sin(geometry.inclination), np.cos(geometry.inclination)
+    along_base = np.array([(cosine, sine), (-sine, cosine)])
+    return [
+        Polygon(tone, [(float(x), float(y)) for x, y in points @ along_base])
+        for tone, points in (*found, ("block", centre))
+    ]

@@ -92,14 +92,16 @@ class PlacedLink:
 
     def numbers(self, mass: float) -> LinkNumbers:
         """Give the law, per unit of a mass [kg]."""
-        from rockframe.dynamics.links import LinkNumbers, SteadyForce
+        from rockframe.dynamics.links import Bumper, LinkNumbers, SteadyForce
 
         if isinstance(self.part, Restrainer | Tendon):
             return tie_of(self.part, mass)
         if isinstance(self.part, OwnLink):
             return self.part.law(mass)
         if isinstance(self.part, RearWall):
-            return bumper_of(self.part, mass)
+            given = self.part.si
+            stiffness, damping = given.stiffness / mass, (given.damping or 0.0) / mass
+            return LinkNumbers(Bumper(stiffness, damping, given.gap or 0.0), stiffness, damping)
         return LinkNumbers(SteadyForce(math.hypot(*self.steady) / mass), 0.0)
 
     @property
@@ -189,15 +191,6 @@ def tie_of(part: Restrainer | Tendon, mass: float) -> LinkNumbers:
     return LinkNumbers(law, stiffness, damping, (size,))
 
 
-def bumper_of(part: RearWall, mass: float) -> LinkNumbers:
-    """Give the law of an elastic wall, per unit of a mass [kg]."""
-    from rockframe.dynamics.links import Bumper, LinkNumbers
-
-    given = part.si
-    stiffness, damping = given.stiffness / mass, (given.damping or 0.0) / mass
-    return LinkNumbers(Bumper(stiffness, damping, given.gap or 0.0), stiffness, damping)
-
-
 def placed(
     parts: Sequence[Link],
     bodies: Sequence[SupportedBody],
@@ -223,10 +216,7 @@ def placed(
         if isinstance(part, Load) and not (part.si.vertical or part.si.horizontal):
             continue  # its mass is that of its body
         bases = [(0.0, 0.0) if k < 0 else base_of(k, bodies, tops, offsets) for k in (on, to)]
-        if isinstance(part, RearWall):
-            ends = _ends_of_wall(part, bases[0], bodies[on], tops[on])
-        else:
-            ends = _ends_of(part, *bases)
+        ends = _ends_of(part, bases[0], bases[1], bodies[on], tops[on])
         points = [
             (x, y) if k < 0 else
             (x - base[0] - bodies[k].eccentricity, y - base[1] - bodies[k].centre_height)
@@ -252,7 +242,9 @@ def _other_body(part: Link, count: int) -> int:
     return part.si.on_body if isinstance(part, Tendon) and part.si.on_body < count else -1
 
 
-def _ends_of(part: Link, base: Point, other: Point) -> tuple[Point, Point]:
+def _ends_of(
+    part: Link, base: Point, other: Point, body: SupportedBody, top: float
+) -> tuple[Point, Point]:
     """Give both points of a link, from the middle of the lowest base, by those of its bodies."""
     x, y = base
     if isinstance(part, PointLink):
@@ -261,17 +253,12 @@ def _ends_of(part: Link, base: Point, other: Point) -> tuple[Point, Point]:
     if isinstance(part, Tendon):
         x += part.si.at
         return (x, y), (x, y - part.si.depth)
+    if isinstance(part, RearWall):  # where it is touched by the rear face
+        y += body.centre_height + top if part.si.height is None else part.si.height
+        x += part.direction * body.half_width
+        return (x, y), (x + part.direction * (part.si.gap or 0.0), y)
     point = (x + part.si.at[0], y + part.si.at[1])
     return point, point
-
-
-def _ends_of_wall(
-    part: RearWall, base: Point, body: SupportedBody, top: float
-) -> tuple[Point, Point]:
-    """Give the point of the rear face that touches a wall, and where it is touched."""
-    height = body.centre_height + top if part.si.height is None else part.si.height
-    x, y = base[0] + part.direction * body.half_width, base[1] + height
-    return (x, y), (x + part.direction * (part.si.gap or 0.0), y)
 
 
 def link_labels(parts: Sequence[Link]) -> list[str]:

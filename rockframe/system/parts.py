@@ -68,14 +68,9 @@ def slots() -> tuple[str, ...]:
     return (*SHIPPED[:-1], *own, SHIPPED[-1])
 
 
-def add_base(kind: type[OwnBase]) -> None:
-    """Make a user's own base known."""
-    _KINDS[kind] = Kind(kind.slot, kind.support)
-
-
-def add_link(kind: type[Link]) -> None:
-    """Make a user's own link known."""
-    _KINDS[kind] = Kind(RESTRAINER)
+def add_kind(of: type, kind: Kind) -> None:
+    """Make a part of a user's own known: a link, a base, or what a scene of its own is made of."""
+    _KINDS[of] = kind
 
 
 def numbered(slot: str, number: int) -> str:
@@ -87,11 +82,6 @@ def kind_of_slot(slot: str) -> str:
     """Give the slot of a kind of which there may be several parts."""
     head, _, number = slot.rpartition("_")
     return head if head == RESTRAINER and number.isdigit() else slot
-
-
-def add_part(kind: type[Component], slot: str) -> None:
-    """Make a part of a user's own scene known."""
-    _KINDS[kind] = Kind(slot)
 
 
 def known_kind(of: type) -> type | None:
@@ -119,11 +109,8 @@ def support_of(part: Component, load: BaseLoad) -> Support:
     return make(part, load)
 
 
-def beyond_models(part: object) -> list[str]:
+def _beyond_models(part: Component, known: type) -> list[str]:
     """Refuse a part that adds to a class which scenes know something that they do not."""
-    known = known_kind(type(part))
-    if known is None or not isinstance(part, Component):
-        return []
     own = type(part)
     # parameters; a property of the same name is none
     declared, expected = (
@@ -266,17 +253,19 @@ def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
     """Put each part in its slot; note doubled parts and things that are no parts."""
     found: dict[str, Any] = {}
     for part in given:
-        slot = slot_of_kind(type(part))
-        if slot is None:
+        kind = known_kind(type(part))
+        if kind is None:
             faults.append(f"{shown(part)} is not a part of a system{hint_for(part)}")
-        elif slot == RESTRAINER:
+            continue
+        slot = _KINDS[kind].slot
+        if slot == RESTRAINER:
             count = sum(kind_of_slot(one) == RESTRAINER for one in found)
-            found[numbered(slot, count + 1)] = part
-            faults += beyond_models(part)
+            slot = numbered(slot, count + 1)
         elif slot in found:
             name = type(part).__name__
             faults.append(f"{name} is given twice: {shown(found[slot])} and {shown(part)}")
-        else:
-            found[slot] = part
-            faults += beyond_models(part)
+            continue
+        found[slot] = part
+        if kind is not type(part) and isinstance(part, Component):
+            faults += _beyond_models(part, kind)
     return Parts.of(found)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 from rockframe.components import RearWall
 from rockframe.components.block_numbers import BlockSI
-from rockframe.components.wall import WallImpact, WallSide
+from rockframe.components.link import WallImpact, WallSide
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
     OverturningAngles,

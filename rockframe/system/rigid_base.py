@@ -53,10 +53,7 @@ class RigidBase(Support):
         return [NO_VERTICAL_START] if has_vertical_start else []
 
     def uplift_accelerations(self) -> tuple[float, float]:
-        """Ground accelerations at which all above rocks about its left and right corner [m s^-2].
-
-        Equation :eq:`eq-rigid-together`.
-        """
+        """Ground accelerations at which all above rocks to either side, :eq:`eq-rigid-together`."""
         body = self.load.body
         left, right = body.left / body.centre_height, body.right / body.centre_height
         return self.load.options.gravity * left, self.load.options.gravity * right
@@ -112,10 +109,7 @@ def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
 
 
 def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> "tuple[float, list[Tied]]":
-    """Give what holds back all above the base of body `k` as it rocks as one, and the ties [N m].
-
-    All below stays.
-    """
+    """Give what holds back all above base `k` that rocks on what stays, and the ties [N m]."""
     from rockframe.dynamics.tied import rocked
 
     load, (middle, foot) = setting.bases[k].load, setting.base_of(k)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
@@ -121,13 +121,6 @@ class RockingFrameSetting(RigidGroundSetting):
         )  # fmt: skip
 
 
-class Pulled(NamedTuple):
-    """A tendon at a rotation that slow loading has led to."""
-
-    force: float  # [N]
-    elongation: float  # [m]
-
-
 @dataclass(frozen=True)
 class TiedFrameSetting(RockingFrameSetting):
     """Columns under a beam on rigid ground, with tendons along the axes of the columns."""
@@ -156,21 +149,21 @@ class TiedFrameSetting(RockingFrameSetting):
         half, columns = self.frame.column.half_width, self.frame.columns
         return tied_frame(super().contact_model(), self.laws, half_width=half, columns=columns)
 
-    def pulled(self, rotation: float) -> list[Pulled]:
-        """Give force and elongation of each tendon, :eq:`eq-rocking-frame-tendon`."""
+    def forces(self, rotation: float) -> list[float]:
+        """Give the force of each tendon, :eq:`eq-rocking-frame-tendon` [N]."""
         from rockframe.dynamics.links import Stretch
 
         longer = 4.0 * self.frame.column.half_width * math.sin(0.5 * abs(rotation))
-        stretch, found = Stretch(longer, 0.0, 0.0, 0.0, 0.0), list[Pulled]()
+        stretch, found = Stretch(longer, 0.0, 0.0, 0.0, 0.0), list[float]()
         for one in self.laws:
             law, own = one.law, np.zeros(one.law.variables())
             force = law.force(law.starting(stretch, own), stretch, own)
-            found.append(Pulled(self.body.mass * force, longer))
+            found.append(self.body.mass * force)
         return found
 
     def pull(self, rotation: float) -> float:
         """Give the force of all tendons of all columns [N]."""
-        return self.frame.columns * math.fsum(one.force for one in self.pulled(rotation))
+        return self.frame.columns * math.fsum(self.forces(rotation))
 
     @property
     def uplift_accelerations(self) -> tuple[float, float]:
@@ -203,11 +196,10 @@ class TiedFrameSetting(RockingFrameSetting):
         found["uplift_moment"] += pull * self.frame.column.half_width
         for name in ("static_left_reaction", "static_right_reaction"):
             found[name] += 0.5 * pull
-        tied = self.pulled(0.0)
         return found | {
             "restrainer": list(self.link_names),
-            "static_restrainer_force": [one.force for one in tied],
-            "static_restrainer_elongation": [one.elongation for one in tied],
+            "static_restrainer_force": self.forces(0.0),
+            "static_restrainer_elongation": [0.0] * len(self.tendons),
         }
 
     def _start_words(self) -> str:

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, cast
 
 from rockframe.dynamics.protocol import ContactModel, Ending
 from rockframe.many import largest
@@ -12,10 +12,12 @@ from rockframe.signals.motion import Slope
 from rockframe.system.bodies import BaseLoad, OverturningAngles, SupportedBody
 from rockframe.system.options import Options
 from rockframe.system.rigid_base import NO_VERTICAL_START
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, least_overturning_energy, required_states
+from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, required_states
 from rockframe.system.support import Support
 from rockframe.system.words import Words
+
+if TYPE_CHECKING:
+    from rockframe.dynamics.chain.slips import SlippingBodies
 
 LARGE_LEAN = 0.1
 """Share of the overturning angle above which a lean at rest is worth a warning."""
@@ -32,6 +34,12 @@ class SlipRange(NamedTuple):
     def peak(self) -> float:
         """The greatest to either side."""
         return largest(self.left, self.right)
+
+
+def chain_slips(setting: "Setting", count: int, ending: Ending) -> tuple[SlipRange, ...]:
+    """Tell how far the highest bodies of a chain that slips have slipped, so many of them."""
+    chain = cast("SlippingBodies", setting.compile().system)
+    return tuple(SlipRange(*chain.slips(k, ending)) for k in range(count))
 
 
 @dataclass(frozen=True)
@@ -126,10 +134,7 @@ class Setting(ABC):
 
     @cached_property
     def uplift_angle(self) -> float:
-        """Rotation on its base at which a body loses full contact; NaN if never [rad].
-
-        Any rotation lifts a corner from rigid ground.
-        """
+        """Rotation at which a body loses full contact; any on rigid ground, NaN if never [rad]."""
         return self.supports[0].uplift_angle if self.supports else 0.0
 
     @cached_property

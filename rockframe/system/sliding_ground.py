@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rockframe.components.ground import Impact
+from rockframe.components.bases import Impact
 from rockframe.errors import AssemblyError
 from rockframe.many import largest, plain
 from rockframe.system.bodies import SupportedBody, load_of, resolve_restitution
@@ -110,18 +110,13 @@ def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     setting = RigidGroundSetting(load, restitution)
     friction = None if ground is None else friction_under(ground, options)
     if ground is not None and friction is not None:
-        setting = _sliding(SlidingSetting(load, restitution, friction, ground.si.impact))
+        faults = ill_posed(load.body, friction.kinetic)
+        if options.small:
+            faults.append(SMALL_SLIDING)
+        if faults:
+            raise AssemblyError(faults)
+        setting = SlidingSetting(load, restitution, friction, ground.si.impact)
     refuse_fall(setting)
-    return setting
-
-
-def _sliding(setting: SlidingSetting) -> SlidingSetting:
-    """Refuse what has no answer."""
-    faults = ill_posed(setting.body, setting.friction.kinetic)
-    if setting.options.small:
-        faults.append(SMALL_SLIDING)
-    if faults:
-        raise AssemblyError(faults)
     return setting
 
 

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final
 
 from rockframe.components import Component, RigidGround, Tendon, TwoSpringSupport
-from rockframe.components.ground import Impact
+from rockframe.components.bases import Impact
 from rockframe.errors import AssemblyError
 from rockframe.system.fitting import HELD, SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Sliding
-from rockframe.system.setting import SlipRange
+from rockframe.system.setting import SlipRange, chain_slips
 from rockframe.system.sliding_ground import (
     friction_to_roll_over,
     ill_posed,
@@ -18,10 +18,9 @@ from rockframe.system.sliding_ground import (
     slips_on_ground,
 )
 from rockframe.system.stack import StackSetting
-from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words
+from rockframe.system.words import HELD_BY_FRICTION, SLIPS, Words, sliding_words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.slips import SlippingBodies
     from rockframe.dynamics.protocol import ContactModel, Ending
 
 LEAST_OVERHANG: Final = 0.1
@@ -48,22 +47,14 @@ class SlidingStackSetting(StackSetting):
 
     def words(self) -> Words:
         """Tell bodies and bases, and their friction."""
-        told = super().words()
-        numbers = [
+        return sliding_words(super().words(), *(
             (f"base {k}: friction at rest, and of slip", friction.words())
             for k, friction in enumerate(self.frictions, 1)
-        ]
-        return replace(
-            told,
-            equations=[*told.equations, SLIPS],
-            numbers=[*told.numbers, *numbers],
-            left_out=[one for one in told.left_out if one != "sliding"],
-        )
+        ))  # fmt: skip
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far each body slipped."""
-        system = cast("SlippingBodies", self.compile().system)
-        return tuple(SlipRange(*system.slips(k, ending)) for k in range(len(self.bodies)))
+        return chain_slips(self, len(self.bodies), ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
         """Warn of bodies that slipped beyond the edge of what they stand on, which has no end."""
@@ -93,8 +84,7 @@ def beyond_edge(
 def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
     """Give the setting of bodies with links: of those that slip where bases have friction."""
     slips = any(getattr(one.si, "friction", None) is not None for one in bases)
-    if refused := too_many_modes(bases, slips):
-        raise AssemblyError([refused])
+    _refuse_many_modes(bases, slips)
     if not slips:
         return held
     found = [friction_under(one, held.options) for one in bases]
@@ -124,7 +114,7 @@ def _same(held: StackSetting) -> dict[str, Any]:
     return {name: getattr(held, name) for name in names}
 
 
-def too_many_modes(bases: Sequence[Component], slips: bool) -> str | None:
+def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
     """Refuse bodies whose contacts have more combinations than can be numbered."""
     from rockframe.dynamics.chain.rows import BED_MODES, PAD_MODES, RIGID_MODES
     from rockframe.dynamics.protocol import MOST_MODES
@@ -136,12 +126,12 @@ def too_many_modes(bases: Sequence[Component], slips: bool) -> str | None:
         else:
             modes = PAD_MODES if isinstance(base, TwoSpringSupport) else BED_MODES
         count *= 2 * modes if slips else modes
-    if count <= MOST_MODES:
-        return None
-    return (
-        f"the contacts of {len(bases)} bodies on these bases have {count:.2g} combinations, more "
-        f"than the {MOST_MODES:.2g} that can be numbered: give fewer bodies, or rigid joints"
-    )
+    if count > MOST_MODES:
+        raise AssemblyError([
+            f"the contacts of {len(bases)} bodies on these bases have {count:.2g} combinations, "
+            f"more than the {MOST_MODES:.2g} that can be numbered: give fewer bodies, or rigid "
+            "joints"
+        ])  # fmt: skip
 
 
 def sheared(held: StackSetting) -> list[str]:
@@ -194,7 +184,14 @@ class TiedSlidingSetting(TiedSetting):
     def words(self) -> Words:
         """Tell the block, its links and its friction."""
         told = super().words()
-        return Words(
+        slides = sliding_words(
+            told,
+            ("friction at rest, and of slip", self.friction.words()),
+            ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
+            restraint=HELD_BY_FRICTION,
+        )
+        return replace(
+            slides,
             equations=[
                 ("full", "at rest while friction holds the base, and until it tips; else it slides "
                  "on its whole base"),
@@ -206,13 +203,6 @@ class TiedSlidingSetting(TiedSetting):
                  "are finite, have no part in it"),
                 *(one for one in told.equations if one[0] == "restrainers"),
             ],
-            restraint=HELD_BY_FRICTION,
-            numbers=[
-                *told.numbers,
-                ("friction at rest, and of slip", self.friction.words()),
-                ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
-            ],
-            left_out=[one for one in told.left_out if one != "sliding"],
         )  # fmt: skip
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.components import Component, Link, Load, Stack, Tendon
+from rockframe.components import Component, Link, Load, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
 from rockframe.errors import AssemblyError
@@ -24,8 +24,7 @@ from rockframe.system.rigid_base import (
     rocking_energy,
 )
 from rockframe.system.setting import Setting
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, least_overturning_energy, static_values
+from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, static_values
 from rockframe.system.support import StandingBodies, Support
 from rockframe.system.words import Words
 
@@ -323,7 +322,7 @@ class StackSetting(Setting):
             found = beyond_lift(self, rotations, found)
         return [None if one is None else replace(one, reactions={}) for one in found]
 
-    def equilibrium(self) -> dict[str, float]:
+    def equilibrium(self) -> dict[str, Any]:
         """Give what the one base and the ties show at rest; each of several has its own."""
         found = dict[str, Any]()
         if len(self.bodies) == 1 and not self.groups:
@@ -337,7 +336,14 @@ class StackSetting(Setting):
         elif len(self.bodies) == 1:
             base, shown = self.bases[0], self.standing.reactions(self._rest)
             found = {base.settlement_name: base.settlement, **static_values(shown)}
-        return found | self.tied_at_rest()
+        if not self.link_names:
+            return found
+        tied = self._tied_at_rest[: len(self.link_names)]
+        return found | {
+            "restrainer": list(self.link_names),
+            "static_restrainer_force": [self.body.mass * one.force for one in tied],
+            "static_restrainer_elongation": [one.elongation for one in tied],
+        }
 
     @cached_property
     def _tied_at_rest(self) -> "list[Tied]":
@@ -347,17 +353,6 @@ class StackSetting(Setting):
         if not self.groups:
             return at_rest(self.chain_ties)
         return self.standing.chain.tied(self.standing.rest or [])
-
-    def tied_at_rest(self) -> dict[str, Any]:
-        """Give forces and elongations of ties at rest, by their names in the schema."""
-        if not self.link_names:
-            return {}
-        tied = self._tied_at_rest[: len(self.link_names)]
-        return {
-            "restrainer": list(self.link_names),
-            "static_restrainer_force": [self.body.mass * one.force for one in tied],
-            "static_restrainer_elongation": [one.elongation for one in tied],
-        }
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of bodies upon one another."""
@@ -382,10 +377,7 @@ class StackSetting(Setting):
 def combined_body(
     bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> SupportedBody:
-    """Give bodies upon one another, from the top down, as one upright body.
-
-    `offsets` are those of all but the lowest, whose base is that of the whole.
-    """
+    """Give bodies upon one another, from the top down, as one on the base of the lowest."""
     lowest = bodies[-1]
     places, base, beside = [(lowest, lowest.centre_height, 0.0)], 0.0, 0.0
     for k in range(len(bodies) - 2, -1, -1):
@@ -403,47 +395,6 @@ def combined_body(
     return SupportedBody(lowest.half_width, height, mass, inertia, shape_factor, across)
 
 
-def block_setting(
-    block: BlockSI, base: Component, options: Options, links: Sequence[Link]
-) -> StackSetting:
-    """Give the scene of a block with restrainers on a base."""
-    refuse_options("a block with restrainers", options, small=False)
-    (body,), (top,) = _loaded((block,), links)
-    load = BaseLoad(body, options)
-    support = support_of(base, load)
-    _refuse_bent(links, (support,))
-    ties = placed(links, (body,), (top,), (0.0,))
-    return StackSetting(load, (body,), (top,), (0.0,), (support,), ties)
-
-
-def _refuse_bent(links: Sequence[Link], bases: Sequence[Support]) -> None:
-    """Refuse tendons that are bent at a base that gives way: its edges do not meet."""
-    faults = [
-        f"a Tendon through body {link.si.on_body} is bent at a base that gives way: give the depth "
-        "below the base at which it is held"
-        for link in links
-        if isinstance(link, Tendon)
-        and link.si.depth == 0.0
-        and link.si.on_body <= len(bases)
-        and not isinstance(bases[link.si.on_body - 1], RigidBase)
-    ]
-    if faults:
-        raise AssemblyError(faults)
-
-
-def _loaded(
-    blocks: Sequence[BlockSI], links: Sequence[Link]
-) -> tuple[tuple[SupportedBody, ...], tuple[float, ...]]:
-    """Give bodies with the masses that loads put on them, and their tops above their centres."""
-    found = [body_of_block(one) for one in blocks]
-    for link in links:
-        k = link.si.on_body - 1
-        if isinstance(link, Load) and link.si.moving_mass and k < len(found):
-            found[k] = with_mass(found[k], link.si.moving_mass, *link.si.at)
-    tops = (one.height - body.centre_height for one, body in zip(blocks, found, strict=True))
-    return tuple(found), tuple(tops)
-
-
 def refuse_options(what: str, options: Options, *, small: bool) -> None:
     """Refuse options that the equations have not."""
     faults = list[str]()
@@ -456,16 +407,36 @@ def refuse_options(what: str, options: Options, *, small: bool) -> None:
 
 
 def stack_setting(
-    stack: Stack, base: Component, options: Options, links: Sequence[Link] = ()
+    blocks: Sequence[BlockSI],
+    offsets: tuple[float, ...],
+    standing_on: Sequence[Component],
+    options: Options,
+    links: Sequence[Link],
 ) -> StackSetting:
-    """Give the scene of a stack on a base."""
-    refuse_options("a Stack", options, small=not links)
-    bodies, tops = _loaded(stack.si.bodies, links)
-    offsets = stack.si.offsets
-    bases = tuple(
-        support_of(part, BaseLoad(combined_body(bodies[: k + 1], tops, offsets), options))
-        for k, part in enumerate((*stack.interfaces, base))
-    )
-    _refuse_bent(links, bases)
+    """Give the scene of blocks upon one another, from the top down, on bases and with links."""
+    found = [body_of_block(one) for one in blocks]
+    for link in links:  # bodies have the masses that loads put on them
+        k = link.si.on_body - 1
+        if isinstance(link, Load) and link.si.moving_mass and k < len(found):
+            found[k] = with_mass(found[k], link.si.moving_mass, *link.si.at)
+    bodies = tuple(found)
+    tops = tuple(one.height - body.centre_height for one, body in zip(blocks, found, strict=True))
+    load = BaseLoad(bodies[0], options)
+    loads = [load] if len(bodies) == 1 else [
+        BaseLoad(combined_body(bodies[: k + 1], tops, offsets), options)
+        for k in range(len(bodies))
+    ]  # fmt: skip
+    bases = tuple(support_of(part, load) for part, load in zip(standing_on, loads, strict=True))
+    bent = [  # the edges of a base that gives way do not meet
+        f"a Tendon through body {link.si.on_body} is bent at a base that gives way: give the depth "
+        "below the base at which it is held"
+        for link in links
+        if isinstance(link, Tendon)
+        and link.si.depth == 0.0
+        and link.si.on_body <= len(bases)
+        and not isinstance(bases[link.si.on_body - 1], RigidBase)
+    ]
+    if bent:
+        raise AssemblyError(bent)
     ties = placed(links, bodies, tops, offsets)
-    return StackSetting(BaseLoad(bodies[0], options), bodies, tops, offsets, bases, ties)
+    return StackSetting(load, bodies, tops, offsets, bases, ties)

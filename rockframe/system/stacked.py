@@ -2,9 +2,9 @@
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -15,15 +15,13 @@ from rockframe.system.alone import AloneSetting
 from rockframe.system.bodies import Cap
 from rockframe.system.fitting import HELD, BaseFriction
 from rockframe.system.options import restraint_words
-from rockframe.system.setting import Setting, SlipRange
+from rockframe.system.setting import Setting, SlipRange, chain_slips
 from rockframe.system.sliding_stack import beyond_edge
-from rockframe.system.small_motion import SmallMotion
-from rockframe.system.statics import Statics, static_values
+from rockframe.system.statics import SmallMotion, Statics, static_values
 from rockframe.system.support import BaseWords, StandingBodies, Support
-from rockframe.system.words import SLIPS, Words
+from rockframe.system.words import Words, sliding_words
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.chain.slips import SlippingBodies
     from rockframe.dynamics.coupled.model import StackRest
     from rockframe.dynamics.protocol import ContactModel, Ending
     from rockframe.dynamics.vibrations import ChainBody
@@ -42,11 +40,6 @@ class StackedSetting(Setting):
     lower: AloneSetting  # block and cap as one body on the soil
     cap: Cap  # the cap
     stacked: ClassVar[bool] = True
-
-    @property
-    @abstractmethod
-    def cap_lean(self) -> float:
-        """Rotation of the cap at rest [rad]."""
 
     @property
     def supports(self) -> tuple[Support, ...]:
@@ -205,11 +198,6 @@ class CoupledSetting(StackedSetting):
             return found
         return found | static_values(self._moving.reactions(self._rest))
 
-    @property
-    def cap_lean(self) -> float:
-        """Rotation of the cap at rest [rad]."""
-        return self.rest.cap_rotation
-
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the block at rest, with the cap [rad]."""
@@ -231,18 +219,11 @@ class SlidingCoupledSetting(CoupledSetting):
 
     def words(self) -> Words:
         """Tell block, cap and soil, and their friction."""
-        told, names = super().words(), ("pads", "soil")
-        numbers = [
+        return sliding_words(super().words(), *(
             (f"{name}: friction at rest, and of slip", friction.words())
-            for name, friction in zip(names, self.frictions, strict=True)
+            for name, friction in zip(("pads", "soil"), self.frictions, strict=True)
             if friction != HELD
-        ]
-        return replace(
-            told,
-            equations=[*told.equations, SLIPS],
-            numbers=[*told.numbers, *numbers],
-            left_out=[one for one in told.left_out if one != "sliding"],
-        )
+        ))  # fmt: skip
 
     def contact_model(self) -> "ContactModel":
         """Give the equations of two bodies upon one another that slip."""
@@ -256,10 +237,7 @@ class SlidingCoupledSetting(CoupledSetting):
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
         """Tell how far the block slipped on the cap and, where that may, the cap on the soil."""
-        system, count = cast("SlippingBodies", self.compile().system), 2
-        if self.frictions[-1] == HELD:
-            count = 1
-        return tuple(SlipRange(*system.slips(k, ending)) for k in range(count))
+        return chain_slips(self, 1 if self.frictions[-1] == HELD else 2, ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
         """Warn of a block that slipped beyond the edge of its cap."""
@@ -310,12 +288,7 @@ class CascadeSetting(StackedSetting):
     @cached_property
     def rest_rotation(self) -> float:
         """Rotation of the block at rest, of both stages together [rad]."""
-        return self.cap_lean + self.upper.rest_rotation
-
-    @property
-    def cap_lean(self) -> float:
-        """Rotation of the cap at rest [rad]."""
-        return self.lower.rest_rotation
+        return self.lower.rest_rotation + self.upper.rest_rotation
 
 
 def _uplift_row(setting: AloneSetting, on: str, base: BaseWords, whose: str) -> tuple[str, str]:

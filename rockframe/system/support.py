@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from rockframe.components import TwoSpringSupport, WinklerSoil
-from rockframe.components.soil import Separation
+from rockframe.components.bases import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.equilibrium import of_base
@@ -397,6 +397,7 @@ class BedSupport(Support):
 
     def words(self) -> BaseWords:
         """Tell the bed in words."""
+        body = self.load.body
         one_sided = (
             "Eq. (19), corrected: inertia I_O + m (h + b a)^2 and its a'^2 term in (19b), (19e), "
             "(19f), (19h); resultants over the part in contact"
@@ -417,20 +418,20 @@ class BedSupport(Support):
                  f"{_SEPARATION[self.separation]}"),
             ],
             uplift=("uplift angle, arcsin(delta/b)", uplift_words(self.uplift_angle)),
-            numbers=self._numbers(),
+            numbers=[
+                ("mass on the soil",
+                 f"{body.mass:.6g} kg, centre {body.centre_height:.6g} m above it"),
+                ("soil stiffness k0, damping c0",
+                 f"{self.stiffness:.6g} Pa, {self.damping:.6g} Pa s"),
+                ("settlement delta", f"{self.settlement:.6g} m"),
+                *self.vibrations(
+                    "vertical vibration, Eq. (18a)", "rocking in full contact, Eq. (18b)"
+                ),
+            ],
             left_out=["yielding of the soil", "impact on the soil"],
             body="body",
             end="end",
         )  # fmt: skip
-
-    def _numbers(self) -> list[tuple[str, str]]:
-        body = self.load.body
-        return [
-            ("mass on the soil", f"{body.mass:.6g} kg, centre {body.centre_height:.6g} m above it"),
-            ("soil stiffness k0, damping c0", f"{self.stiffness:.6g} Pa, {self.damping:.6g} Pa s"),
-            ("settlement delta", f"{self.settlement:.6g} m"),
-            *self.vibrations("vertical vibration, Eq. (18a)", "rocking in full contact, Eq. (18b)"),
-        ]
 
 
 def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:

@@ -4,7 +4,7 @@ import math
 import re
 from dataclasses import dataclass
 from textwrap import wrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from rockframe.system.parts import Parts
@@ -44,6 +44,16 @@ class Words:
     left_out: list[str]
 
 
+def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | None = None) -> Words:
+    """Tell the same of what slips, with its coefficients of friction by their names."""
+    return Words(
+        equations=[*held.equations, SLIPS],
+        restraint=held.restraint if restraint is None else restraint,
+        numbers=[*held.numbers, *frictions],
+        left_out=[one for one in held.left_out if one != "sliding"],
+    )
+
+
 def angle_words(radians: float) -> str:
     """Write an angle in radians and degrees."""
     return f"{radians:.6g} rad ({math.degrees(radians):.4g} deg)"
@@ -70,40 +80,41 @@ _WIDTH = 100
 def describe(setting: "Setting", parts: "Parts") -> str:
     """Tell the model, its equations, its numbers and its limits."""
     words, body, height = setting.words(), setting.body, setting.body.centre_height
-    lines = [f"Model: {setting.model}"]
-    lines += _section("Parts", [("", repr(part)) for part in parts])
-    lines += _section("Contact states and their equations", words.equations)
-    lines += _section("Horizontal restraint", [("", words.restraint)])
-    lines += _section(
-        "Numbers",
-        [
+    theta = angle_words(setting.overturning_angle)
+    sections = {
+        "Parts": [("", repr(part)) for part in parts],
+        "Contact states and their equations": words.equations,
+        "Horizontal restraint": [("", words.restraint)],
+        "Numbers": [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
-            *_overturning(setting),
+            *(_of_both_sides(setting) if setting.leans else [(_THETA, theta)]),
             # with less, the base slides before an end of it lifts, on the lesser side
             ("friction to rock, at least b/h", f"{min(body.left, body.right) / height:.6g}"),
             *words.numbers,
         ],
-    )
-    lines += _section("Left out", [("", ", ".join(words.left_out))])
-    return "\n".join(lines)
+        "Left out": [("", ", ".join(words.left_out))],
+    }
+    lines = [line for title, rows in sections.items() for line in _section(title, rows)]
+    return "\n".join([f"Model: {setting.model}", *lines])
 
 
-def _overturning(setting: "Setting") -> list[tuple[str, str]]:
-    body, slope, title = setting.body, setting.slope, "overturning angle theta, Eq. (1)"
-    if not setting.leans:
-        return [(title, angle_words(setting.overturning_angle))]
-    left, right = setting.overturning_angles
-    rows = [(title, f"to the left {angle_words(left)}, to the right {angle_words(right)}")]
+_THETA: Final = "overturning angle theta, Eq. (1)"
+
+
+def _of_both_sides(setting: "Setting") -> list[tuple[str, str]]:
+    """Tell how a body that leans stands, and overturns to either side."""
+    body, slope, (left, right) = setting.body, setting.slope, setting.overturning_angles
+    rows = [(_THETA, f"to the left {angle_words(left)}, to the right {angle_words(right)}")]
     if not slope.level:
         higher = "right" if slope.inclination > 0.0 else "left"
+        inclined = (
+            f"{angle_words(abs(slope.inclination))}, higher on the {higher}; all else is along "
+            "and normal to it"
+        )
+        least = f"{abs(math.tan(slope.inclination)):.6g}"
         rows += [
-            (
-                "inclination of the base",
-                f"{angle_words(abs(slope.inclination))}, higher on the {higher}; all else is along "
-                "and normal to it",
-            ),
-            ("friction to stand, at least tan(i)", f"{abs(math.tan(slope.inclination)):.6g}"),
-        ]
+            ("inclination of the base", inclined), ("friction to stand, at least tan(i)", least)
+        ]  # fmt: skip
     if body.eccentricity != 0.0:
         side = "right" if body.eccentricity > 0.0 else "left"
         beside = f"{abs(body.eccentricity):.6g} m to the {side} of its middle"

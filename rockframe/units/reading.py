@@ -9,7 +9,6 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from decimal import Context, Decimal
 from numbers import Real
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
@@ -53,31 +52,18 @@ _NAME: Final = re.compile(r"[^\W\d]\w*")
 _FOREIGN: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
 
 
-@dataclass(frozen=True)
-class WrittenQuantity:
-    """A text that is one number and a unit."""
-
-    number: float  # the number
-    unit: str  # the unit as it is written, empty where there is none
-
-    @property
-    def plain(self) -> str:
-        """The same, in a spelling of which pint drops nothing."""
-        return f"{self.number!r} {self.unit.translate(_SPELLINGS)}"
-
-
 def number_and_unit(text: str) -> tuple[str, str] | None:
     """Part a text behind the number that it begins with."""
     parts = _NUMBER_AND_UNIT.fullmatch(text)
     return None if parts is None else (parts["number"], parts["unit"])
 
 
-def parse_quantity(text: str) -> WrittenQuantity | None:
-    """Read a text as one number and a unit."""
+def _plain_spelling(text: str) -> str | None:
+    """Write a text that is one number and a unit so that pint drops nothing; None of any other."""
     parts = number_and_unit(text)
     if parts is None or not _is_unit(parts[1]):
         return None
-    return WrittenQuantity(float(parts[0]), parts[1])
+    return f"{float(parts[0])!r} {parts[1].translate(_SPELLINGS)}"
 
 
 def foreign_sign(text: str) -> str | None:
@@ -161,11 +147,6 @@ def _weight(given: Any, text: str, measure: Measure) -> str:
     return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if heavy else ""
 
 
-def other_kind(given: Any, text: str, measure: Measure) -> str:
-    """Say how what is needed follows from a related quantity, where that was given."""
-    return _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
-
-
 def _subgrade(given: Any, measure: Measure) -> str:
     """Say what takes the subgrade modulus, where it was given for the stiffness of a bed."""
     if measure.unit != BED_STIFFNESS.unit or not _is_in(given, SUBGRADE_MODULUS.unit):
@@ -191,13 +172,6 @@ def _is_in(given: Any, unit: Unit) -> bool:
         return given.is_compatible_with(str(unit)) and getattr(given.magnitude, "ndim", 0) == 0
     except Exception:  # offset units such as degC cannot be compared
         return False
-
-
-def without_unit(measure: Measure) -> str:
-    """Say which argument takes the bare number that was given for one with a unit."""
-    if measure.unit in _SHARE:
-        return "; a share of critical damping is a damping_ratio"
-    return ""
 
 
 def misread(text: str, measure: Measure) -> str:
@@ -269,11 +243,18 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
         alone = isinstance(items[0], str | pint.Quantity | None) if items else True
         if len(items) == 2 and isinstance(items[1], str) and not alone:
             factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
-            numbers = items[0] if isinstance(items[0], Iterable) else [items[0]]
-            several = _floats_times(numbers, factor)
-            if several is not None:
-                return several
-            return [_times(number, factor, items[1], owner=owner, name=name) for number in numbers]
+            numbers: Any = items[0]
+            single = getattr(numbers, "ndim", 1) == 0 or not isinstance(items[0], Iterable)
+            if single or not hasattr(numbers, "tolist"):
+                numbers = [numbers] if single else list(numbers)
+            floats: list[Any] = numbers if isinstance(numbers, list) else numbers.tolist()
+            if all(type(number) is float for number in floats):
+                products = _products(floats, factor)
+                if all(map(math.isfinite, products)):
+                    return products
+            return [  # of other values, which may be wrong
+                _times(number, factor, items[1], owner=owner, name=name) for number in numbers
+            ]
         return [to_si(item, measure, owner=owner, name=name) for item in items]
     return [to_si(value, measure, owner=owner, name=name)]
 
@@ -292,15 +273,6 @@ def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> f
         )
         raise UnitsError(msg)
     return _check_value(_product(_float(number), factor), number, None, owner=owner, name=name)
-
-
-def _floats_times(numbers: Any, factor: float) -> list[float] | None:
-    """Do so for many floats; None where there are other values, which may be wrong."""
-    found: list[Any] = numbers.tolist() if hasattr(numbers, "tolist") else list(numbers)
-    if not all(type(number) is float for number in found):
-        return None
-    products = _products(found, factor)
-    return products if all(map(math.isfinite, products)) else None
 
 
 def _float(number: Real) -> float:
@@ -397,7 +369,8 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
     example = measure.example_of(name)
     if not isinstance(value, str):
         kind = "a bare number" if isinstance(value, Real) else f"a {type(value).__name__}"
-        why = foreign_quantity(value) or f"{kind} has no unit{without_unit(measure)}"
+        share = "; a share of critical damping is a damping_ratio" if measure.unit in _SHARE else ""
+        why = foreign_quantity(value) or f"{kind} has no unit{share}"
         if isinstance(value, tuple):
             why = "one number and its unit are needed"
         msg = f"{needed}, got {shown(value)} ({why}); {example}"
@@ -407,14 +380,14 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
         if re.search(pattern, value):
             msg = f"{needed}, got {shown(value)} ({words}); {example}"
             raise UnitsError(msg)
-    written = parse_quantity(value)
+    written = _plain_spelling(value)
     if written is None:
         hint = misread(value, measure)
         wanted = "a number" if measure.unit == Unit.ONE else "one number and a unit"
         msg = f"{needed}, got {shown(value)}, which is not {wanted}{hint}; {example}"
         raise UnitsError(msg)
     try:
-        return pint.get_application_registry().Quantity(written.plain)
+        return pint.get_application_registry().Quantity(written)
     except Exception as problem:  # pint's parser raises many unrelated types
         hint = misread(value, measure)
         msg = f"{needed}, got {shown(value)}, whose unit cannot be read{hint}; {example}"
@@ -422,10 +395,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
 
 
 def _gravity(text: str, measure: Measure) -> str:
-    """Read ``g`` as the acceleration of gravity where an acceleration is asked for.
-
-    Elsewhere it is the gram, which is no acceleration.
-    """
+    """Read ``g``, elsewhere the gram, as that of gravity where an acceleration is asked for."""
     parts = number_and_unit(text)
     gravity = measure.unit == Unit.METRE_PER_SECOND_SQUARED and parts and parts[1] in _GRAVITY
     return f"{parts[0]} g_0" if parts and gravity else text
@@ -455,9 +425,12 @@ def _check_kind(given: Quantity, value: object, measure: Measure, *, owner: str,
         return
     unit = f"{given.units:~}" or "no unit"
     unit_needed = "" if measure.unit == Unit.ONE else f" in a unit such as {measure.unit}"
+    text = str(value)
+    # how what is needed follows from a related quantity, where that was given
+    hint = _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
     msg = (
-        f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(str(value))} ({unit})"
-        f"{other_kind(given, str(value), measure) or misread(str(value), measure)}; "
+        f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(text)} ({unit})"
+        f"{hint or misread(text, measure)}; "
         f"{measure.example_of(name)}"
     )
     raise UnitsError(msg)

@@ -13,7 +13,7 @@ from scipy.linalg import expm
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
-from rockframe.system.small_motion import SmallMotion, modes_of
+from rockframe.system.statics import SmallMotion, modes_of
 
 pytestmark = pytest.mark.analytical
 

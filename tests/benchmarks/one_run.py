@@ -30,7 +30,7 @@ ROUNDS = 40
 SHOWN = ("fast", "standard")
 STEP, SAMPLES, FADE = 0.005, 12_000, 1000
 PARTS = {
-    "columns": (answers, "_everything_of"),
+    "columns": (answers, "_observed"),
     "peaks": (answers, "peaks_along"),
     "dataset": (run, "build_dataset"),
 }

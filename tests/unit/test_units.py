@@ -653,5 +653,9 @@ def test_two_values_of_which_one_is_a_quantity_are_no_number_and_its_unit():
     metre = pint.Quantity(1.0, "m")
     assert to_si_values([metre, "20 cm"], LENGTH, owner="here", name="width") == [1.0, 0.2]
     assert to_si_values([[1, 2], "cm"], LENGTH, owner="here", name="width") == [0.01, 0.02]
+    # whole numbers of a generator, which were lost, and an array without dimensions
+    each = to_si_values(((k for k in (1, 2)), "cm"), LENGTH, owner="here", name="width")
+    assert each == [0.01, 0.02]
+    assert to_si_values((np.array(7.0), "cm"), LENGTH, owner="here", name="width") == [0.07]
     with pytest.raises(rf.errors.UnitsError, match="got None"):
         to_si_values([None, "20 cm"], LENGTH, owner="here", name="width")

@@ -2,20 +2,21 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from rockframe.components.alternatives import OneOf
-from rockframe.components.shapes.reading import PlaneMass, Points, read_mass, read_points
 from rockframe.components.shapes.standing import (
     ROUNDING,
     Made,
     OutlineCorner,
-    ShapedBody,
+    PlaneMass,
+    Points,
     Stance,
+    read_mass,
+    read_points,
     shaped_body,
 )
 from rockframe.errors import ComponentError
@@ -26,46 +27,24 @@ from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure,
 _THIN: Final = 1e-12  # of the size: what is thinner has no area
 
 
-@dataclass(frozen=True)
-class Region:
-    """Area inside a polygon, its centroid, and how far it is spread about that."""
+def polygon(points: Array) -> tuple[float, float, float, float]:
+    """Give area, centroid and mean square distance from it, :eq:`eq-polygon-area` and after.
 
-    area: float
-    x: float
-    y: float
-    mean_square: float
-    """Mean square distance from the centroid, the polar second moment over the area [m^2]."""
-
-
-def region(points: Array) -> Region:
-    """Integrate over a simple polygon, :eq:`eq-polygon-area` to :eq:`eq-polygon-inertia`.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        Corners in their order, either way round; the first is not repeated [m].
-
-    Returns
-    -------
-    Region
-
-    Notes
-    -----
-    Exact sums by Green's theorem (Steger 1996), about the middle of the polygon and in parts of
-    its size, so that a far origin costs no digits.
+    The points are corners in their order, either way round. Sums by Green's theorem (Steger 1996)
+    are exact, about the middle of the polygon and in parts of its size, so that a far origin costs
+    no digits.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     middle, size = 0.5 * (low + high), extent_of(points)
     x, y = ((points - middle) / size).T
-    area, across, up = _first_moments(x, y)
+    twice = _twice(x, y)
+    area = 0.5 * math.fsum(twice)  # negative if clockwise
+    across = math.fsum((x + np.roll(x, -1)) * twice) / (6.0 * area)
+    up = math.fsum((y + np.roll(y, -1)) * twice) / (6.0 * area)
     x, y = x - across, y - up
     polar = math.fsum(_twice(x, y) * (_squares(x) + _squares(y))) / 12.0
-    return Region(
-        area=abs(area) * size * size,
-        x=float(middle[0] + size * across),
-        y=float(middle[1] + size * up),
-        mean_square=polar / area * size * size,
-    )
+    centroid = float(middle[0] + size * across), float(middle[1] + size * up)
+    return abs(area) * size * size, *centroid, polar / area * size * size
 
 
 def extent_of(points: Array) -> float:
@@ -116,15 +95,6 @@ def crossing(points: Array) -> tuple[int, int] | None:
     return None
 
 
-def _first_moments(x: Array, y: Array) -> tuple[float, float, float]:
-    """Give the area, negative if clockwise, and the centroid."""
-    twice = _twice(x, y)
-    area = 0.5 * math.fsum(twice)
-    across = math.fsum((x + np.roll(x, -1)) * twice) / (6.0 * area)
-    up = math.fsum((y + np.roll(y, -1)) * twice) / (6.0 * area)
-    return area, across, up
-
-
 def _squares(x: Array) -> Array:
     """Give six times the mean square over the triangle of the origin and each edge."""
     # in an order that is the same either way round
@@ -143,19 +113,6 @@ def _side(start: Array, end: Array, point: Array) -> npt.NDArray[Any]:
     return np.sign(along[..., 0] * aside[..., 1] - along[..., 1] * aside[..., 0])
 
 
-def outline_body(points: object, given: Mapping[str, object], owner: str) -> ShapedBody:
-    """Find how a body of a given outline stands."""
-    whole, corners = outline_mass(points, given, owner, "points")
-    ground = min(corner.y for corner in corners)
-    slack = ROUNDING * _size(corners)
-    lowest = [corner.x for corner in corners if corner.y <= ground + slack]
-    if max(lowest) - min(lowest) <= slack:
-        _refuse_single(corners, owner)
-    top = max(corner.y for corner in corners)
-    stance = Stance(min(lowest), max(lowest), ground)
-    return shaped_body(whole, stance, top, corners, owner)
-
-
 def outline_mass(
     points: object, given: Mapping[str, object], owner: str, name: str
 ) -> tuple[PlaneMass, list[OutlineCorner]]:
@@ -165,9 +122,9 @@ def outline_mass(
     kept = [k for k in range(len(read)) if (read[k] != read[k - 1]).any()]
     corners = [OutlineCorner(f"{name}[{k}]", float(read[k, 0]), float(read[k, 1])) for k in kept]
     _check_simple(read[kept], corners, owner)
-    inside = region(read[kept])
-    mass = read_mass(given, inside.area, owner=owner)
-    return PlaneMass(mass, inside.x, inside.y, mass * inside.mean_square), corners
+    area, x, y, mean_square = polygon(read[kept])
+    mass = read_mass(given, area, owner=owner)
+    return PlaneMass(mass, x, y, mass * mean_square), corners
 
 
 def _check_simple(points: Array, corners: Sequence[OutlineCorner], owner: str) -> None:
@@ -215,40 +172,6 @@ def _refuse_single(corners: Sequence[OutlineCorner], owner: str) -> None:
 
 def _at(corner: OutlineCorner) -> str:
     return f"{corner.words} ({corner.x:.6g} m, {corner.y:.6g} m)"
-
-
-def _size(corners: Sequence[OutlineCorner]) -> float:
-    return extent_of(np.array([(corner.x, corner.y) for corner in corners]))
-
-
-_MASS_WAYS: Final = OneOf("mass", "density")
-
-
-def cylinder_body(given: Mapping[str, object], owner: str) -> ShapedBody:
-    """Find mass and inertia of a cylinder, :eq:`eq-cylinder-inertia`."""
-
-    def positive(name: str, measure: Measure) -> float:
-        return to_si(given[name], measure, owner=owner, name=name, condition=POSITIVE)
-
-    outer, height, inner = 0.5 * positive("diameter", LENGTH), positive("height", LENGTH), 0.0
-    if given["wall_thickness"] is not None:
-        thickness = positive("wall_thickness", THICKNESS)
-        if thickness >= outer:
-            msg = (
-                f"{owner}: wall_thickness must be less than half the diameter, {outer:.6g} m, got "
-                f"{thickness:.6g} m; a solid cylinder is given without it"
-            )
-            raise ComponentError(msg)
-        inner = outer - thickness
-    _MASS_WAYS.check(given, owner)
-    if given["mass"] is not None:
-        mass = positive("mass", MASS)
-    else:
-        area = math.pi * (outer - inner) * (outer + inner)
-        mass = positive("density", DENSITY) * (area * height)
-    inertia = mass * (3.0 * (outer * outer + inner * inner) + height * height) / 12.0
-    whole = PlaneMass(mass, 0.0, 0.5 * height, inertia)
-    return shaped_body(whole, Stance(-outer, outer, 0.0), height, (), owner)
 
 
 @hinted()
@@ -313,9 +236,19 @@ def from_outline(
     >>> round(wall.mass.m_as("kg"), 6), round(wall.eccentricity.m_as("m"), 4)
     (1920.0, -0.0833)
     """
-    given = {"mass": mass, "density": density, "depth": depth}
-    places = points if unit is None else (points, unit)
-    return outline_body(places, given, f"{cls.__name__}.from_outline").build(cls)
+    owner, given = (
+        f"{cls.__name__}.from_outline",
+        {"mass": mass, "density": density, "depth": depth},
+    )
+    whole, corners = outline_mass(
+        points if unit is None else (points, unit), given, owner, "points"
+    )
+    ground, top = (of(corner.y for corner in corners) for of in (min, max))
+    slack = ROUNDING * extent_of(np.array([(corner.x, corner.y) for corner in corners]))
+    lowest = [corner.x for corner in corners if corner.y <= ground + slack]
+    if max(lowest) - min(lowest) <= slack:
+        _refuse_single(corners, owner)
+    return shaped_body(cls, whole, Stance(min(lowest), max(lowest), ground), top, corners, owner)
 
 
 @hinted()
@@ -366,11 +299,28 @@ def cylinder(
     >>> round(drum.mass.m_as("t"), 3), round(drum.shape_factor, 3)
     (6.362, 3.077)
     """
-    given = {
-        "diameter": diameter,
-        "height": height,
-        "mass": mass,
-        "density": density,
-        "wall_thickness": wall_thickness,
-    }
-    return cylinder_body(given, f"{cls.__name__}.cylinder").build(cls)
+    owner = f"{cls.__name__}.cylinder"
+
+    def positive(given: object, name: str, measure: Measure) -> float:
+        return to_si(given, measure, owner=owner, name=name, condition=POSITIVE)
+
+    outer, inner = 0.5 * positive(diameter, "diameter", LENGTH), 0.0
+    top = positive(height, "height", LENGTH)
+    if wall_thickness is not None:
+        thickness = positive(wall_thickness, "wall_thickness", THICKNESS)
+        if thickness >= outer:
+            msg = (
+                f"{owner}: wall_thickness must be less than half the diameter, {outer:.6g} m, got "
+                f"{thickness:.6g} m; a solid cylinder is given without it"
+            )
+            raise ComponentError(msg)
+        inner = outer - thickness
+    OneOf("mass", "density").check({"mass": mass, "density": density}, owner)
+    if mass is not None:
+        of_all = positive(mass, "mass", MASS)
+    else:
+        area = math.pi * (outer - inner) * (outer + inner)
+        of_all = positive(density, "density", DENSITY) * (area * top)
+    inertia = of_all * (3.0 * (outer * outer + inner * inner) + top * top) / 12.0
+    whole = PlaneMass(of_all, 0.0, 0.5 * top, inertia)
+    return shaped_body(cls, whole, Stance(-outer, outer, 0.0), top, (), owner)

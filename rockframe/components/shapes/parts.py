@@ -5,20 +5,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypedDict, cast
 
 from rockframe.components.shapes.outline import outline_mass
-from rockframe.components.shapes.reading import (
-    Place,
-    PlaneMass,
-    Points,
-    combined_mass,
-    read_mass,
-    read_place,
-)
 from rockframe.components.shapes.standing import (
     ROUNDING,
     Made,
     OutlineCorner,
-    ShapedBody,
+    Place,
+    PlaneMass,
+    Points,
     Stance,
+    combined_mass,
+    read_mass,
+    read_place,
     shaped_body,
 )
 from rockframe.errors import ComponentError, shown
@@ -163,8 +160,8 @@ def _positive(values: Mapping[str, Any], name: str, measure: Measure, *, owner: 
     return to_si(values[name], measure, owner=owner, name=name, condition=POSITIVE)
 
 
-def body_of_parts(given: object, base: object, owner: str) -> ShapedBody:
-    """Find how parts stand that are fixed to one another."""
+def _standing(kind: type[Made], given: object, base: object, owner: str) -> Made:
+    """Make a body of parts that stand and are fixed to one another."""
     parts = _read(given, owner)
     corners = [corner for part in parts for corner in part.corners]
     top = max(part.top for part in parts)
@@ -186,7 +183,7 @@ def body_of_parts(given: object, base: object, owner: str) -> ShapedBody:
     if not whole.inertia > 0.0:
         msg = f"{owner}: all mass is in one point, so that the body has no inertia"
         raise ComponentError(msg)
-    return shaped_body(whole, stance, top, corners, owner)
+    return shaped_body(kind, whole, stance, top, corners, owner)
 
 
 def _read(given: object, owner: str) -> list[PlacedPart]:
@@ -318,4 +315,4 @@ def from_parts(cls: type[Made], parts: Mapping[str, Part], *, base: Place | None
     >>> print(f"{bookcase.centre_height:.4f}, {bookcase.eccentricity:.4f}")
     1.2679 meter, 0.0321 meter
     """
-    return body_of_parts(parts, base, f"{cls.__name__}.from_parts").build(cls)
+    return _standing(cls, parts, base, f"{cls.__name__}.from_parts")

@@ -1,14 +1,135 @@
-"""How a body stands on level ground: the ends of its base, and what else would touch."""
+"""Masses and points of shapes as users give them, and how a body stands on level ground."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, TypeVar
+from typing import Any, Final, TypeAlias, TypeVar
 
+import numpy as np
+import pint
+
+from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component
-from rockframe.components.shapes.reading import PlaneMass
-from rockframe.errors import ComponentError, ModelWarning, collected_warnings, warn
-from rockframe.units import INERTIA, LENGTH, MASS
+from rockframe.errors import (
+    ComponentError,
+    ModelWarning,
+    UnitsError,
+    collected_warnings,
+    shown,
+    warn,
+)
+from rockframe.signals.arrays import Array
+from rockframe.units import DENSITY, INERTIA, LENGTH, MASS, POSITIVE, Quantity, QuantityLike, to_si
+
+
+@dataclass(frozen=True)
+class PlaneMass:
+    """A mass in SI units."""
+
+    mass: float
+    x: float  # of its centre, to the right
+    y: float
+    inertia: float  # about its own centre
+
+
+Mass = TypeVar("Mass", bound=PlaneMass)
+
+
+def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> float:
+    """Give the mean of a value, weighted by mass."""
+    # every share is at most 1: masses of any magnitude stay representable
+    total = sum(one.mass for one in masses)
+    return math.fsum(value(one) * (one.mass / total) for one in masses)
+
+
+def centre_of_mass(masses: Sequence[PlaneMass]) -> tuple[float, float]:
+    """Give the coordinates of the common centre of masses, :eq:`eq-parts-centre` [m]."""
+    return mean_by_mass(masses, lambda one: one.x), mean_by_mass(masses, lambda one: one.y)
+
+
+def combined_mass(masses: Sequence[PlaneMass]) -> PlaneMass:
+    """Make one mass of many, by the parallel-axis theorem, :eq:`eq-parts-inertia`."""
+    x, y = centre_of_mass(masses)
+    total = sum(one.mass for one in masses)
+    squares = mean_by_mass(
+        masses, lambda one: one.inertia / one.mass + math.hypot(one.x - x, one.y - y) ** 2
+    )
+    return PlaneMass(total, x, y, total * squares)
+
+
+Place: TypeAlias = tuple[QuantityLike, QuantityLike]
+Points: TypeAlias = Iterable[Place] | Iterable[tuple[float, float]] | Quantity | tuple[Any, str]
+
+MASS_WAYS: Final = OneOf("mass", ("density", "depth"))
+
+
+def read_points(given: object, *, owner: str, name: str) -> Array:
+    """Read points, pairs of lengths or an array with a unit: shape (n, 2) [m]."""
+    wanted = (
+        f"{owner}: {name} needs pairs of lengths, such as [('0 m', '0 m'), ('1 m', '0 m'), ...], "
+        "or an array of shape (n, 2) with a unit"
+    )
+    if isinstance(given, pint.Quantity):
+        whole: Any = given
+        factor = to_si(type(whole)(1.0, whole.units), LENGTH, owner=owner, name=name)
+        return _array(whole.magnitude, factor, wanted)
+    if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
+        msg = f"{wanted}; got {shown(given)}"
+        raise ComponentError(msg)
+    each: list[Any] = list(given)
+    if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
+        return _array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), wanted)
+    if isinstance(given, np.ndarray):
+        msg = f"{wanted}; got {shown(given)}, bare numbers"
+        raise UnitsError(msg)
+    pairs = [read_place(one, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(each)]
+    return np.array(pairs, dtype=np.float64).reshape(-1, 2)
+
+
+def read_place(given: object, *, owner: str, name: str) -> tuple[float, float]:
+    """Read a pair of lengths, or a Quantity of shape (2,) [m]."""
+    iterable = isinstance(given, Iterable) and not isinstance(given, str | Mapping)
+    if isinstance(given, pint.Quantity):
+        iterable = getattr(given.magnitude, "ndim", 0) == 1
+    pair: list[Any] = list(given) if iterable else []  # type: ignore[call-overload]
+    if len(pair) != 2:
+        msg = f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got {shown(given)}"
+        raise ComponentError(msg)
+    x, y = (to_si(one, LENGTH, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(pair))
+    return x, y
+
+
+def read_mass(given: Mapping[str, object], area: float, *, owner: str) -> float:
+    """Read a mass, or what it follows from: density, depth and the area that is seen [kg]."""
+    MASS_WAYS.check(given, owner)
+
+    def positive(name: str, measure: Any) -> float:
+        return to_si(given[name], measure, owner=owner, name=name, condition=POSITIVE)
+
+    if given.get("mass") is not None:
+        return positive("mass", MASS)
+    mass = positive("density", DENSITY) * (positive("depth", LENGTH) * area)
+    if 0.0 < mass < math.inf:
+        return mass
+    msg = f"{owner}: density, depth and area give a mass of {mass:.4g} kg"
+    raise ComponentError(msg)
+
+
+def _array(values: object, factor: float, wanted: str) -> Array:
+    try:
+        array = np.asarray(values)
+    except (ValueError, TypeError):  # rows of different lengths, or what is no array
+        array = np.array([None])
+    if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
+        found = f"shape {array.shape}" if array.dtype.kind in "fiu" else shown(values)
+        msg = f"{wanted}; got {found}"
+        raise ComponentError(msg)
+    points = np.asarray(array, dtype=np.float64) * factor
+    if not np.isfinite(points).all():
+        msg = f"{wanted}; got a number that is not finite"
+        raise ComponentError(msg)
+    return points
+
 
 ROUNDING: Final = 1e-9
 """Relative to a body's size: heights that differ by less are one."""
@@ -58,29 +179,15 @@ class Stance:
         return math.atan2(side * (end - whole.x), whole.y - self.ground)
 
 
-@dataclass(frozen=True)
-class ShapedBody:
-    """A body that stands: the arguments of a block, and what a user should know."""
-
-    owner: str
-    arguments: dict[str, str]
-    cautions: tuple[str, ...] = ()
-
-    def build(self, kind: Callable[..., Made]) -> Made:
-        """Make the block, and warn."""
-        with (
-            collected_warnings()
-        ):  # a shape may reach out beside its base, beyond the bound of its inertia
-            made = kind(**self.arguments)
-        for caution in self.cautions:
-            warn(f"{self.owner}: {caution}", ModelWarning)
-        return made
-
-
 def shaped_body(
-    whole: PlaneMass, stance: Stance, top: float, corners: Iterable[OutlineCorner], owner: str
-) -> ShapedBody:
-    """Put mass and base together; refuse a centre of mass that is not above the base.
+    kind: Callable[..., Made],
+    whole: PlaneMass,
+    stance: Stance,
+    top: float,
+    corners: Sequence[OutlineCorner],
+    owner: str,
+) -> Made:
+    """Make a block of its mass and base; refuse a centre of mass that is not above the base.
 
     `top` is the height of the highest point [m]; `corners` may touch the ground beside the base.
     """
@@ -100,10 +207,14 @@ def shaped_body(
     }
     if abs(beside) > CENTRED * width:
         arguments["eccentricity"] = _written(beside, LENGTH)
-    return ShapedBody(owner, arguments, tuple(_touching(whole, stance, list(corners))))
+    with collected_warnings():  # it may reach out beside its base, beyond the bound of its inertia
+        made = kind(**arguments)
+    for caution in _touching(whole, stance, corners):
+        warn(f"{owner}: {caution}", ModelWarning)
+    return made
 
 
-def _touching(whole: PlaneMass, stance: Stance, corners: list[OutlineCorner]) -> Iterable[str]:
+def _touching(whole: PlaneMass, stance: Stance, corners: Sequence[OutlineCorner]) -> Iterator[str]:
     for side, word in ((1.0, "right"), (-1.0, "left")):
         limit = stance.overturning_angle(whole, side)
         corner = min(corners, key=lambda one: stance.touching_angle(one, side), default=None)

@@ -3,50 +3,33 @@
 from typing import Final
 
 from rockframe.dynamics.events import ContactState, LinkState
-from rockframe.results.variables.variable import EVENT, Variable, count, counting, flag
-from rockframe.units import Unit
+from rockframe.results.variables.variable import EVENT, rows_over
 
 BODY: Final = ("body",)
 BODY_TIME: Final = ("body", "time")
 
 BODIES: Final = (
-    counting("body", "number of a body of a stack, from the top down"),
-    Variable("body_rotation", BODY_TIME, Unit.RADIAN, "rotation of each body, clockwise"),
-    Variable("body_angular_velocity", BODY_TIME, Unit.RADIAN_PER_SECOND, "its rate, of each body"),
-    Variable(
-        "body_horizontal_displacement",
+    *rows_over(BODY, body=("number of a body of a stack, from the top down", int)),
+    *rows_over(
         BODY_TIME,
-        Unit.METRE,
-        "horizontal displacement of each centre of mass from rest, relative to the ground",
+        body_rotation="rotation of each body, clockwise [rad]",
+        body_angular_velocity="its rate, of each body [rad s^-1]",
+        body_horizontal_displacement="horizontal displacement of each centre of mass from rest, "
+        "relative to the ground [m]",
+        body_vertical_displacement="vertical displacement of each centre of mass from rest, "
+        "relative to the ground [m]",
+        body_rotation_on_base="rotation of each body on the one below [rad]",
+        body_horizontal_reaction="force of what each body stands on, along that, to the right [N]",
+        body_vertical_reaction="force of what each body stands on, normal to that, upwards [N]",
+        body_slip="slip of each body on what it stands on [m]",
+        body_contact_state=("part of the base of each body that bears", ContactState),
     ),
-    Variable(
-        "body_vertical_displacement",
-        BODY_TIME,
-        Unit.METRE,
-        "vertical displacement of each centre of mass from rest, relative to the ground",
+    *rows_over(
+        BODY,
+        peak_body_rotation="greatest rotation of each body [rad]",
+        peak_body_slip="largest absolute slip of each body [m]",
     ),
-    Variable(
-        "body_rotation_on_base", BODY_TIME, Unit.RADIAN, "rotation of each body on the one below"
-    ),
-    Variable(
-        "body_horizontal_reaction",
-        BODY_TIME,
-        Unit.NEWTON,
-        "force of what each body stands on, along that, to the right",
-    ),
-    Variable(
-        "body_vertical_reaction",
-        BODY_TIME,
-        Unit.NEWTON,
-        "force of what each body stands on, normal to that, upwards",
-    ),
-    Variable("body_slip", BODY_TIME, Unit.METRE, "slip of each body on what it stands on"),
-    flag("body_contact_state", BODY_TIME, "part of the base of each body that bears", ContactState),
-    Variable("peak_body_rotation", BODY, Unit.RADIAN, "greatest rotation of each body"),
-    Variable("peak_body_slip", BODY, Unit.METRE, "largest absolute slip of each body"),
-    Variable(
-        "event_body", EVENT, Unit.ONE, "number of the body whose contact changed", dtype="int64"
-    ),
+    *rows_over(EVENT, event_body=("number of the body whose contact changed", int)),
 )
 """What a run of a stack has beside that of its highest body."""
 
@@ -66,46 +49,34 @@ RESTRAINER: Final = ("restrainer",)
 RESTRAINER_TIME: Final = ("restrainer", "time")
 
 RESTRAINERS: Final = (
-    Variable("restrainer", RESTRAINER, None, "name of the restrainer", dtype="str"),
-    Variable(
-        "restrainer_force",
+    *rows_over(RESTRAINER, restrainer=("name of the restrainer", str)),
+    *rows_over(
         RESTRAINER_TIME,
-        Unit.NEWTON,
-        "force with which each restrainer pulls its points together",
+        restrainer_force="force with which each restrainer pulls its points together [N]",
+        restrainer_elongation="elongation of each restrainer from where it was given [m]",
+        restrainer_state=("state of each restrainer", LinkState),
     ),
-    Variable(
-        "restrainer_elongation",
-        RESTRAINER_TIME,
-        Unit.METRE,
-        "elongation of each restrainer from where it was given",
-    ),
-    flag("restrainer_state", RESTRAINER_TIME, "state of each restrainer", LinkState),
-    Variable(
-        "peak_restrainer_force",
+    *rows_over(
         RESTRAINER,
-        Unit.NEWTON,
-        "largest absolute force of each restrainer up to overturning",
+        peak_restrainer_force="largest absolute force of each restrainer up to overturning [N]",
     ),
-    Variable(
-        "event_restrainer",
+    *rows_over(
         EVENT,
-        Unit.ONE,
-        "number of the restrainer that changed, 0 at events of bodies",
-        dtype="int64",
+        event_restrainer=("number of the restrainer that changed, 0 at events of bodies", int),
     ),
-    Variable(
-        "static_restrainer_force", RESTRAINER, Unit.NEWTON, "force of each restrainer at rest"
-    ),
-    Variable(
-        "static_restrainer_elongation",
+    *rows_over(
         RESTRAINER,
-        Unit.METRE,
-        "elongation of each restrainer at rest from where it was given",
+        static_restrainer_force="force of each restrainer at rest [N]",
+        static_restrainer_elongation="elongation of each restrainer at rest from where it was "
+        "given [m]",
     ),
 )
 """What a scene with restrainers has beside others."""
 
-RESTRAINER_SCALARS: Final = (count("broken_restrainer_count", "number of restrainers that broke"),)
+RESTRAINER_SCALARS: Final = rows_over(
+    (),
+    broken_restrainer_count=("number of restrainers that broke", int),
+)
 
 OF_EACH_LINK: Final = ("restrainer_force", "restrainer_elongation", "restrainer_state")
 """Histories of all restrainers, and the columns of each that they are made of."""

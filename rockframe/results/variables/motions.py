@@ -1,197 +1,148 @@
-"""Variables of ground motions: histories, intensity measures, spectra; of two at right angles."""
+"""Variables of ground motions: histories, measures, spectra; of pairs, and of sets of records."""
 
 from typing import Final
 
-from rockframe.results.variables.variable import FREQUENCY, OSCILLATOR, TIME, Variable, number
-from rockframe.units import Unit
+from rockframe.results.variables.variable import FREQUENCY, OSCILLATOR, PERIOD, TIME, rows_over
 
 MEASURES: Final = (
-    Variable("ground_velocity", TIME, Unit.METRE_PER_SECOND, "horizontal ground velocity"),
-    Variable("ground_displacement", TIME, Unit.METRE, "horizontal ground displacement"),
-    Variable(
-        "vertical_ground_velocity",
+    *rows_over(
         TIME,
-        Unit.METRE_PER_SECOND,
-        "vertical ground velocity, upwards",
+        ground_velocity="horizontal ground velocity [m s^-1]",
+        ground_displacement="horizontal ground displacement [m]",
+        vertical_ground_velocity="vertical ground velocity, upwards [m s^-1]",
+        vertical_ground_displacement="vertical ground displacement, upwards [m]",
     ),
-    Variable(
-        "vertical_ground_displacement", TIME, Unit.METRE, "vertical ground displacement, upwards"
-    ),
-    Variable(
-        "peak_ground_acceleration",
+    *rows_over(
         (),
-        Unit.METRE_PER_SECOND_SQUARED,
-        "greatest absolute ground acceleration",
+        peak_ground_acceleration="greatest absolute ground acceleration [m s^-2]",
+        peak_ground_velocity="greatest absolute ground velocity [m s^-1]",
+        peak_ground_displacement="greatest absolute ground displacement [m]",
+        arias_intensity="Arias intensity [m s^-1]",
+        cumulative_absolute_velocity="cumulative absolute velocity [m s^-1]",
+        standardized_cumulative_absolute_velocity="cumulative absolute velocity of the seconds "
+        "that reach 0.025 g [m s^-1]",
+        significant_duration_5_75="time from 5 to 75 % of the Arias intensity [s]",
+        significant_duration_5_95="time from 5 to 95 % of the Arias intensity [s]",
+        bracketed_duration="time from the first to the last exceedance of the threshold [s]",
+        housner_spectrum_intensity="pseudo-velocity spectrum integrated from 0.1 s to 2.5 s [m]",
+        mean_period="mean period of the Fourier spectrum [s]",
+        predominant_velocity_period="period at the peak of the pseudo-velocity spectrum [s]",
+        uplift_acceleration="ground acceleration at which the block on rigid ground lifts off "
+        "[m s^-2]",
+        uplift_duration="time during which the ground acceleration exceeds that of uplift [s]",
+        relative_peak_ground_acceleration="peak ground acceleration over that of uplift",
+        relative_peak_ground_velocity="peak ground velocity times the block's frequency over the "
+        "acceleration of uplift",
+        relative_predominant_frequency="angular frequency of the peak of the pseudo-velocity "
+        "spectrum over the block's",
+        relative_pulse_frequency="angular frequency of the pulse over the block's",
     ),
-    Variable(
-        "peak_ground_velocity", (), Unit.METRE_PER_SECOND, "greatest absolute ground velocity"
-    ),
-    Variable("peak_ground_displacement", (), Unit.METRE, "greatest absolute ground displacement"),
-    Variable("arias_intensity", (), Unit.METRE_PER_SECOND, "Arias intensity"),
-    Variable(
-        "cumulative_absolute_velocity", (), Unit.METRE_PER_SECOND, "cumulative absolute velocity"
-    ),
-    Variable(
-        "standardized_cumulative_absolute_velocity",
-        (),
-        Unit.METRE_PER_SECOND,
-        "cumulative absolute velocity of the seconds that reach 0.025 g",
-    ),
-    Variable(
-        "significant_duration_5_75",
-        (),
-        Unit.SECOND,
-        "time from 5 to 75 % of the Arias intensity",
-    ),
-    Variable(
-        "significant_duration_5_95",
-        (),
-        Unit.SECOND,
-        "time from 5 to 95 % of the Arias intensity",
-    ),
-    Variable(
-        "bracketed_duration",
-        (),
-        Unit.SECOND,
-        "time from the first to the last exceedance of the threshold",
-    ),
-    Variable(
-        "housner_spectrum_intensity",
-        (),
-        Unit.METRE,
-        "pseudo-velocity spectrum integrated from 0.1 s to 2.5 s",
-    ),
-    Variable("mean_period", (), Unit.SECOND, "mean period of the Fourier spectrum"),
-    Variable(
-        "predominant_velocity_period",
-        (),
-        Unit.SECOND,
-        "period at the peak of the pseudo-velocity spectrum",
-    ),
-    Variable(
-        "uplift_acceleration",
-        (),
-        Unit.METRE_PER_SECOND_SQUARED,
-        "ground acceleration at which the block on rigid ground lifts off",
-    ),
-    Variable(
-        "uplift_duration",
-        (),
-        Unit.SECOND,
-        "time during which the ground acceleration exceeds that of uplift",
-    ),
-    number("relative_peak_ground_acceleration", "peak ground acceleration over that of uplift"),
-    number(
-        "relative_peak_ground_velocity",
-        "peak ground velocity times the block's frequency over the acceleration of uplift",
-    ),
-    number(
-        "relative_predominant_frequency",
-        "angular frequency of the peak of the pseudo-velocity spectrum over the block's",
-    ),
-    number("relative_pulse_frequency", "angular frequency of the pulse over the block's"),
-    Variable(
-        "spectral_displacement", OSCILLATOR, Unit.METRE, "greatest absolute relative displacement"
-    ),
-    Variable(
-        "spectral_velocity",
+    *rows_over(
         OSCILLATOR,
-        Unit.METRE_PER_SECOND,
-        "greatest absolute relative velocity",
+        spectral_displacement="greatest absolute relative displacement [m]",
+        spectral_velocity="greatest absolute relative velocity [m s^-1]",
+        absolute_spectral_acceleration="greatest absolute acceleration of the oscillator, the "
+        "ground's included [m s^-2]",
+        pseudo_spectral_velocity="pseudo-spectral velocity [m s^-1]",
+        pseudo_spectral_acceleration="pseudo-spectral acceleration [m s^-2]",
     ),
-    Variable(
-        "absolute_spectral_acceleration",
-        OSCILLATOR,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "greatest absolute acceleration of the oscillator, the ground's included",
-    ),
-    Variable(
-        "pseudo_spectral_velocity", OSCILLATOR, Unit.METRE_PER_SECOND, "pseudo-spectral velocity"
-    ),
-    Variable(
-        "pseudo_spectral_acceleration",
-        OSCILLATOR,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "pseudo-spectral acceleration",
-    ),
-    Variable(
-        "fourier_amplitude",
+    *rows_over(
         FREQUENCY,
-        Unit.METRE_PER_SECOND,
-        "absolute value of the Fourier transform of the acceleration",
-    ),
-    Variable(
-        "fourier_phase",
-        FREQUENCY,
-        Unit.RADIAN,
-        "phase of the Fourier transform of the acceleration",
+        fourier_amplitude="absolute value of the Fourier transform of the acceleration [m s^-1]",
+        fourier_phase="phase of the Fourier transform of the acceleration [rad]",
     ),
 )
 """Of a motion, and of a motion for a block."""
 
 
 DIRECTIONS: Final = (
-    Variable(
-        "median_rotated_acceleration",
+    *rows_over(
         OSCILLATOR,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "median over all directions of the pseudo-spectral acceleration (RotD50)",
+        median_rotated_acceleration="median over all directions of the pseudo-spectral "
+        "acceleration (RotD50) [m s^-2]",
+        greatest_rotated_acceleration="greatest over all directions of the pseudo-spectral "
+        "acceleration (RotD100) [m s^-2]",
+        geometric_mean_acceleration="geometric mean of the pseudo-spectral accelerations of the "
+        "components [m s^-2]",
+        direction_of_greatest="direction of the greatest pseudo-spectral acceleration, from the "
+        "first component on [rad]",
+        vertical_spectral_acceleration="pseudo-spectral acceleration of the vertical component "
+        "[m s^-2]",
+        vertical_to_horizontal_ratio="vertical over median horizontal pseudo-spectral acceleration",
     ),
-    Variable(
-        "greatest_rotated_acceleration",
-        OSCILLATOR,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "greatest over all directions of the pseudo-spectral acceleration (RotD100)",
-    ),
-    Variable(
-        "geometric_mean_acceleration",
-        OSCILLATOR,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "geometric mean of the pseudo-spectral accelerations of the components",
-    ),
-    Variable(
-        "direction_of_greatest",
-        OSCILLATOR,
-        Unit.RADIAN,
-        "direction of the greatest pseudo-spectral acceleration, from the first component on",
-    ),
-    Variable(
-        "vertical_spectral_acceleration",
-        OSCILLATOR,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "pseudo-spectral acceleration of the vertical component",
-    ),
-    number(
-        "vertical_to_horizontal_ratio",
-        "vertical over median horizontal pseudo-spectral acceleration",
-        OSCILLATOR,
-    ),
-    Variable(
-        "major_axis_angle", (), Unit.RADIAN, "direction of the major axis, from the first component"
-    ),
-    Variable(
-        "major_arias_intensity", (), Unit.METRE_PER_SECOND, "Arias intensity along the major axis"
-    ),
-    Variable(
-        "minor_arias_intensity", (), Unit.METRE_PER_SECOND, "Arias intensity along the minor axis"
-    ),
-    Variable(
-        "average_spectral_acceleration",
+    *rows_over(
         (),
-        Unit.METRE_PER_SECOND_SQUARED,
-        "geometric mean over periods of the pseudo-spectral acceleration",
-    ),
-    Variable(
-        "average_geometric_mean_acceleration",
-        (),
-        Unit.METRE_PER_SECOND_SQUARED,
-        "geometric mean over periods of the geometric mean of both components",
-    ),
-    Variable(
-        "average_median_rotated_acceleration",
-        (),
-        Unit.METRE_PER_SECOND_SQUARED,
-        "geometric mean over periods of the median over all directions",
+        major_axis_angle="direction of the major axis, from the first component [rad]",
+        major_arias_intensity="Arias intensity along the major axis [m s^-1]",
+        minor_arias_intensity="Arias intensity along the minor axis [m s^-1]",
+        average_spectral_acceleration="geometric mean over periods of the pseudo-spectral "
+        "acceleration [m s^-2]",
+        average_geometric_mean_acceleration="geometric mean over periods of the geometric mean of "
+        "both components [m s^-2]",
+        average_median_rotated_acceleration="geometric mean over periods of the median over all "
+        "directions [m s^-2]",
     ),
 )
 """Of two horizontal components."""
+
+RECORDS: Final = rows_over(
+    (),
+    record=("components of one name were recorded together", str),
+    axis=("place in the record: H1, H2 or V", str),
+    record_sequence_number="number of the record in the NGA databases",
+    event=("earthquake", str),
+    year="year of the earthquake",
+    magnitude="magnitude of the earthquake",
+    mechanism=("mechanism of the rupture", str),
+    station=("station", str),
+    component=("component by the name in its file", str),
+    azimuth="direction of the component, clockwise from north [rad]",
+    rupture_distance="closest distance to the rupture [m]",
+    joyner_boore_distance="closest distance to the rupture seen from above [m]",
+    shear_wave_velocity_30="shear-wave velocity of the uppermost 30 m, averaged over the time of "
+    "travel [m s^-1]",
+    lowest_usable_frequency="frequency below which the record is not usable [Hz]",
+    stated_pulse_period="period of the pulse as its source states [s]",
+    time_step="time between samples [s]",
+    duration="time from the first to the last sample [s]",
+    sample_count=("number of samples", int),
+    scale_factor="factor by which the motion was scaled",
+    spectral_misfit="root mean square of the logarithm of scaled spectrum over target",
+    largest_spectral_misfit="greatest distance of the matched spectrum from the target, over the "
+    "target",
+    mean_spectral_misfit="mean distance of the matched spectrum from the target, over the target",
+    peak_ground_acceleration_before_matching="greatest absolute ground acceleration before the "
+    "spectrum was matched [m s^-2]",
+    peak_ground_acceleration_after_matching="greatest absolute ground acceleration after the "
+    "spectrum was matched [m s^-2]",
+    peak_ground_velocity_before_matching="greatest absolute ground velocity before the spectrum "
+    "was matched [m s^-1]",
+    peak_ground_velocity_after_matching="greatest absolute ground velocity after the spectrum was "
+    "matched [m s^-1]",
+    peak_ground_displacement_before_matching="greatest absolute ground displacement before the "
+    "spectrum was matched [m]",
+    peak_ground_displacement_after_matching="greatest absolute ground displacement after the "
+    "spectrum was matched [m]",
+    pulse_indicator_before_matching="pulse indicator of Baker before the spectrum was matched",
+    pulse_indicator_after_matching="pulse indicator of Baker after the spectrum was matched",
+    spectral_growth_beyond_range="greatest ratio of matched to scaled spectrum beyond the range of "
+    "periods",
+    period_of_spectral_growth="period of that ratio [s]",
+)
+"""Of a motion in a suite; in datasets over ``motion``."""
+
+TARGETS: Final = (
+    *rows_over(
+        PERIOD,
+        target_spectral_acceleration="pseudo-spectral acceleration that is aimed at [m s^-2]",
+        target_standard_deviation="standard deviation of the logarithm of the spectrum that is "
+        "aimed at",
+        scaled_spectral_acceleration="pseudo-spectral acceleration of the scaled motion [m s^-2]",
+        set_median_acceleration="geometric mean over the set of the scaled pseudo-spectral "
+        "accelerations [m s^-2]",
+        set_standard_deviation="standard deviation over the set of the logarithm of the scaled "
+        "spectra",
+    ),
+    *rows_over((), set_misfit="root mean square of the misfit of the set, with its spread"),
+)
+"""Of a set of motions beside a target spectrum."""

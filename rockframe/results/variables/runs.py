@@ -4,21 +4,8 @@ from enum import IntEnum
 from typing import Final
 
 from rockframe.dynamics.events import ContactState, EventKind
-from rockframe.results.variables.variable import (
-    AFTER_END,
-    ANGLE,
-    EVENT,
-    MODE,
-    TIME,
-    Variable,
-    count,
-    counting,
-    flag,
-    number,
-    whether,
-)
+from rockframe.results.variables.variable import AFTER_END, ANGLE, EVENT, MODE, TIME, rows_over
 from rockframe.solve.workspace import Status
-from rockframe.units import Unit
 
 
 class Direction(IntEnum):
@@ -42,288 +29,182 @@ class RunStatus(IntEnum):
     NOT_RUN = 7
 
 
-HISTORIES: Final = (
-    Variable("time", TIME, Unit.SECOND, "time from the start of the run"),
-    # response
-    Variable("rotation", TIME, Unit.RADIAN, "rotation of the block, clockwise positive"),
-    Variable("angular_velocity", TIME, Unit.RADIAN_PER_SECOND, "rate of the rotation"),
-    Variable(
-        "vertical_displacement",
-        TIME,
-        Unit.METRE,
-        "vertical displacement of the centre of mass from rest, relative to the ground, upwards",
-    ),
-    Variable("vertical_velocity", TIME, Unit.METRE_PER_SECOND, "rate of the vertical displacement"),
-    Variable(
-        "horizontal_displacement",
-        TIME,
-        Unit.METRE,
-        "horizontal displacement of the centre of mass relative to the ground, to the right",
-    ),
-    number("relative_rotation", "rotation over the overturning angle", TIME),
-    number(
-        "relative_vertical_displacement",
-        "vertical displacement over the settlement under the weight",
-        TIME,
-    ),
-    flag("contact_state", TIME, "corner that bears", ContactState),
-    Variable(
-        "ground_acceleration", TIME, Unit.METRE_PER_SECOND_SQUARED, "horizontal ground acceleration"
-    ),
-    Variable(
-        "vertical_ground_acceleration",
-        TIME,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "vertical ground acceleration, upwards",
-    ),
-    Variable(
-        "base_shear",
-        TIME,
-        Unit.NEWTON,
-        "horizontal force of the ground on what stands on it, to the right",
-    ),
-    Variable("left_reaction", TIME, Unit.NEWTON, "reaction of the base at the left corner"),
-    Variable("right_reaction", TIME, Unit.NEWTON, "reaction of the base at the right corner"),
+HISTORIES: Final = rows_over(
+    TIME,
+    time="time from the start of the run [s]",
+    rotation="rotation of the block, clockwise positive [rad]",
+    angular_velocity="rate of the rotation [rad s^-1]",
+    vertical_displacement="vertical displacement of the centre of mass from rest, relative to the "
+    "ground, upwards [m]",
+    vertical_velocity="rate of the vertical displacement [m s^-1]",
+    horizontal_displacement="horizontal displacement of the centre of mass relative to the ground, "
+    "to the right [m]",
+    relative_rotation="rotation over the overturning angle",
+    relative_vertical_displacement="vertical displacement over the settlement under the weight",
+    contact_state=("corner that bears", ContactState),
+    ground_acceleration="horizontal ground acceleration [m s^-2]",
+    vertical_ground_acceleration="vertical ground acceleration, upwards [m s^-2]",
+    base_shear="horizontal force of the ground on what stands on it, to the right [N]",
+    left_reaction="reaction of the base at the left corner [N]",
+    right_reaction="reaction of the base at the right corner [N]",
     # soil and cap
-    Variable("soil_reaction", TIME, Unit.NEWTON, "vertical reaction of the soil"),
-    Variable("contact_length", TIME, Unit.METRE, "length of the base that bears on the soil"),
-    Variable("cap_rotation", TIME, Unit.RADIAN, "rotation of the cap, clockwise positive"),
-    Variable("cap_angular_velocity", TIME, Unit.RADIAN_PER_SECOND, "rate of the cap's rotation"),
-    Variable(
-        "cap_vertical_displacement",
-        TIME,
-        Unit.METRE,
-        "vertical displacement of the cap's centre from rest, relative to the ground, upwards",
-    ),
-    Variable(
-        "cap_vertical_velocity",
-        TIME,
-        Unit.METRE_PER_SECOND,
-        "rate of the cap's vertical displacement",
-    ),
-    flag("soil_contact_state", TIME, "end of the base that bears on the soil", ContactState),
-    Variable("rotation_on_cap", TIME, Unit.RADIAN, "rotation of the block relative to the cap"),
-    Variable(
-        "vertical_displacement_on_cap",
-        TIME,
-        Unit.METRE,
-        "displacement of the block's centre of mass from rest relative to the cap, along its axis",
-    ),
-    Variable(
-        "cap_acceleration",
-        TIME,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "absolute horizontal acceleration of the middle of the cap's top",
-    ),
-    Variable(
-        "cap_vertical_acceleration",
-        TIME,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "absolute vertical acceleration of the middle of the cap's top",
-    ),
+    soil_reaction="vertical reaction of the soil [N]",
+    contact_length="length of the base that bears on the soil [m]",
+    cap_rotation="rotation of the cap, clockwise positive [rad]",
+    cap_angular_velocity="rate of the cap's rotation [rad s^-1]",
+    cap_vertical_displacement="vertical displacement of the cap's centre from rest, relative to "
+    "the ground, upwards [m]",
+    cap_vertical_velocity="rate of the cap's vertical displacement [m s^-1]",
+    soil_contact_state=("end of the base that bears on the soil", ContactState),
+    rotation_on_cap="rotation of the block relative to the cap [rad]",
+    vertical_displacement_on_cap="displacement of the block's centre of mass from rest relative to "
+    "the cap, along its axis [m]",
+    cap_acceleration="absolute horizontal acceleration of the middle of the cap's top [m s^-2]",
+    cap_vertical_acceleration="absolute vertical acceleration of the middle of the cap's top "
+    "[m s^-2]",
 )
 """Over time, wherever the scene has them."""
 
-MOTION_AFTER_END: Final = (
-    Variable(
-        "ground_acceleration_after_end",
-        AFTER_END,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "samples of the horizontal ground acceleration that follow those of the histories",
-    ),
-    Variable(
-        "vertical_ground_acceleration_after_end",
-        AFTER_END,
-        Unit.METRE_PER_SECOND_SQUARED,
-        "samples of the vertical ground acceleration that follow those of the histories, upwards",
-    ),
+MOTION_AFTER_END: Final = rows_over(
+    AFTER_END,
+    ground_acceleration_after_end="samples of the horizontal ground acceleration that follow those "
+    "of the histories [m s^-2]",
+    vertical_ground_acceleration_after_end="samples of the vertical ground acceleration that "
+    "follow those of the histories, upwards [m s^-2]",
 )
-ENERGY_HISTORIES: Final = (
-    Variable("kinetic_energy", TIME, Unit.JOULE, "kinetic energy relative to the ground"),
-    Variable("potential_energy", TIME, Unit.JOULE, "gravity energy from rest"),
-    Variable("elastic_energy", TIME, Unit.JOULE, "energy of the compressed springs"),
-    Variable("dissipated_energy", TIME, Unit.JOULE, "energy dissipated by the base so far"),
-    Variable("impact_energy", TIME, Unit.JOULE, "energy lost in impacts so far"),
-    Variable(
-        "repinning_energy",
-        TIME,
-        Unit.JOULE,
-        "energy lost in changes of the horizontal restraint so far",
-    ),
-    Variable("input_energy", TIME, Unit.JOULE, "relative energy put in by the ground so far"),
+ENERGY_HISTORIES: Final = rows_over(
+    TIME,
+    kinetic_energy="kinetic energy relative to the ground [J]",
+    potential_energy="gravity energy from rest [J]",
+    elastic_energy="energy of the compressed springs [J]",
+    dissipated_energy="energy dissipated by the base so far [J]",
+    impact_energy="energy lost in impacts so far [J]",
+    repinning_energy="energy lost in changes of the horizontal restraint so far [J]",
+    input_energy="relative energy put in by the ground so far [J]",
 )
 """Over time, only on request."""
 
 EVENTS_AND_SCALARS: Final = (
-    # events
-    Variable("event_time", EVENT, Unit.SECOND, "time of the event"),
-    flag("event_kind", EVENT, "kind of the event", EventKind),
-    flag("contact_state_before", EVENT, "corner that bore before the event", ContactState),
-    flag("contact_state_after", EVENT, "corner that bears after the event", ContactState),
-    flag("soil_contact_state_before", EVENT, "end that bore on the soil before", ContactState),
-    flag("soil_contact_state_after", EVENT, "end that bears on the soil after", ContactState),
-    Variable("event_rotation", EVENT, Unit.RADIAN, "rotation at the event"),
-    Variable(
-        "angular_velocity_before",
+    *rows_over(
         EVENT,
-        Unit.RADIAN_PER_SECOND,
-        "rate of the rotation before the event",
+        event_time="time of the event [s]",
+        event_kind=("kind of the event", EventKind),
+        contact_state_before=("corner that bore before the event", ContactState),
+        contact_state_after=("corner that bears after the event", ContactState),
+        soil_contact_state_before=("end that bore on the soil before", ContactState),
+        soil_contact_state_after=("end that bears on the soil after", ContactState),
+        event_rotation="rotation at the event [rad]",
+        angular_velocity_before="rate of the rotation before the event [rad s^-1]",
+        angular_velocity_after="rate of the rotation after the event [rad s^-1]",
     ),
-    Variable(
-        "angular_velocity_after",
-        EVENT,
-        Unit.RADIAN_PER_SECOND,
-        "rate of the rotation after the event",
-    ),
-    # scalars
-    whether("overturned", "whether the rotation reached the overturning angle"),
-    Variable("overturning_time", (), Unit.SECOND, "time of overturning, NaN if none"),
-    flag("overturning_direction", (), "side towards which the block overturned", Direction),
-    Variable("peak_rotation", (), Unit.RADIAN, "largest absolute rotation"),
-    number(
-        "peak_relative_rotation",
-        "largest rotation over the overturning angle of its side, of the body that came closest",
-    ),
-    Variable("first_uplift_time", (), Unit.SECOND, "time contact is first lost, NaN if never"),
-    count("impact_count", "number of impacts, those that end in rest among them"),
-    Variable("flight_time", (), Unit.SECOND, "time without any contact"),
-    count("flight_count", "number of flights"),
-    number("energy_residual", "largest energy imbalance over the largest energy term"),
-    flag("status", (), "how the run ended", RunStatus),
-    Variable(
-        "overturning_angle",
+    *rows_over(
         (),
-        Unit.RADIAN,
-        "rotation of unstable equilibrium, theta, on the side where it is less",
-    ),
-    Variable("left_overturning_angle", (), Unit.RADIAN, "rotation to the left that overturns"),
-    Variable("right_overturning_angle", (), Unit.RADIAN, "rotation to the right that overturns"),
-    Variable("left_peak_rotation", (), Unit.RADIAN, "largest rotation to the left"),
-    Variable("right_peak_rotation", (), Unit.RADIAN, "largest rotation to the right"),
-    Variable("rest_rotation", (), Unit.RADIAN, "rotation at rest, under the weight alone"),
-    Variable(
-        "uplift_angle",
-        (),
-        Unit.RADIAN,
-        "rotation of the block on its base at which contact is first lost at rest",
+        overturned=("whether the rotation reached the overturning angle", bool),
+        overturning_time="time of overturning, NaN if none [s]",
+        overturning_direction=("side towards which the block overturned", Direction),
+        peak_rotation="largest absolute rotation [rad]",
+        peak_relative_rotation="largest rotation over the overturning angle of its side, of the "
+        "body that came closest",
+        first_uplift_time="time contact is first lost, NaN if never [s]",
+        impact_count=("number of impacts, those that end in rest among them", int),
+        flight_time="time without any contact [s]",
+        flight_count=("number of flights", int),
+        energy_residual="largest energy imbalance over the largest energy term",
+        status=("how the run ended", RunStatus),
+        overturning_angle="rotation of unstable equilibrium, theta, on the side where it is less "
+        "[rad]",
+        left_overturning_angle="rotation to the left that overturns [rad]",
+        right_overturning_angle="rotation to the right that overturns [rad]",
+        left_peak_rotation="largest rotation to the left [rad]",
+        right_peak_rotation="largest rotation to the right [rad]",
+        rest_rotation="rotation at rest, under the weight alone [rad]",
+        uplift_angle="rotation of the block on its base at which contact is first lost at rest "
+        "[rad]",
     ),
 )
 """Over events, and one for the run."""
 
-CERTIFICATE: Final = (
-    whether(
-        "verdict_converged",
+CERTIFICATE: Final = rows_over(
+    (),
+    verdict_converged=(
         "whether runs by finer means have the same verdict, by more than they differ",
+        bool,
     ),
-    whether(
-        "verdict_robust", "whether runs with a parameter or the scale nudged have the same verdict"
+    verdict_robust=(
+        "whether runs with a parameter or the scale nudged have the same verdict",
+        bool,
     ),
-    number(
-        "verdict_margin",
-        "largest relative change of the motion's scale up to which no other verdict was found",
-    ),
-    number(
-        "verdict_flip_scale",
-        "scale of the motion nearest to 1 that was found to change the verdict, NaN if none",
-    ),
-    Variable(
-        "peak_error_estimate",
-        (),
-        Unit.RADIAN,
-        "three times the largest difference of the peak rotation from a run by finer means",
-    ),
-    Variable(
-        "peak_sensitivity",
-        (),
-        Unit.RADIAN,
-        "largest difference of the peak rotation from that of a run with a nudged parameter",
-    ),
+    verdict_margin="largest relative change of the motion's scale up to which no other verdict was "
+    "found",
+    verdict_flip_scale="scale of the motion nearest to 1 that was found to change the verdict, NaN "
+    "if none",
+    peak_error_estimate="three times the largest difference of the peak rotation from a run by "
+    "finer means [rad]",
+    peak_sensitivity="largest difference of the peak rotation from that of a run with a nudged "
+    "parameter [rad]",
 )
 """How sure the verdict is, on request."""
 
-PROOF: Final = (
-    whether("verdict_proved", "whether the verdict is proved"),
-    Variable(
-        "proved_overturning_earliest",
-        (),
-        Unit.SECOND,
-        "time before which it is proved not to have overturned, NaN unless it is proved to",
-    ),
-    Variable(
-        "proved_overturning_latest",
-        (),
-        Unit.SECOND,
-        "time by which it is proved to have overturned, NaN unless it is",
-    ),
-    Variable(
-        "proof_width", (), Unit.RADIAN, "greatest radius of the rotations that a proof encloses"
-    ),
+PROOF: Final = rows_over(
+    (),
+    verdict_proved=("whether the verdict is proved", bool),
+    proved_overturning_earliest="time before which it is proved not to have overturned, NaN unless "
+    "it is proved to [s]",
+    proved_overturning_latest="time by which it is proved to have overturned, NaN unless it is [s]",
+    proof_width="greatest radius of the rotations that a proof encloses [rad]",
 )
 """What is proved of the verdict, on request."""
 
 
 MODE_BODY: Final = ("mode", "body")
 
-HELD: Final = (
-    Variable("angle", ANGLE, Unit.RADIAN, "rotation at which the body is held"),
-    Variable(
-        "restoring_moment",
-        ANGLE,
-        Unit.NEWTON_METRE,
-        "couple that holds the body: base moment less the weight's about the middle of the base",
-    ),
-    Variable(
-        "base_moment",
-        ANGLE,
-        Unit.NEWTON_METRE,
-        "moment of the base's vertical reactions about its middle, against the rotation",
-    ),
-    Variable(
-        "held_vertical_displacement",
-        ANGLE,
-        Unit.METRE,
-        "vertical displacement of the centre of mass from rest, while held",
-    ),
-    flag("held_contact_state", ANGLE, "corner that bears while held", ContactState),
-    Variable("held_left_reaction", ANGLE, Unit.NEWTON, "reaction at the left corner while held"),
-    Variable("held_right_reaction", ANGLE, Unit.NEWTON, "reaction at the right corner while held"),
-    Variable("held_soil_reaction", ANGLE, Unit.NEWTON, "vertical reaction of the soil while held"),
-    Variable("held_contact_length", ANGLE, Unit.METRE, "length that bears on the soil while held"),
-    Variable(
-        "held_cap_rotation", ANGLE, Unit.RADIAN, "rotation of the cap while the block is held"
-    ),
+HELD: Final = rows_over(
+    ANGLE,
+    angle="rotation at which the body is held [rad]",
+    restoring_moment="couple that holds the body: base moment less the weight's about the middle "
+    "of the base [N m]",
+    base_moment="moment of the base's vertical reactions about its middle, against the rotation "
+    "[N m]",
+    held_vertical_displacement="vertical displacement of the centre of mass from rest, while held "
+    "[m]",
+    held_contact_state=("corner that bears while held", ContactState),
+    held_left_reaction="reaction at the left corner while held [N]",
+    held_right_reaction="reaction at the right corner while held [N]",
+    held_soil_reaction="vertical reaction of the soil while held [N]",
+    held_contact_length="length that bears on the soil while held [m]",
+    held_cap_rotation="rotation of the cap while the block is held [rad]",
 )
 """Quasi-static states over the angle at which the body is held."""
 
-REST: Final = (
-    Variable("pad_settlement", (), Unit.METRE, "settlement of the pads under the weight"),
-    Variable("soil_settlement", (), Unit.METRE, "settlement of the soil under the weight"),
-    Variable("static_left_reaction", (), Unit.NEWTON, "reaction at the left corner at rest"),
-    Variable("static_right_reaction", (), Unit.NEWTON, "reaction at the right corner at rest"),
-    Variable("static_soil_reaction", (), Unit.NEWTON, "reaction of the soil at rest"),
-    Variable("uplift_moment", (), Unit.NEWTON_METRE, "base moment at which contact is first lost"),
-    Variable(
-        "soil_uplift_moment",
-        (),
-        Unit.NEWTON_METRE,
-        "moment of the soil's reaction at which the cap first loses contact",
-    ),
+REST: Final = rows_over(
+    (),
+    pad_settlement="settlement of the pads under the weight [m]",
+    soil_settlement="settlement of the soil under the weight [m]",
+    static_left_reaction="reaction at the left corner at rest [N]",
+    static_right_reaction="reaction at the right corner at rest [N]",
+    static_soil_reaction="reaction of the soil at rest [N]",
+    uplift_moment="base moment at which contact is first lost [N m]",
+    soil_uplift_moment="moment of the soil's reaction at which the cap first loses contact [N m]",
 )
 """Scalars of a system at rest."""
 
 MODES: Final = (
-    counting("mode", "number of the mode, from slow to fast"),
-    Variable("angular_frequency", MODE, Unit.RADIAN_PER_SECOND, "angular frequency, undamped"),
-    Variable("frequency", MODE, Unit.HERTZ, "cyclic frequency, undamped"),
-    Variable("period", MODE, Unit.SECOND, "period, undamped"),
-    number("damping_ratio", "damping ratio", MODE),
-    number("vertical_displacement_shape", "share of the vertical displacement [m]", MODE),
-    number("rotation_shape", "share of the rotation [rad]", MODE),
-    number("cap_vertical_displacement_shape", "share of the cap's rise [m]", MODE),
-    number("cap_rotation_shape", "share of the cap's rotation [rad]", MODE),
-    number("body_rotation_shape", "share of each body's rotation on its base [rad]", MODE_BODY),
-    number(
-        "body_vertical_displacement_shape", "share of each body's rise on its base [m]", MODE_BODY
+    *rows_over(
+        MODE,
+        mode=("number of the mode, from slow to fast", int),
+        angular_frequency="angular frequency, undamped [rad s^-1]",
+        frequency="cyclic frequency, undamped [Hz]",
+        period="period, undamped [s]",
+        damping_ratio="damping ratio",
+        vertical_displacement_shape="share of the vertical displacement [m] [1]",
+        rotation_shape="share of the rotation [rad] [1]",
+        cap_vertical_displacement_shape="share of the cap's rise [m] [1]",
+        cap_rotation_shape="share of the cap's rotation [rad] [1]",
+    ),
+    *rows_over(
+        MODE_BODY,
+        body_rotation_shape="share of each body's rotation on its base [rad] [1]",
+        body_vertical_displacement_shape="share of each body's rise on its base [m] [1]",
     ),
 )
 """Modes of small motion."""

@@ -1,5 +1,6 @@
 """A row of the table of variables, and the shapes that rows have."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
@@ -87,32 +88,30 @@ def unit_behind(attributes: Mapping[Any, Any]) -> str:
     return "" if unit == Unit.ONE else f" {unit}"
 
 
-def flag(name: str, dims: tuple[str, ...], words: str, kind: type[IntEnum]) -> Variable:
-    """Make the row of a flag."""
-    return Variable(name, dims, None, words, kind, "int8")
+def rows_over(dims: tuple[str, ...], /, **meanings: str | tuple[str, type]) -> tuple[Variable, ...]:
+    """Make the rows of variables over some dimensions, by their names, of what these mean.
+
+    Behind the meaning of a number stands its unit in brackets, unless that is 1; beside that of
+    anything else its kind: bool, int, str, or the :class:`~enum.IntEnum` of a flag.
+    """
+    return tuple(_row(name, dims, meaning) for name, meaning in meanings.items())
 
 
-def number(name: str, words: str, dims: tuple[str, ...] = ()) -> Variable:
-    """Make the row of a pure number, or of one whose unit is that of what a dataset is of."""
-    return Variable(name, dims, Unit.ONE, words)
+_WITH_UNIT: Final = re.compile(r"(.*) \[([^\[]*)\]", re.DOTALL)
+_DTYPES: Final = {bool: "bool", int: "int64", str: "str"}
 
 
-def whether(name: str, words: str, dims: tuple[str, ...] = ()) -> Variable:
-    """Make the row of a truth value."""
-    return Variable(name, dims, None, words, dtype="bool")
+def _row(name: str, dims: tuple[str, ...], meaning: str | tuple[str, type]) -> Variable:
+    if isinstance(meaning, str):
+        found = _WITH_UNIT.fullmatch(meaning)
+        words, unit = (meaning, Unit.ONE) if found is None else (found[1], Unit(found[2]))
+        return Variable(name, dims, unit, words)
+    words, kind = meaning
+    if issubclass(kind, IntEnum):
+        return Variable(name, dims, None, words, kind, "int8")
+    return Variable(name, dims, Unit.ONE if kind is int else None, words, dtype=_DTYPES[kind])
 
 
-def count(name: str, words: str) -> Variable:
-    """Make the row of a scalar count."""
-    return Variable(name, (), Unit.ONE, words, dtype="int64")
-
-
-def counting(name: str, words: str) -> Variable:
-    """Make the row of a coordinate that counts."""
-    return Variable(name, (name,), Unit.ONE, words, dtype="int64")
-
-
-def bounds(name: str, words: str, dims: tuple[str, ...] = ()) -> tuple[Variable, ...]:
-    """Make the rows of a lower and an upper bound of a ratio, whose words say which at ``{}``."""
-    ends = ("lower", "upper")
-    return tuple(number(f"{name}_{end}_bound", words.format(end), dims) for end in ends)
+def bounds(name: str, words: str) -> dict[str, str]:
+    """Give the meanings of a lower and an upper bound, whose words say which at ``{}``."""
+    return {f"{name}_{end}_bound": words.format(end) for end in ("lower", "upper")}

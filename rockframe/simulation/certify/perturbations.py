@@ -95,10 +95,7 @@ MOST_PER_PERIOD: Final = 1e4
 
 
 def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str, Plan]]:
-    """Give the same run by finer means, each independent of the others, and what is finer.
-
-    `step` is the average length of its steps [s].
-    """
+    """Give the run, of steps of a length [s], by finer means one by one, and what is finer."""
     accuracy = plan.accuracy
     yield tolerance_words(accuracy), replace(plan, accuracy=tightened(accuracy))
     yield (
@@ -132,10 +129,7 @@ def tightened(accuracy: Accuracy) -> Accuracy:
 
 
 def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float) -> Accuracy:
-    """Give settings whose longest step is shorter than a run's steps were on average.
-
-    `interval` is the time between the motion's samples [s].
-    """
+    """Give settings with steps shorter than those of a run, by its motion's time step [s]."""
     wanted = step / SHORTER
     if accuracy.substeps is not None:
         given = accuracy.substeps if isinstance(accuracy.substeps, int) else 1

@@ -1,0 +1,432 @@
+"""What bodies stand on: rigid ground, pads, soil, and a cap between building and soil."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import ClassVar, Final, Literal, Self, TypeAlias
+
+from rockframe.components.alternatives import OneOf
+from rockframe.components.base import Component
+from rockframe.components.parameters import (
+    Choice,
+    DampingRatio,
+    Parameter,
+    Ratio,
+    SIValues,
+    check_frictions,
+    friction_at_rest,
+    friction_of_slip,
+)
+from rockframe.many import hypot
+from rockframe.notebook import Polygon
+from rockframe.proposals import hinted
+from rockframe.units import (
+    BED_DAMPING,
+    BED_STIFFNESS,
+    DAMPING,
+    DENSITY,
+    LENGTH,
+    MASS,
+    NOT_NEGATIVE,
+    POSITIVE,
+    STIFFNESS,
+    SUBGRADE_MODULUS,
+    THICKNESS,
+    UNIT_INTERVAL,
+    Quantity,
+    QuantityLike,
+    RatioLike,
+    quantity,
+    to_si,
+)
+
+
+class Impact(StrEnum):
+    """Whether a corner that strikes slips as far as friction lets it, or is held."""
+
+    COULOMB = "coulomb"
+    STICK = "stick"
+
+
+ImpactLike: TypeAlias = Impact | Literal["coulomb", "stick"]
+
+
+class RigidGround(Component):
+    """Rigid ground under a block, which rocks on it (Housner's model) and may slide.
+
+    A scene with a block alone stands on rigid ground that holds it; this part is needed only
+    to choose a restitution or a friction.
+
+    Raises
+    ------
+    UnitsError
+        Not a pure ratio.
+    ComponentError
+        `restitution` is outside (0, 1], a coefficient of friction is negative, or
+        `kinetic_friction` is given without `friction` or above it.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> low = rf.Block(width="2 m", height="1 m", mass="5 t")
+    >>> pulse = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1 Hz")
+    >>> run = rf.System(low, rf.RigidGround(friction=0.3)).simulate(pulse, accuracy="fast")
+    >>> run.attrs["verdict"].split(":")[0]
+    'Slid 0.0338 m to the right and back, did not overturn'
+    """
+
+    noun: ClassVar[str] = "base"
+
+    restitution = Ratio(
+        UNIT_INTERVAL,
+        doc="Ratio of the angular velocities after and before an impact that does not slip; the "
+        "block's eps_max, Eq. (4), unless given.",
+        default=None,
+        example="0.9",
+    )
+    friction = friction_at_rest("the block")
+    kinetic_friction = friction_of_slip()
+    impact = Choice(
+        Impact.COULOMB,
+        doc="Whether a corner that strikes slips as far as kinetic friction lets it, or is held.",
+    )
+
+    def __init__(
+        self,
+        *,
+        restitution: RatioLike | None = None,
+        friction: RatioLike | None = None,
+        kinetic_friction: RatioLike | None = None,
+        impact: ImpactLike = Impact.COULOMB,
+    ) -> None:
+        super().__init__(
+            restitution=restitution,
+            friction=friction,
+            kinetic_friction=kinetic_friction,
+            impact=impact,
+        )
+
+    def _numbers(self, given: SIValues) -> SIValues:
+        return check_frictions("RigidGround", given)
+
+
+class TwoSpringSupport(Component):
+    """Two equal Kelvin-Voigt pads, one under each corner, that take no tension.
+
+    Raises
+    ------
+    UnitsError
+        A value has the wrong unit, or none.
+    ComponentError
+        A value is out of range, not exactly one of `frequency_ratio` and `stiffness`, and one of
+        `damping_ratio` and `damping`, is given, or `kinetic_friction` without `friction` or above
+        it.
+
+    Warns
+    -----
+    ModelWarning
+        `damping_ratio` is above 1, more than critical: per cent may have been meant.
+
+    Notes
+    -----
+    k = m omega_v^2 / 2 and c = xi m omega_v per pad, Eq. (7); with the two pads
+    together xi is the damping ratio of the vertical motion.
+
+    Examples
+    --------
+    >>> import rockframe as rf
+    >>> pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.10)
+    >>> stiff = rf.TwoSpringSupport(stiffness="5 MN/m", damping="20 kN*s/m", friction=0.4)
+    >>> stiff.friction
+    0.4
+    """
+
+    noun: ClassVar[str] = "base"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (
+        OneOf("frequency_ratio", "stiffness"),
+        OneOf("damping_ratio", "damping"),
+    )
+
+    frequency_ratio = Ratio(
+        POSITIVE,
+        doc="beta = omega_v / omega, vertical over rocking frequency, Eq. (8).",
+        default=None,
+        example="20",
+    )
+    stiffness = Parameter(
+        STIFFNESS,
+        POSITIVE,
+        doc="Stiffness k of one pad, instead of `frequency_ratio`.",
+        default=None,
+    )
+    damping_ratio = DampingRatio(doc="Vertical damping ratio xi, Eq. (7b).")
+    damping = Parameter(
+        DAMPING,
+        NOT_NEGATIVE,
+        doc="Damping coefficient c of one pad, instead of `damping_ratio`.",
+        default=None,
+    )
+    restitution = Ratio(
+        UNIT_INTERVAL,
+        doc="Ratio eps of a landing corner's speeds after and before the impact, Eq. (2); "
+        "eps_max, Eq. (4), unless given.",
+        default=None,
+        example="0.9",
+    )
+
+    friction = friction_at_rest("the block")
+    kinetic_friction = friction_of_slip()
+
+    def __init__(
+        self,
+        *,
+        frequency_ratio: RatioLike | None = None,
+        stiffness: QuantityLike | None = None,
+        damping_ratio: RatioLike | None = None,
+        damping: QuantityLike | None = None,
+        restitution: RatioLike | None = None,
+        friction: RatioLike | None = None,
+        kinetic_friction: RatioLike | None = None,
+    ) -> None:
+        super().__init__(
+            frequency_ratio=frequency_ratio,
+            stiffness=stiffness,
+            damping_ratio=damping_ratio,
+            damping=damping,
+            restitution=restitution,
+            friction=friction,
+            kinetic_friction=kinetic_friction,
+        )
+
+    def _numbers(self, given: SIValues) -> SIValues:
+        return check_frictions("TwoSpringSupport", given)
+
+
+@dataclass(frozen=True)
+class CushionCapSI:
+    """A cap in SI units; a width of None stands for the building's."""
+
+    width: float | None
+    height: float
+    mass: float | None
+    mass_per_width: float | None
+
+    def mass_at(self, width: float) -> float:
+        """Give the mass of a cap of a width [kg]."""
+        return self.mass if self.mass is not None else (self.mass_per_width or 0.0) * width
+
+    def inertia_at(self, width: float) -> float:
+        """Give the inertia of a solid cap about its centre [kg m^2]."""
+        diagonal = hypot(width, self.height)
+        return self.mass_at(width) * diagonal * diagonal / 12.0
+
+
+class CushionCap(Component):
+    """A rigid, solid slab that spreads a building's weight over the soil.
+
+    Raises
+    ------
+    UnitsError
+        A value has the wrong unit, or none.
+    ComponentError
+        A value is out of range, or not exactly one of `mass` and `density`
+        (with `depth`) is given.
+
+    Examples
+    --------
+    >>> cap = CushionCap(height="0.9 m", density="2500 kg/m^3", depth="4 m", width="5 m")
+    >>> cap.si.mass_at(5.0)
+    45000.0
+    """
+
+    si: CushionCapSI
+    noun: ClassVar[str] = "cap"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("mass", ("density", "depth")),)
+
+    height = Parameter(THICKNESS, NOT_NEGATIVE, doc="Height H_c; zero for a thin plate.")
+    mass = Parameter(
+        MASS, NOT_NEGATIVE, doc="Mass m_c; zero for a plate without mass.", default=None
+    )
+    width = Parameter(
+        LENGTH,
+        POSITIVE,
+        doc="Width B_c in the plane of rocking; the building's unless given.",
+        default=None,
+    )
+    density = Parameter(
+        DENSITY, POSITIVE, doc="Mass per volume, with `depth` instead of `mass`.", default=None
+    )
+    depth = Parameter(LENGTH, POSITIVE, doc="Size out of the plane of rocking.", default=None)
+
+    def __init__(
+        self,
+        *,
+        height: QuantityLike,
+        mass: QuantityLike | None = None,
+        width: QuantityLike | None = None,
+        density: QuantityLike | None = None,
+        depth: QuantityLike | None = None,
+    ) -> None:
+        super().__init__(height=height, mass=mass, width=width, density=density, depth=depth)
+
+    def _shapes(self) -> list[Polygon]:
+        si = self.si
+        if si.width is None:
+            return []
+        half = 0.5 * si.width
+        return [Polygon("cap", [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)])]
+
+    def _numbers(self, given: SIValues) -> CushionCapSI:
+        by_density = given.density is not None
+        per_width = given.density * given.depth * given.height if by_density else None
+        return CushionCapSI(given.width, given.height, given.mass, per_width)
+
+
+class Separation(StrEnum):
+    """Where the bed lets go of the base."""
+
+    DISPLACEMENT = "displacement"
+    PRESSURE = "pressure"
+
+
+SeparationLike: TypeAlias = Separation | Literal["displacement", "pressure"]
+
+
+_BY_DEPTH: Final = (
+    "WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it, with the depth of "
+    "the base"
+)
+
+
+class WinklerSoil(Component):
+    """A bed of springs and dashpots side by side that take no tension.
+
+    Raises
+    ------
+    UnitsError
+        A value has the wrong unit, or none.
+    ComponentError
+        A value is out of range, or not exactly one of `damping` and
+        `damping_ratio` is given.
+
+    Warns
+    -----
+    ModelWarning
+        `damping_ratio` is above 1, more than critical: per cent may have been meant.
+
+    Examples
+    --------
+    >>> soil = WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth="4 m", damping_ratio=0.2)
+    >>> soil.stiffness.to("MPa")
+    <Quantity(80.0, 'megapascal')>
+    """
+
+    noun: ClassVar[str] = "soil"
+    alternatives: ClassVar[tuple[OneOf, ...]] = (OneOf("damping", "damping_ratio"),)
+
+    stiffness = Parameter(
+        BED_STIFFNESS,
+        POSITIVE,
+        doc="k0, stiffness of the bed per length of base in the plane of rocking: the subgrade "
+        "modulus times the base's depth out of the plane.",
+    )
+    damping = Parameter(
+        BED_DAMPING,
+        NOT_NEGATIVE,
+        doc="c0, damping coefficient per length of base.",
+        default=None,
+    )
+    damping_ratio = DampingRatio(
+        doc="Damping ratio of the vertical motion, instead of `damping`: "
+        "2 b c0 = 2 xi_s sqrt(2 b k0 m), with all mass that the bed carries.",
+    )
+    separation = Choice(
+        Separation.DISPLACEMENT,
+        doc="Where the base and the bed part: above the level of the unloaded bed, as in the "
+        "paper; or also where the dashpots would have to pull.",
+    )
+
+    friction = friction_at_rest("what stands on it")
+    kinetic_friction = friction_of_slip()
+
+    _depth: float | None = None
+
+    @hinted(subgrade_modulus=_BY_DEPTH, modulus=_BY_DEPTH)
+    def __init__(
+        self,
+        *,
+        stiffness: QuantityLike,
+        damping: QuantityLike | None = None,
+        damping_ratio: RatioLike | None = None,
+        separation: SeparationLike = Separation.DISPLACEMENT,
+        friction: RatioLike | None = None,
+        kinetic_friction: RatioLike | None = None,
+    ) -> None:
+        super().__init__(
+            stiffness=stiffness,
+            damping=damping,
+            damping_ratio=damping_ratio,
+            separation=separation,
+            friction=friction,
+            kinetic_friction=kinetic_friction,
+        )
+
+    def _numbers(self, given: SIValues) -> SIValues:
+        return check_frictions("WinklerSoil", given)
+
+    @classmethod
+    def from_subgrade_modulus(
+        cls,
+        modulus: QuantityLike,
+        *,
+        depth: QuantityLike,
+        damping: QuantityLike | None = None,
+        damping_ratio: RatioLike | None = None,
+        separation: SeparationLike = Separation.DISPLACEMENT,
+        friction: RatioLike | None = None,
+        kinetic_friction: RatioLike | None = None,
+    ) -> Self:
+        """Build the bed from the soil's subgrade modulus.
+
+        Parameters
+        ----------
+        modulus : str or Quantity
+            Pressure per settlement [Pa m^-1].
+        depth : str or Quantity
+            Depth of the base out of the plane of rocking [m].
+        damping, damping_ratio, separation, friction, kinetic_friction
+            As for :class:`WinklerSoil`.
+
+        Returns
+        -------
+        WinklerSoil
+
+        Raises
+        ------
+        UnitsError, ComponentError
+            As for :class:`WinklerSoil`.
+
+        Examples
+        --------
+        >>> import rockframe as rf
+        >>> soil = rf.WinklerSoil.from_subgrade_modulus("20 MN/m^3", depth="4 m", damping_ratio=0.2)
+        >>> soil.stiffness.to("MPa").round(9)
+        <Quantity(80.0, 'megapascal')>
+        """
+        owner = f"{cls.__name__}.from_subgrade_modulus"
+        per_area = to_si(modulus, SUBGRADE_MODULUS, owner=owner, name="modulus", condition=POSITIVE)
+        metres = to_si(depth, LENGTH, owner=owner, name="depth", condition=POSITIVE)
+        soil = cls(
+            stiffness=f"{per_area * metres!r} {BED_STIFFNESS.unit}",
+            damping=damping,
+            damping_ratio=damping_ratio,
+            separation=separation,
+            friction=friction,
+            kinetic_friction=kinetic_friction,
+        )
+        object.__setattr__(soil, "_depth", metres)
+        return soil
+
+    @property
+    def depth(self) -> Quantity | None:
+        """Depth of the base out of the plane, where the bed was built with it [m]."""
+        return None if self._depth is None else quantity(self._depth, LENGTH)
