@@ -22,7 +22,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
-from rockframe.studies.sweeps.case import remembered, store_of, unscaled_motion
+from rockframe.studies.sweeps import case
 from rockframe.studies.sweeps.motions import (
     ABBREVIATIONS,
     SPECTRAL,
@@ -246,14 +246,11 @@ def intensity_in(
 
 def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
     """Give the motions of a sweep by their names, as they were before they were scaled."""
-    attributes: Mapping[str, Any] = runs.attrs
-    known, kept = remembered(attributes), store_of(runs)
-    found: dict[str, GroundMotion] = {}
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
         raise SchemaError(msg)
-    used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist())
-    names: list[str] = json.loads(attributes["motion_names"])
+    used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
+    names: list[str] = json.loads(runs.attrs["motion_names"])
     unknown = sorted(used - set(names))
     if unknown:
         msg = (
@@ -262,14 +259,12 @@ def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str
             "intensity as a DataArray"
         )
         raise StudyError(msg)
-    for number, name in enumerate(names):
-        if name not in used:
-            continue
-        motion = unscaled_motion(given, number, attributes, known, kept)
-        if motion is None:
-            msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
-            raise StudyError(msg)
-        found[name] = motion
+    which = [name for name in names if name in used]
+    every = case.unscaled_motions(runs.attrs, which, given, case.store_of(runs))
+    found = {name: motion for name, motion in every.items() if motion is not None}
+    if len(found) < len(every):
+        msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
+        raise StudyError(msg)
     return found
 
 

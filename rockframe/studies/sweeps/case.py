@@ -3,7 +3,7 @@
 import json
 import math
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -147,16 +147,12 @@ def case(
             "rf.concat where sweeps differ along one axis, or in their motions, alone"
         )
         raise SchemaError(msg)
-    known = remembered(attributes)
     full = {name if name in dataset.dims else full_name(name): one for name, one in labels.items()}
     place = _place(dataset, full)
     values = _values(dataset, attributes, place)
-    if motions is not None:
-        named_motions(motions)  # also where they are not needed
-    made = _scene(None if scene is None else scene_of(scene), attributes, known)
-    names: list[str] = json.loads(attributes["motion_names"])
-    number = names.index(_value(dataset, MOTION, place))
-    motion = unscaled_motion(motions, number, attributes, known, kept)
+    name = _value(dataset, MOTION, place)
+    motion = unscaled_motions(attributes, [name], motions, kept)[name]
+    made = _scene(None if scene is None else scene_of(scene), attributes)
     of_scene = {axis: one for axis, one in values.items() if axis.changes in OF_SCENES}
     system = _system(made, of_scene)
     if motion is None:
@@ -266,15 +262,13 @@ def _values(
     return found
 
 
-def _scene(
-    given: SweptScene | None, attributes: Mapping[str, Any], known: Study | None
-) -> SweptScene:
+def _scene(given: SweptScene | None, attributes: Mapping[str, Any]) -> SweptScene:
     if "system_json" in attributes:
         system = System.from_dict(json.loads(attributes["system_json"]))
         return SystemScene(system.assembly)
     if given is not None:
         return given
-    if known is not None:
+    if (known := remembered(attributes)) is not None:
         return known.scene
     msg = f"{_OWNER}: the scene was the function {attributes['function']}; give it as scene="
     raise StudyError(msg)
@@ -288,30 +282,37 @@ def _system(scene: SweptScene, values: dict[Axis, Any]) -> System:
     return System(*assembly.parts.structural(), **options)
 
 
-def unscaled_motion(
-    given: object,
-    number: int,
+def unscaled_motions(
     attributes: Mapping[str, Any],
-    known: Study | None,
+    names: Iterable[str],
+    given: object = None,
     kept: Store | None = None,
-) -> GroundMotion | None:
-    """Give a motion of a sweep as it was before it was scaled."""
-    described = json.loads(attributes["motions_json"])[number]
-    if described is None:
-        return None
+    *,
+    needed: bool = True,
+) -> dict[str, GroundMotion | None]:
+    """Give motions of a sweep as they were before they were scaled; those that can be had."""
+    every = json.loads(attributes["motion_names"]), json.loads(attributes["motions_json"])
+    described = dict(zip(*every, strict=True))
+    study = remembered(attributes)
+    at_hand = {} if study is None else study.motions
     if kept is not None:
-        return list(kept.motions().values())[number]
-    if known is not None:
-        return list(known.motions.values())[number]
-    if described.get("constructor"):
-        return GroundMotion.from_dict(described)
-    found = () if given is None else named_motions(given).values()
-    for motion in found:
-        if motion.sha256 == described["sha256"]:
-            return motion
-    has = "is not among those given" if given is not None else "must be given, as motions="
-    msg = f"{_OWNER}: the record {described['name']!r} (sha256 {described['sha256'][:12]}...) {has}"
-    raise StudyError(msg)
+        at_hand = kept.motions()
+    records = {} if given is None else {one.sha256: one for one in named_motions(given).values()}
+    found: dict[str, GroundMotion | None] = {}
+    for name in names:
+        one = described[name]
+        if one is None or name in at_hand:
+            found[name] = None if one is None else at_hand[name]
+        elif one.get("constructor"):
+            found[name] = GroundMotion.from_dict(one)
+        elif one["sha256"] in records:
+            found[name] = records[one["sha256"]]
+        elif needed:
+            has = "must be given, as motions=" if given is None else "is not among those given"
+            digest = one["sha256"][:12]
+            msg = f"{_OWNER}: the record {one['name']!r} (sha256 {digest}...) {has}"
+            raise StudyError(msg)
+    return found
 
 
 def store_of(runs: xr.Dataset) -> Store | None:
@@ -327,20 +328,12 @@ def store_of(runs: xr.Dataset) -> Store | None:
 
 def known_motions(runs: xr.Dataset, given: object = None) -> dict[str, GroundMotion]:
     """Give those motions of a sweep that can be had, by their names, before they were scaled."""
-    attributes: Mapping[str, Any] = runs.attrs
-    known, kept = remembered(attributes), store_of(runs)
-    used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist()) if MOTION in runs else None
-    found: dict[str, GroundMotion] = {}
-    for number, name in enumerate(json.loads(attributes["motion_names"])):
-        if used is not None and name not in used:
-            continue
-        try:
-            motion = unscaled_motion(given, number, attributes, known, kept)
-        except StudyError:  # a record that is not at hand
-            continue
-        if motion is not None:
-            found[name] = motion
-    return found
+    names: list[str] = json.loads(runs.attrs["motion_names"])
+    if MOTION in runs:
+        used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
+        names = [name for name in names if name in used]
+    found = unscaled_motions(runs.attrs, names, given, store_of(runs), needed=False)
+    return {name: motion for name, motion in found.items() if motion is not None}
 
 
 def _options(described: dict[str, Any]) -> dict[str, Any]:
