@@ -9,7 +9,7 @@ import xarray as xr
 
 from rockframe.errors import ModelWarning, StudyError, warn
 from rockframe.results.outcome import overturns
-from rockframe.results.schema import build_dataset, with_variables
+from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -29,10 +29,9 @@ from rockframe.studies.lines import (
     CAPACITY,
     INTERRUPTED,
     SCALE,
+    SOURCE,
     VERDICT,
     Lines,
-    bracket_arrays,
-    least_exceeding,
     read_resolution,
     read_scales,
     read_width,
@@ -165,37 +164,22 @@ def incremental_dynamic_analysis(
         msg = f"{_OWNER}: there is no motion to scale; give one"
         raise StudyError(msg)
     asked: Any = {**run, "points": points}
-    kept = {"outputs": outputs, "output_step": output_step}
-    lines = Lines(system, named_motions(given), line_axes.columns, asked, _OWNER, kept)
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)
 
-    scan, seen, brackets = lines.followed(scales, verdicts, width=share, resolution=finest)
-    scan = line_axes.arranged(scan)
+    lines = Lines(system, named_motions(given), line_axes.columns, asked, _OWNER, verdicts)
+    along = lines.followed(
+        scales, width=share, resolution=finest, outputs=outputs, output_step=output_step
+    )
+    scan = line_axes.arranged(along.scan)
     over = {**line_axes.sizes, MOTION: scan.sizes[MOTION]}
     shape = (len(states), *over.values())
-    below, above, _, after = (
-        one.reshape((*shape, -1)) for one in bracket_arrays(brackets, seen.first.shape)
-    )
-    capacity = least_exceeding(seen.first.reshape(shape), above, after)
-    narrow = build_dataset(
-        {
-            "capacity_scale": capacity,
-            "capacity_resolution": seen.resolution.reshape(shape),
-            "flip_count": np.isfinite(below).sum(axis=-1),
-            "scale_below": below,
-            "scale_above": above,
-            "exceeds_above": after,
-        },
-        {},
-        over=("limit_state", *over),
-        source="scan and bisection of event-driven runs",
-    )
+    capacities = along.capacities(shape)
+    found = with_variables(scan, {**capacities, **along.flips(shape)}, over=("limit_state", *over))
+    censored = np.isinf(capacities["capacity_scale"]).sum(axis=-1)
     found = with_variables(
-        scan.assign(narrow.data_vars),
-        {"censored_count": np.isinf(capacity).sum(axis=-1)},
-        over=("limit_state", *line_axes.sizes),
+        found, {"censored_count": censored}, over=("limit_state", *line_axes.sizes)
     )
     found = found.assign_coords(labels_of_states(states))
     if measure is not None:
@@ -204,7 +188,7 @@ def incremental_dynamic_analysis(
     _say_what_lies_below(found)
     found.attrs |= {
         "title": "Incremental dynamic analysis of a rocking system",
-        "source": narrow.attrs["source"],
+        "source": SOURCE,
         "capacity": CAPACITY,
         STATES: states_json(states),
         "resolution": finest,

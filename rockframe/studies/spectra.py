@@ -11,7 +11,7 @@ from rockframe.comparison.models import check_system
 from rockframe.components import Block
 from rockframe.errors import ComponentError, StudyError, collected_warnings
 from rockframe.results.outcome import Generic
-from rockframe.results.schema import build_dataset
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
@@ -22,10 +22,9 @@ from rockframe.studies.line_axes import over_rows, read_line_axes
 from rockframe.studies.lines import (
     CAPACITY,
     SCALE,
+    SOURCE,
     VERDICT,
     Lines,
-    bracket_arrays,
-    least_exceeding,
     read_resolution,
     read_rising,
     read_scales,
@@ -283,38 +282,30 @@ def overturning_spectrum(
     finest = read_resolution(resolution, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)
     named = named_motions(_checked_motions(motions, system, _OVERTURNING))
-    lines = Lines(sizes.system, named, sizes.columns, run, _OVERTURNING)
-    scan, seen, brackets = lines.followed(
-        scales, lambda runs: overturns(runs).expand_dims(VERDICT), width=share, resolution=finest
-    )
+    lines = Lines(
+        sizes.system, named, sizes.columns, run, _OVERTURNING,
+        lambda runs: overturns(runs).expand_dims(VERDICT),
+    )  # fmt: skip
+    along = lines.followed(scales, width=share, resolution=finest)
+    scan = along.scan
     shape = (scan.sizes[CASE], scan.sizes[MOTION])
-    below, above, _, after = (
-        one[0].reshape(*shape, -1) for one in bracket_arrays(brackets, (1, shape[0] * shape[1]))
-    )
     shown = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
-    capacity = least_exceeding(seen.first[0].reshape(shape), above, after)
+    capacities, flips = along.capacities(shape), along.flips(shape)
+    capacity = capacities["capacity_scale"]
     unit = of_motions(scan, unscaled_motions(scan, named, owner=_OVERTURNING), measure.of)
     powers = capacity ** np.where(np.isinf(capacity), 1, POWERS[measure.name])
-    narrow = build_dataset(
-        {
-            "capacity_scale": capacity,
-            "capacity_resolution": seen.resolution[0].reshape(shape),
-            "capacity_intensity": unit.to_numpy() * powers,
-            "flip_count": np.isfinite(below).sum(axis=-1),
-            "left_out_count": np.isnan(shown).sum(axis=-1),
-            "scale_below": below,
-            "scale_above": above,
-            "exceeds_above": after,
-        },
-        {},
-        over=(CASE, MOTION),
-        source="scan and bisection of event-driven runs",
-    )
-    narrow["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
-    found = scan.drop_dims(SCALE).assign(narrow.data_vars)
+    values = {
+        **capacities,
+        "capacity_intensity": unit.to_numpy() * powers,
+        "flip_count": flips["flip_count"],
+        "left_out_count": np.isnan(shown).sum(axis=-1),
+        **flips,
+    }
+    found = with_variables(scan.drop_dims(SCALE), values, over=(CASE, MOTION))
+    found["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
     return sizes.arranged(found).assign_attrs(
         title="Overturning spectrum",
-        source=narrow.attrs["source"],
+        source=SOURCE,
         **of_study(measure.name, measure.period),
         capacity=CAPACITY,
         resolution=finest,

@@ -43,9 +43,8 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_json,
 )
-from rockframe.studies.lines import INTERRUPTED
+from rockframe.studies.lines import INTERRUPTED, Rounds, rounds_of
 from rockframe.studies.probability import SAMPLED, Spread, read_correlation, read_spread
-from rockframe.studies.rounds import Rounds, rounds_of
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.case import remember, remembered
 from rockframe.studies.sweeps.planning import check_memory
