@@ -18,8 +18,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
-from rockframe.studies.fragility.labelling import Arrangement, Means, with_stripes
-from rockframe.studies.fragility.likelihood import Bands
+from rockframe.studies.fragility.labelling import with_stripes
 from rockframe.studies.fragility.trials import laid_out, motion_numbers
 from rockframe.studies.intensities import (
     PERIOD_OF,
@@ -461,8 +460,7 @@ def _labelled(
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
         for level in levels
     ]
-    layout = Arrangement(over, (len(levels),))
-    found = with_stripes(found, counted, layout, Means(Bands.PROFILE, confidence))
+    found = with_stripes(found, counted, {"limit_state": len(levels)}, confidence)
     for one in _OF_INTENSITY:
         found[one].attrs["units"] = measure.attrs.get("units", "1")
     found["cloud_response"].attrs["units"] = found["response_limit"].attrs["units"] = unit

@@ -7,7 +7,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_names
+from rockframe.arguments import one_of_names, one_of_words
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
@@ -193,9 +193,10 @@ def fragility(
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
     verdicts = [exceeds(runs, state) for state in states]
-    repeated = not of_capacities and any(map(_repeated, structures.parts(verdicts[-1])))
-    most = max(len(np.unique(motion_numbers(one))) for one in structures.parts(verdicts[-1]))
-    of_runs = Bands.JACKKNIFE if most <= _MOST_LEFT_OUT else Bands.SANDWICH
+    sizes = [(len(np.unique(motion_numbers(one))), one.size)
+             for one in structures.parts(verdicts[-1])]  # fmt: skip
+    repeated = not of_capacities and any(motions < count for motions, count in sizes)
+    of_runs = Bands.JACKKNIFE if max(sizes)[0] <= _MOST_LEFT_OUT else Bands.SANDWICH
     common = one_of_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
     if common and (of_capacities or len(measures) > 1 or bands == "profile"):
         msg = (
@@ -227,7 +228,8 @@ def fragility(
     if together:
         about[POOLED] = ", ".join(together)
     dataset = fragility_dataset(
-        found, {**over, "limit_state": len(states)}, [_labels(one) for one in measures], means,
+        found, {**over, "limit_state": len(states)},
+        [(str(one.name), dict(one.attrs)) for one in measures], means,
         about | told_period(runs, given, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = dataset.assign_coords({**structures.coordinates, **labels_of_states(states)})
@@ -277,18 +279,14 @@ def _of_counts(
         raise ComponentError(msg)
     means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER))
     made = Trials.of_verdicts(np.log(values)[:, None], over, count)
-    each = (
-        np.repeat(values, count.astype(int)),
-        np.concatenate(
-            [np.repeat([1.0, 0.0], [int(k), int(n - k)]) for k, n in zip(over, count, strict=True)]
-        ),
-    )
-    total = int(count.sum())
-    labels = (which.name, which.attributes())
+    # the runs: of each intensity those that exceeded, and then the others
+    times = np.column_stack([over, count - over]).astype(int).ravel()
+    verdicts = np.repeat(np.tile([1.0, 0.0], len(values)), times)
+    runs = np.repeat(np.repeat(values, 2), times)[:, None], verdicts
     about: dict[str, Any] = {"trials": "trials"}
     found = fragility_dataset(
-        [StructureTrials(made, (each[0][:, None], each[1]), 0, total)],
-        {"limit_state": 1}, [labels], means,
+        [StructureTrials(made, runs, 0, len(verdicts))],
+        {"limit_state": 1}, [(which.name, which.attributes())], means,
         about | told_period(None, [measure], period, owner=_OWNER),
     ).isel(limit_state=0)  # fmt: skip
     return found.assign_attrs(verdict=sentences(found))
@@ -359,21 +357,11 @@ def _several(given: object) -> list[object]:
     return several
 
 
-def _labels(measure: xr.DataArray) -> tuple[str, dict[str, Any]]:
-    return str(measure.name), dict(measure.attrs)
-
-
-def _repeated(runs: xr.DataArray) -> bool:
-    """Tell whether some motion was run more than once."""
-    return len(np.unique(motion_numbers(runs))) < runs.size
-
-
 def _bands(given: str | None, usual: Bands, measures: int) -> Bands:
     if given is None:
         return usual if measures == 1 or usual is not Bands.PROFILE else Bands.SANDWICH
-    names = [one.name.lower() for one in Bands]
-    one_of_names(given, names, owner=_OWNER, name="bands")
-    if given == "profile" and measures > 1:
+    found = one_of_words(Bands, given, owner=_OWNER, name="bands")
+    if found is Bands.PROFILE and measures > 1:
         msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"
         raise ComponentError(msg)
-    return Bands[given.upper()]
+    return found

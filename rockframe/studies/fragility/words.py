@@ -60,7 +60,7 @@ def sentences(fragility: xr.Dataset) -> str:
         independent, trials = (
             last[f"{name}_count"].to_numpy().ravel()[fitted] for name in ("independent", "trial")
         )
-        bands, kind = Bands[last.attrs["bands"].upper()], last.attrs["trials"]
+        bands, kind = Bands(last.attrs["bands"]), last.attrs["trials"]
         said += words_of_bounds(
             bands, last.attrs["confidence"], independent, trials,
             kind="trials" if kind == "trials" else "motions", measures=len(measures_of(last)),
@@ -154,7 +154,7 @@ def _separation(last: xr.Dataset) -> str:
 
 def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
     """Tell of how many fits a single motion keeps the trials from being separated."""
-    if last.attrs["bands"] != Bands.JACKKNIFE.name.lower() or "dispersion" not in last:
+    if last.attrs["bands"] != Bands.JACKKNIFE or "dispersion" not in last:
         return
     lacking = np.isnan(last["dispersion_upper_bound"].to_numpy().ravel()[fitted])
     enough = last["independent_count"].to_numpy().ravel()[fitted] >= min(COVERAGE[Bands.JACKKNIFE])
