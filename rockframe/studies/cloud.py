@@ -1,7 +1,7 @@
 """Cloud analysis: a straight line in logarithms, with runs that overturn apart."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
@@ -44,7 +44,10 @@ _FEWEST: Final = 4
 _POINTS: Final = 101
 _DRAWS: Final = 4000
 """Of the coefficients, for bounds."""
-_ENDS: Final = ("lower", "upper")
+_BEYOND: Final = 3.0
+"""Logarithm of the intensity by which medians are looked for beyond the runs."""
+_WIDE: Final = 601
+_ENDS: Final = ("", "_lower_bound", "_upper_bound")
 _OF_INTENSITY: Final = (
     "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
     "stripe_intensity", "cloud_intensity",
@@ -130,30 +133,32 @@ class Cloud:
 
     def probabilities(self, logs: Array, level: float) -> Array:
         """Give the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
-        falls, moves = self.overturning.at(logs), self.moving.at(logs)
-        if math.isinf(level):
-            return falls
-        if self.line is None:
-            return np.full(logs.shape, np.nan)
-        beyond = _normal(
-            (self.line.intercept + self.line.slope * logs - math.log(level)) / self.line.dispersion
-        )
-        return falls + (1.0 - falls) * moves * beyond
+        line = self.line
+        of_line = None if line is None else (line.intercept, line.slope, line.dispersion)
+        return _beyond(self.overturning.at(logs), self.moving.at(logs), of_line, logs, level)
 
     def drawn(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
         """Draw curves that are as likely; shape (count, intensities)."""
         falls, moves = self.overturning.drawn(logs, rng, count), self.moving.drawn(logs, rng, count)
-        if math.isinf(level) or self.line is None:
-            return falls if math.isinf(level) else np.full((count, len(logs)), np.nan)
-        intercept, slope, spread = (one[:, None] for one in self.line.drawn(rng, count))
-        beyond = _normal((intercept + slope * logs - math.log(level)) / spread)
-        return falls + (1.0 - falls) * moves * beyond
+        of_line = None
+        if self.line is not None and not math.isinf(level):
+            of_line = [one[:, None] for one in self.line.drawn(rng, count)]
+        return _beyond(falls, moves, of_line, logs, level)
 
 
-def _normal(eta: Array) -> Array:
+def _beyond(
+    falls: Array, moves: Array, of_line: Sequence[Any] | None, logs: Array, level: float
+) -> Array:
+    """Give the probability beyond a level from those to overturn and to move, and the line."""
     from scipy.special import ndtr
 
-    return np.asarray(ndtr(eta))
+    if math.isinf(level):
+        return falls
+    if of_line is None:
+        return np.full(np.shape(falls), np.nan)
+    intercept, slope, dispersion = of_line
+    beyond = np.asarray(ndtr((intercept + slope * logs - math.log(level)) / dispersion))
+    return falls + (1.0 - falls) * moves * beyond
 
 
 @hinted()
@@ -250,10 +255,11 @@ def cloud_analysis(
     asked = _levels(limits, values)
     floor = read_least(least, values, owner=_OWNER)
     found = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
-    dataset = _labelled(
-        found, asked, _names(asked, response, label, values), measure, level, seed,
-        unit=str(values.attrs.get("units", "1")),
-    )  # fmt: skip
+    words = " ".join(filter(None, [response.replace("_", " "), label]))
+    named = {f"{words} {one:g}{unit_behind(values.attrs)}": one for one in asked}
+    dataset = _labelled(found, named | {OVERTURNING: math.inf}, measure, level, seed)
+    for one in ("cloud_response", "response_limit"):
+        dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))
     dataset.attrs |= {
         **{key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs},
         **told_period(runs, [intensity], period, owner=_OWNER),
@@ -305,18 +311,10 @@ def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> floa
 
 
 def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
-    """Read levels of the response, as they are given; overturning is the last, at infinity."""
+    """Read levels of the response, as they are given, beside overturning."""
     levels = listed_limits(limits, owner=_OWNER)
     found = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
-    return [*dict.fromkeys(found), math.inf]
-
-
-def _names(
-    levels: Sequence[float], response: str, label: str | None, values: xr.DataArray
-) -> list[str]:
-    words = " ".join(filter(None, [response.replace("_", " "), label]))
-    unit = unit_behind(values.attrs)
-    return [OVERTURNING if math.isinf(one) else f"{words} {one:g}{unit}" for one in levels]
+    return [*dict.fromkeys(found)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -329,7 +327,8 @@ class _Curve:
     dispersion: Array
 
 
-def _curve(cloud: Cloud, level: float, along: Array, bounds: "_Bounds") -> _Curve:
+def _curve(cloud: Cloud, level: float, along: Array, confidence: float, seed: int) -> _Curve:
+    """Give the fragility of a level at some intensities; bounds unless confidence is NaN."""
     status = _status(cloud, level)
     wide = np.linspace(cloud.logs.min() - _BEYOND, cloud.logs.max() + _BEYOND, _WIDE)
     middle, spread = _parameters(cloud.probabilities(wide, level)[None], wide)
@@ -341,9 +340,9 @@ def _curve(cloud: Cloud, level: float, along: Array, bounds: "_Bounds") -> _Curv
     medians[0], spreads[0] = np.exp(middle[0]), spread[0]
     if status is FragilityStatus.SEPARATED:
         medians[0], spreads[0] = np.exp(cloud.overturning.coefficients[0]), 0.0
-    elif not math.isnan(bounds.confidence):
-        tails = 0.5 * (1.0 - bounds.confidence), 0.5 * (1.0 + bounds.confidence)
-        rng = np.random.default_rng(bounds.seed)
+    elif not math.isnan(confidence):
+        tails = 0.5 * (1.0 - confidence), 0.5 * (1.0 + confidence)
+        rng = np.random.default_rng(seed)
         drawn = cloud.drawn(np.concatenate([along, wide]), level, rng, _DRAWS)
         points[1:] = np.quantile(drawn[:, : len(along)], tails, axis=0)
         each = _parameters(drawn[:, len(along) :], wide)
@@ -352,18 +351,6 @@ def _curve(cloud: Cloud, level: float, along: Array, bounds: "_Bounds") -> _Curv
         medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
         spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
     return _Curve(status, points, medians, spreads)
-
-
-_BEYOND: Final = 3.0
-"""Logarithm of the intensity by which medians are looked for beyond the runs."""
-_WIDE: Final = 601
-
-
-class _Bounds(NamedTuple):
-    """How bounds are drawn."""
-
-    confidence: float  # NaN where there are none
-    seed: int
 
 
 def _status(cloud: Cloud, level: float) -> FragilityStatus:
@@ -401,36 +388,32 @@ def _crossing(eta: Array, logs: Array, level: float) -> Array:
 
 def _labelled(
     runs: CloudOfRuns,
-    levels: Sequence[float],
-    names: Sequence[str],
+    levels: Mapping[str, float],
     measure: xr.DataArray,
     confidence: float,
     seed: int,
-    *,
-    unit: str,
 ) -> xr.Dataset:
-    """Label a cloud and its fragility; the responses have a unit."""
-    cloud, bounds = runs.cloud, _Bounds(math.nan if runs.repeated else confidence, seed)
+    """Label a cloud and its fragility against levels of the response, by their names."""
+    cloud, of_bounds = runs.cloud, math.nan if runs.repeated else confidence
     along = np.linspace(cloud.logs.min(), cloud.logs.max(), _POINTS)
-    curves = [_curve(cloud, level, along, bounds) for level in levels]
+    curves = [_curve(cloud, level, along, of_bounds, seed) for level in levels.values()]
     name, over = str(measure.name), ("limit_state",)
-    line, falls = cloud.line, cloud.overturning.coefficients
-    of_line = [math.nan] * 4 if line is None else [
-        line.intercept, line.slope, line.dispersion, line.determination
+    line, falls = cloud.line, cloud.overturning
+    of_line = [math.nan] * 5 if line is None else [
+        line.intercept, line.slope, math.sqrt(line.covariance[1, 1]), line.dispersion,
+        line.determination,
     ]  # fmt: skip
-    errors = [math.nan] * 2 if line is None else np.sqrt(np.diag(line.covariance)).tolist()
-    fell = np.isinf(cloud.responses)
+    names = (
+        "regression_intercept", "regression_slope", "regression_slope_error",
+        "residual_dispersion", "determination",
+    )  # fmt: skip
     found = build_dataset(
         {
-            "regression_intercept": of_line[0],
-            "regression_slope": of_line[1],
-            "regression_slope_error": errors[1],
-            "residual_dispersion": of_line[2],
-            "determination": of_line[3],
-            "logistic_intercept": falls[0],
-            "logistic_slope": falls[1],
-            "logistic_slope_error": math.sqrt(cloud.overturning.covariance[1, 1]),
-            "cloud_overturned_count": fell.sum(),
+            **dict(zip(names, of_line, strict=True)),
+            "logistic_intercept": falls.coefficients[0],
+            "logistic_slope": falls.coefficients[1],
+            "logistic_slope_error": math.sqrt(falls.covariance[1, 1]),
+            "cloud_overturned_count": np.isinf(cloud.responses).sum(),
             "resting_count": (cloud.responses == 0.0).sum(),
             "cloud_intensity": np.exp(cloud.logs),
             "cloud_response": cloud.responses,
@@ -438,32 +421,29 @@ def _labelled(
         {"bands": "posterior", "trials": "cloud", "confidence": confidence},
         title="Cloud analysis", source="least squares and logistic regression",
     )  # fmt: skip
-    ends = ("", *(f"_{end}_bound" for end in _ENDS))
+    limits = np.array([*levels.values()])
     of_states = {"fragility_status": np.array([one.status for one in curves]),
-                 "response_limit": np.array(levels)}  # fmt: skip
-    for k, end in enumerate(ends):
+                 "response_limit": limits}  # fmt: skip
+    for k, end in enumerate(_ENDS):
         of_states[f"median_intensity{end}"] = np.array([one.median[k] for one in curves])
         of_states[f"dispersion{end}"] = np.array([one.dispersion[k] for one in curves])
-    counts = {
-        "trial_count": np.full(len(levels), len(cloud.logs)),
-        "left_out_count": np.full(len(levels), int((~runs.kept).sum())),
-    }
+    of_states["trial_count"] = np.full(len(levels), len(cloud.logs))
+    of_states["left_out_count"] = np.full(len(levels), int((~runs.kept).sum()))
     points = {
         f"exceedance_probability{end}": np.stack([one.points[k] for one in curves])
-        for k, end in enumerate(ends)
+        for k, end in enumerate(_ENDS)
     }
-    found = with_variables(found, {**of_states, **counts}, over=over)
+    found = with_variables(found, of_states, over=over)
     found = with_variables(found, points, over=(*over, name))
     found = found.assign_coords({name: (name, np.exp(along), measure.attrs)})
-    found = with_variables(found, {"limit_state": np.array(list(names), dtype=object)})
+    found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
     counted = [
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
-        for level in levels
+        for level in levels.values()
     ]
     found = with_stripes(found, counted, {"limit_state": len(levels)}, confidence)
     for one in _OF_INTENSITY:
         found[one].attrs["units"] = measure.attrs.get("units", "1")
-    found["cloud_response"].attrs["units"] = found["response_limit"].attrs["units"] = unit
     return found
 
 
