@@ -159,12 +159,7 @@ def critical_scale(
     finest = read_resolution(resolution, owner=_OWNER)
     count = whole_number(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
     most = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
-    plan = plan_run(
-        system.assembly,
-        motion,
-        outputs=None,
-        **asked,
-    )
+    plan = plan_run(system.assembly, motion, outputs=None, **asked)
     measure = None
     if intensity is not None:
         measure = ScaledIntensity(

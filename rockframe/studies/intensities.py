@@ -19,7 +19,6 @@ from rockframe.measures.intensity import measure_of_ground
 from rockframe.measures.response import checked_periods
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
-from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.studies.sweeps import case
@@ -83,8 +82,9 @@ PERIOD_OF: Final = "intensity_period"
 """Attribute that keeps the period of a spectral intensity, or those of an average [s]."""
 Periods: TypeAlias = float | tuple[float, ...] | None
 """That of an oscillator, or those over which its values are averaged [s]."""
-_OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
-_SPECTRAL: Final = (*_OSCILLATORS, AVERAGE)
+OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
+"""Measures that need the period of an oscillator."""
+_SPECTRAL: Final = (*OSCILLATORS, AVERAGE)
 """Measures that are of a period, or of several."""
 
 
@@ -297,8 +297,6 @@ def _unit_factor(motion: GroundMotion, name: str, period: float | None) -> float
     return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
 
 
-OF_OSCILLATORS: Final = tuple(row.name for row in MEASURES if row.dims == OSCILLATOR)
-"""Measures that need the period of an oscillator."""
 _OF_THE_BLOCK: Final = ("overturning_angle", "uplift_acceleration")
 """Numbers beside the measures that are not the motion's."""
 
@@ -316,19 +314,16 @@ class ScaledIntensity:
         damping_ratio: RatioLike,
         owner: str,
     ) -> None:
-        self._motion = motion
+        self._motion, self._system = motion, system
         name = spelled(text(name, owner=owner, name="intensity"))
-        self._block = system.parts.block
-        self._gravity = quantity(system.options.gravity, ACCELERATION)
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
-        spectral = name in OF_OSCILLATORS
+        spectral = name in OSCILLATORS
         if spectral != (period is not None):
             needed = "needs a period, for example period='0.5 s'" if spectral else "has no period"
             msg = f"{owner}: intensity {shown(name)} {needed}"
             raise ComponentError(msg)
         self.period = None if period is None else to_si(period, PERIOD, owner=owner, name="period")
-        of_motion = self._all(motion)
-        known = sorted({*map(str, of_motion.data_vars), *OF_OSCILLATORS} - {*_OF_THE_BLOCK})
+        known = sorted({*map(str, self._measures(motion)), *OSCILLATORS} - {*_OF_THE_BLOCK})
         if name not in known:
             near = nearest(name, [*SHORT, *known])
             msg = f"{owner}: intensity must be one of {', '.join(known)}, got {shown(name)}{near}"
@@ -337,16 +332,14 @@ class ScaledIntensity:
 
     def at(self, scale: float) -> xr.DataArray:
         """Give the measure of the scaled motion; NaN unless the scale is above zero."""
-        if scale > 0.0:
-            return self._one(self._all(self._motion.scaled(scale)))
-        return xr.full_like(self._one(self._all(self._motion)), np.nan)
+        motion = self._motion.scaled(scale) if scale > 0.0 else self._motion
+        found = self._measures(motion)[self.name].isel(dict.fromkeys(SCHEMA[self.name].dims, 0))
+        return found if scale > 0.0 else xr.full_like(found, np.nan)
 
-    def _all(self, motion: GroundMotion) -> xr.Dataset:
+    def _measures(self, motion: GroundMotion) -> xr.Dataset:
         if self.period is not None:
             return response_spectrum(motion, [quantity(self.period, PERIOD)], self._damping)
+        gravity = quantity(self._system.options.gravity, ACCELERATION)
         return intensity_measures(
-            motion, block=self._block, damping_ratio=self._damping, gravity=self._gravity
+            motion, block=self._system.parts.block, damping_ratio=self._damping, gravity=gravity
         )
-
-    def _one(self, measures: xr.Dataset) -> xr.DataArray:
-        return measures[self.name].isel(dict.fromkeys(SCHEMA[self.name].dims, 0))

@@ -364,12 +364,7 @@ def probability_of_overturning(
     }
     if named is not None:
         table[MOTION] = np.array(list(named), dtype=object)[number]
-    runs = sweep(
-        system,
-        named,
-        cases=table,
-        **run,
-    )
+    runs = sweep(system, named, cases=table, **run)
     found = _counted(runs, [one.name for one in spreads], several=several > 1, level=level)
     return found.assign_attrs(
         title="Probability of overturning",

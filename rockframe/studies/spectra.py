@@ -197,12 +197,7 @@ def rocking_spectrum(
     check_system(system, _ROCKING)
     sizes = BlockSizes(system, periods, slenderness, axes, owner=_ROCKING)
     heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
-    runs = sweep(
-        sizes.system,
-        _checked_motions(motions, system, _ROCKING),
-        cases=heads,
-        **run,
-    )
+    runs = sweep(sizes.system, _checked_motions(motions, system, _ROCKING), cases=heads, **run)
     return sizes.arranged(runs).assign_attrs(title="Rocking spectrum")
 
 
