@@ -21,8 +21,8 @@ from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
+from rockframe.studies.sweeps.chunk import AGAIN
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
-from rockframe.studies.sweeps.runs import AGAIN
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,

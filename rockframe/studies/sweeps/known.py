@@ -98,8 +98,7 @@ class _Source:
     def numbers(self, places: Mapping[str, Generic]) -> Generic:
         """Give the numbers that cases have here, by their places in the other study."""
         each = [self._places[dim][places[dim]] for dim in self._grid.order]
-        shape = [self._grid.sizes[dim] for dim in self._grid.order]
-        found = np.ravel_multi_index([np.maximum(one, 0) for one in each], shape)
+        found = np.ravel_multi_index([np.maximum(one, 0) for one in each], self._grid.shape)
         found[np.any(np.array(each) == _NOBODY, axis=0)] = _NOBODY
         for old in np.unique(found[found != _NOBODY] // self.kept.chunk).tolist():
             if not self.kept.has(self.kept.chunk_at(old)):  # not yet run

@@ -23,9 +23,14 @@ from rockframe.results.variables.runs import EVENTS_AND_SCALARS
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
 from rockframe.studies.sweeps.axes import Grid
-from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, CollectedResults, Driver
-from rockframe.studies.sweeps.runs import SCREEN
-from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
+from rockframe.studies.sweeps.chunk import (
+    DRIVER,
+    SCREEN,
+    CaseResults,
+    CollectedResults,
+    Driver,
+)
+from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.studies.sweeps.words import SCREENED, summed_up, whole_verdict
 
@@ -74,7 +79,7 @@ def sweep_labels(study: Study) -> Labels:
     if isinstance(scene, SystemScene):
         attributes["model"] = scene.assembly.setting.model
         attributes["system_json"] = scene.assembly.json
-    elif isinstance(scene, FunctionScene):
+    else:
         attributes["function"] = scene.name
     return Labels(grid, tuple(study.motions), study.histories, arguments.points, attributes)
 
@@ -155,14 +160,12 @@ def _joined(count: int, found: Iterable[tuple[range, CaseResults]]) -> CaseResul
 
 def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
     grid = labels.grid
-    found = {
-        axis.name: xr.Variable(axis.name, _labels(axis.values), axis.attributes())
-        for axis in grid.axes
-    }
-    found |= {
-        axis.name: xr.Variable(CASE, _labels(axis.values), axis.attributes())
-        for axis in grid.columns
-    }
+    found: dict[str, xr.Variable] = {}
+    for axis in (*grid.axes, *grid.columns):
+        words = axis.values.dtype.kind == "U"
+        values = axis.values.astype(object) if words else axis.values
+        dim = axis.name if axis in grid.axes else CASE
+        found[axis.name] = xr.Variable(dim, values, axis.attributes())
     if grid.motion_column is not None:
         names = np.array(labels.motions, dtype=object)[grid.motion_column]
         found[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
@@ -180,10 +183,6 @@ def _of_bodies(labels: Labels, sizes: Mapping[Any, int]) -> Mapping[Any, xr.Data
         numbers = [str(k + 1) for k in range(count)]
         found[RESTRAINER[0]] = np.array(names if len(names) == count else numbers, dtype=object)
     return build_dataset(found, {}).coords
-
-
-def _labels(values: Generic) -> Generic:
-    return values.astype(object) if values.dtype.kind == "U" else values
 
 
 def _driver(found: Generic) -> str:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, Final, Protocol, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -59,22 +59,6 @@ _CHOICES: Final[dict[str, tuple[type[StrEnum], str]]] = {
 }
 _OPTIONS: Final = (*_CHOICES, *MEASURED)
 _SYSTEM: Final = System.__name__
-
-
-class SweptScene(Protocol):
-    """What is simulated at the values of a case."""
-
-    def axis(self, name: str, given: object) -> Axis:
-        """Read an axis: what it changes, and its values."""
-        ...
-
-    def faults(self, axes: Iterable[Axis]) -> list[str]:
-        """Tell which axes do not go together."""
-        ...
-
-    def assembled(self, values: Values) -> Assembly:
-        """Give the scene of a case; warn as :class:`rockframe.System` does."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -228,11 +212,12 @@ class FunctionScene:
 
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names an argument, or else the motion's scale."""
-        arguments = self._arguments()
-        name = name if name in arguments else full_name(name)
-        of_run = None if name in arguments else _of_run(name, given)
-        if of_run is not None:
-            return of_run
+        kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+        if not any(n == name and one.kind in kinds for n, one in self._parameters.items()):
+            name = full_name(name)
+            of_run = _of_run(name, given)
+            if of_run is not None:
+                return of_run
         values, unit = free_values(given, name)
         return Axis(name, values, unit, name.replace("_", " "), Changes.ARGUMENT, name)
 
@@ -240,17 +225,16 @@ class FunctionScene:
         """Tell whether the function takes the axes, and all that it needs is among them."""
         given = {axis.name: None for axis in axes if axis.changes is Changes.ARGUMENT}
         try:
-            self._signature().bind(**given)
+            inspect.signature(self.function).bind(**given)
         except TypeError as problem:
-            unknown = [name for name in given if name not in self._signature().parameters]
+            unknown = [name for name in given if name not in self._parameters]
             question = suggestion(unknown[0], OF_A_SWEEP).removesuffix(".") if unknown else ""
             return [f"the axes do not fit the arguments of {self.name}: {problem}{question}"]
         return []
 
     def assembled(self, values: Values) -> Assembly:
         """Call the function."""
-        found = self.system(values)
-        return found.assembly
+        return self.system(values).assembly
 
     def system(self, values: Values) -> System:
         """Call the function; give its system."""
@@ -267,12 +251,13 @@ class FunctionScene:
         """Name of the function."""
         return name_of(self.function)
 
-    def _signature(self) -> inspect.Signature:
-        return inspect.signature(self.function)
+    @property
+    def _parameters(self) -> Mapping[str, inspect.Parameter]:
+        return inspect.signature(self.function).parameters
 
-    def _arguments(self) -> set[str]:
-        kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-        return {n for n, one in self._signature().parameters.items() if one.kind in kinds}
+
+SweptScene: TypeAlias = SystemScene | FunctionScene
+"""What is simulated at the values of a case."""
 
 
 def scene_of(given: object) -> SweptScene:
