@@ -145,17 +145,12 @@ def each_run(
         try:
             system, said, plan = cases.planned(case)
             response = respond(system, plan)
-            if case in faults:  # that it alone does not have
-                said = [*said, _not_beside_others(faults[case])]
+            if (fault := faults.get(case)) is not None:  # that it alone does not have
+                words = f"its run beside others failed ({type(fault).__name__}: {fault})"
+                said = [*said, f"{words}, and it ran alone: {PLEASE_REPORT}"]
             yield Finished(case, system, response.trajectory, said, response)
         except Exception as problem:  # whatever it is, it is this case's alone
             yield Failed(case, problem)
-
-
-def _not_beside_others(problem: Exception) -> str:
-    """Say of a case that ran alone why it did not run in a lane."""
-    kind = type(problem).__name__
-    return f"its run beside others failed ({kind}: {problem}), and it ran alone: {PLEASE_REPORT}"
 
 
 def looks_of(
@@ -208,20 +203,16 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
     return None if stopped() else collected.rows()
 
 
-def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
-    """Give what is to be warned of in a run, and its scalars."""
+def _told(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
+    """Give what is to be warned of in a run, and its scalars, with how it was run."""
     if run.response is not None:
-        return [text for _, text in run.response.cautions()], run.response.scalars
+        driver = Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
+        cautions = [text for _, text in run.response.cautions()]
+        return cautions, {DRIVER: driver, **run.response.scalars}
     missing: list[str] = []
     scalars = scalars_of(run.system, run.summary, missing)
-    moving = in_motion(run.system, run.summary, missing)
-    return [*([STILL_MOVING] if moving else []), *missing], scalars
-
-
-def _driver(run: Finished) -> Driver:
-    if run.response is None:
-        return Driver.IN_LANES
-    return Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
+    moving = [STILL_MOVING] if in_motion(run.system, run.summary, missing) else []
+    return [*moving, *missing], {DRIVER: Driver.IN_LANES, **scalars}
 
 
 class _Collector(CollectedResults):
@@ -248,13 +239,13 @@ class _Collector(CollectedResults):
         case, response = run.case, run.response
         if self._status[case] != RunStatus.NOT_RUN:  # of a first run
             self._clear(case)
-        cautions, scalars = _cautions_and_scalars(run)
+        cautions, scalars = _told(run)
         self._say(case, "; ".join([*run.said, *cautions]) or NONE)
         self._status[case] = run.summary.status
         if run.summary.overturned is None:
             self._clear(case)
             return
-        self._put_scalars(case, {DRIVER: _driver(run), **scalars})
+        self._put_scalars(case, scalars)
         if self._kept is not None and response is not None and response.answers.values:
             self._put_histories(case, response.answers.values, self._kept)
 

@@ -243,17 +243,11 @@ class _Caller(Executor):
         return done
 
 
-def _has_threads() -> bool:
+@contextmanager
+def _own_threads() -> Generator[Executor]:
     try:
         Thread(target=int).start()
     except RuntimeError:  # as in a browser
-        return False
-    return True
-
-
-@contextmanager
-def _own_threads() -> Generator[Executor]:
-    if not _has_threads():
         yield _Caller()
         return
     with ThreadPoolExecutor(worker_count(), thread_name_prefix="rockframe") as pool:

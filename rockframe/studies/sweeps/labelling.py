@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -87,7 +87,11 @@ def sweep_labels(study: Study) -> Labels:
 def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
     """Label what has been found."""
     grid = labels.grid
-    rows = _joined(grid.count, found)
+    collected = CollectedResults(grid.count)  # in the order of running, with gaps
+    for cases, each in found:
+        collected.put_rows(slice(cases.start, cases.stop), each)
+    rows = collected.rows()
+    few, message = summed_up(rows.texts, rows.message)
     gaps = np.full((grid.count, len(labels.points)), np.nan)
     scalars = {
         name: gaps if SCHEMA[name].dims else np.full(grid.count, np.nan)
@@ -100,7 +104,7 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
     values = {name: grid.arranged(scalars.pop(name)) for name in SCHEMA if name in scalars}
     values["status"] = grid.arranged(rows.status)
     # as objects, each text is there once
-    texts = np.array(rows.texts, dtype=object)[grid.arranged(rows.message)]
+    texts = np.array(few, dtype=object)[grid.arranged(message)]
     said = xr.Variable(tuple(grid.sizes), texts, SCHEMA[MESSAGE].attributes())
     runs = build_dataset(values, {}, over=tuple(grid.sizes))
     attributes = {
@@ -146,16 +150,6 @@ def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) 
     """Add the axes, and what is said of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
     return without_fill_values(dataset.assign_coords(_of_bodies(labels, dataset.sizes)))
-
-
-def _joined(count: int, found: Iterable[tuple[range, CaseResults]]) -> CaseResults:
-    """Put chunks together, in the order of running, with gaps where there are none."""
-    collected = CollectedResults(count)
-    for cases, rows in found:
-        collected.put_rows(slice(cases.start, cases.stop), rows)
-    whole = collected.rows()
-    few, message = summed_up(whole.texts, whole.message)
-    return replace(whole, message=message, texts=few)
 
 
 def _coordinates(labels: Labels) -> dict[str, xr.Variable]:

@@ -233,8 +233,11 @@ def plan_study(
     of_case: Generic | None = None
     table = tried(lambda: _table(cases), {})
     if MOTION in table:
-        column = table.pop(MOTION)
-        of_case = tried(lambda: _motion_column(column, list(given)), None)
+        column, names = np.asarray(table.pop(MOTION)).tolist(), list(given)
+        of_case = tried(
+            lambda: np.array([motion_number(one, names, owner="cases") for one in column], np.intp),
+            None,
+        )
     rows = _read(made, table, faults, tried, repeats=True)
     grid_axes = _read(made, axes, faults, tried, repeats=False)
     faults += _twice(rows, grid_axes)
@@ -324,12 +327,6 @@ def _table(cases: object) -> dict[str, object]:
             raise StudyError(msg)
         table[name] = (np.asarray(values), unit.removesuffix("]")) if bracket else values
     return table
-
-
-def _motion_column(column: Any, names: list[str]) -> Generic:
-    """Read which motion each case has, by name or by number."""
-    wanted = np.asarray(column).tolist()
-    return np.array([motion_number(one, names, owner="cases") for one in wanted], dtype=np.intp)
 
 
 def _read(

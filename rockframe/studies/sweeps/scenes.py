@@ -238,9 +238,13 @@ class FunctionScene:
 
     def system(self, values: Values) -> System:
         """Call the function; give its system."""
-        found = self.function(
-            **{axis.name: _with_unit(value, axis.unit) for axis, value in values.items()}
-        )
+        given = {
+            axis.name: value
+            if axis.unit in (None, Unit.ONE)
+            else quantity(value, Measure("a quantity", Unit(axis.unit), ""))
+            for axis, value in values.items()
+        }
+        found = self.function(**given)
         if not isinstance(found, System):
             msg = f"{self.name} must return a System, got {shown(found)}"
             raise StudyError(msg)
@@ -361,9 +365,3 @@ def _names(part: Component) -> list[str]:
     """Give the names of a part's class, and of the classes that it is derived from."""
     kinds = type(part).__mro__
     return [kind.__name__ for kind in kinds if issubclass(kind, Component) and kind != Component]
-
-
-def _with_unit(value: Any, unit: str | None) -> Any:
-    if unit is None or unit == Unit.ONE:
-        return value
-    return quantity(value, Measure("a quantity", Unit(unit), ""))
