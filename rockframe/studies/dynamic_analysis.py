@@ -7,7 +7,7 @@ from typing import Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ModelWarning, StudyError, warn
+from rockframe.errors import ModelWarning, warn
 from rockframe.results.outcome import overturns
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MOTION
@@ -37,8 +37,8 @@ from rockframe.studies.lines import (
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import MotionsLike, named_motions
-from rockframe.studies.sweeps.scenes import own_motion, scene_of
+from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.scenes import needed_motions, scene_of
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.system.options import PointsLike
 from rockframe.units import QuantityLike, RatioLike
@@ -159,16 +159,13 @@ def incremental_dynamic_analysis(
     share = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
     measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)
-    given = own_motion(scene) if motions is None else motions
-    if given is None:
-        msg = f"{_OWNER}: there is no motion to scale; give one"
-        raise StudyError(msg)
+    given = needed_motions(motions, scene, owner=_OWNER)
     asked: Any = {**run, "points": points}
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)
 
-    lines = Lines(system, named_motions(given), line_axes.columns, asked, _OWNER, verdicts)
+    lines = Lines(system, given, line_axes.columns(), asked, _OWNER, verdicts)
     along = lines.followed(
         scales, width=share, resolution=finest, outputs=outputs, output_step=output_step
     )
@@ -185,7 +182,15 @@ def incremental_dynamic_analysis(
     if measure is not None:
         found = found.assign({measure.name: intensity_in(scan, measure, given, owner=_OWNER)})
         found.attrs |= of_study(measure.name, measure.period)
-    _say_what_lies_below(found)
+    below, least = _at_the_least(found), float(found[SCALE].min())
+    if below.any():
+        which = "motions" if below.ndim == 1 else "lines"
+        warn(
+            f"{_OWNER}: the scan starts too high: {int(below.sum())} of {below.size} {which} "
+            f"overturn at its least scale, {least:.4g}, already, and their capacities lie at or "
+            "below it; give lesser scales",
+            ModelWarning,
+        )
     found.attrs |= {
         "title": "Incremental dynamic analysis of a rocking system",
         "source": SOURCE,
@@ -202,18 +207,6 @@ def _at_the_least(found: xr.Dataset) -> Array:
     """Tell which motions overturned at the least scale: their capacities may lie below it."""
     capacity = found["capacity_scale"].isel(limit_state=-1).to_numpy()
     return capacity == float(found[SCALE].min())
-
-
-def _say_what_lies_below(found: xr.Dataset) -> None:
-    below = _at_the_least(found)
-    if below.any():
-        lines = "motions" if below.ndim == 1 else "lines"
-        warn(
-            f"{_OWNER}: the scan starts too high: {int(below.sum())} of {below.size} {lines} "
-            f"overturn at its least scale, {float(found[SCALE].min()):.4g}, already, and their "
-            "capacities lie at or below it; give lesser scales",
-            ModelWarning,
-        )
 
 
 def verdict_of_analysis(dataset: xr.Dataset) -> str:

@@ -276,13 +276,18 @@ def scene_of(given: object) -> SweptScene:
 
 def motions_of_study(given: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
     """Read the argument ``motions``: unless given, the one of the scene; None where it has none."""
-    own = own_motion(scene) if given is None else given
-    return None if own is None else named_motions(own)
+    if given is None and isinstance(scene, SystemScene):
+        given = scene.assembly.parts.motion
+    return None if given is None else named_motions(given)
 
 
-def own_motion(scene: SweptScene) -> GroundMotion | None:
-    """Give the motion among a system's parts."""
-    return scene.assembly.parts.motion if isinstance(scene, SystemScene) else None
+def needed_motions(given: object, scene: SweptScene, *, owner: str) -> dict[str, GroundMotion]:
+    """Read the same, and refuse a scene that has none where there are none."""
+    named = motions_of_study(given, scene)
+    if named is None:
+        msg = f"{owner}: there is no motion; give one"
+        raise StudyError(msg)
+    return named
 
 
 def _left_behind(part: Component, behind: tuple[str, ...], given: Mapping[str, str]) -> str:
