@@ -93,8 +93,11 @@ def follow(
             _narrow(side, look, flip, width)
     except KeyboardInterrupt:
         whole = False
-    ends = (near for near, _ in _wide(side, resolution, may_slide=may_slide, beyond=True))
-    return Followed(_in_order(side), min([*ends, *_undecided(side), side.places[-1]]), whole)
+    ends = [near for near, _ in _wide(side, resolution, may_slide=may_slide, beyond=True)]
+    shown = _in_order(side)
+    ends += [near for near, far in side.intervals()
+             if None in (shown[near].overturned, shown[far].overturned)]  # fmt: skip
+    return Followed(shown, min([*ends, side.places[-1]]), whole)
 
 
 def _wide(
@@ -154,13 +157,6 @@ def _clearance(side: Side, near: float, far: float) -> float:
     """Give what the larger peak left of the overturning angle; 0 where that was passed."""
     ends = side.shown[near], side.shown[far]
     return min(one.clearances[0] if one.within_the_angle else 0.0 for one in ends)
-
-
-def _undecided(side: Side) -> Iterator[float]:
-    """Give the lower ends of intervals with an end that has no verdict."""
-    for near, far in side.intervals():
-        if None in (side.shown[near].overturned, side.shown[far].overturned):
-            yield near
 
 
 def _narrow(side: Side, look: Look, flip: Flip, width: float) -> None:

@@ -173,20 +173,18 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     overturned = overturns(runs)
     if state.rotation == 1.0:
         return overturned
+    known, fell = runs["peak_relative_rotation"].notnull(), runs["overturned"] == 1
     if state.variable:
         values = scalar_of(runs, state.variable, state.label, owner="limits")
-        beyond = values.notnull() if math.isnan(state.value) else abs(values) >= state.value
-        known = runs["peak_relative_rotation"].notnull()
-        known = known if math.isnan(state.value) else known & values.notnull()
-        fell = runs["overturned"] == 1
-        return (beyond | fell).astype(float).where(known | fell)
-    beyond = (
-        runs["first_uplift_time"].notnull()
-        if state.rotation == 0.0
-        else runs["peak_relative_rotation"] >= state.rotation
-    )
-    known = runs["peak_relative_rotation"].notnull()
-    return (beyond | (runs["overturned"] == 1)).astype(float).where(known)
+        beyond = values.notnull()
+        if not math.isnan(state.value):
+            beyond, known = abs(values) >= state.value, known & beyond
+        known = known | fell
+    elif state.rotation == 0.0:
+        beyond = runs["first_uplift_time"].notnull()
+    else:
+        beyond = runs["peak_relative_rotation"] >= state.rotation
+    return (beyond | fell).astype(float).where(known)
 
 
 def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:

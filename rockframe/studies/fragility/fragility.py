@@ -17,11 +17,11 @@ from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Fit
 from rockframe.studies.fragility.ordered import ordered_fits
-from rockframe.studies.fragility.structures import structures_of
 from rockframe.studies.fragility.trials import (
     Trials,
     flat,
     motion_numbers,
+    structures_of,
     trials_of_capacities,
     trials_of_runs,
 )

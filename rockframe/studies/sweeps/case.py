@@ -149,7 +149,10 @@ def case(
         raise SchemaError(msg)
     full = {name if name in dataset.dims else full_name(name): one for name, one in labels.items()}
     place = _place(dataset, full)
-    values = _values(dataset, attributes, place)
+    values: dict[Axis, Any] = {}
+    for described in json.loads(attributes["axes_json"]):
+        value = _value(dataset, described["name"], place)
+        values[Axis.from_dict(described, np.array([value]))] = value
     name = _value(dataset, MOTION, place)
     motion = unscaled_motions(attributes, [name], motions, kept)[name]
     made = _scene(None if scene is None else scene_of(scene), attributes)
@@ -250,16 +253,6 @@ def _value(dataset: xr.Dataset, name: str, place: Mapping[str, int]) -> Any:
 
 def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:
     return along.isel({dim: place[str(dim)] for dim in along.dims}).item()
-
-
-def _values(
-    dataset: xr.Dataset, attributes: Mapping[str, Any], place: Mapping[str, int]
-) -> dict[Axis, Any]:
-    found: dict[Axis, Any] = {}
-    for described in json.loads(attributes["axes_json"]):
-        value = _value(dataset, described["name"], place)
-        found[Axis.from_dict(described, np.array([value]))] = value
-    return found
 
 
 def _scene(given: SweptScene | None, attributes: Mapping[str, Any]) -> SweptScene:
