@@ -34,7 +34,7 @@ from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.execution import ProgressBar, bar_of
 from rockframe.studies.sweeps.motions import TARGETS
 from rockframe.studies.sweeps.planning import plan_study
-from rockframe.studies.sweeps.running import folder_of, run_study
+from rockframe.studies.sweeps.sweep import folder_of, run_study
 from rockframe.units import Condition, Measure, to_ratio
 from rockframe.version import __version__
 

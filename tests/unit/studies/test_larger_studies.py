@@ -12,7 +12,7 @@ from kept_sweep import as_bytes
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.sweeps import lazily, planning, running, words
+from rockframe.studies.sweeps import lazily, planning, sweep, words
 from rockframe.studies.sweeps.store import Store, read_shapes
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
@@ -244,7 +244,7 @@ def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatc
 
 
 def test_what_takes_days_is_told_of_before_it_begins(monkeypatch, tmp_path):
-    monkeypatch.setattr(running, "_DAY", 1e-5)
+    monkeypatch.setattr(sweep, "_DAY", 1e-5)
     for store, ways in ((None, "no store: with one"), (tmp_path / "study", "jobs on it share")):
         with pytest.warns(SolverWarning, match=rf"8 cases take about .* days with .* {ways}"):
             on = rf.sweep(SYSTEM, MOTIONS, scale=[1.0, 0.5], accuracy="fast", store=store)
