@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -147,14 +148,12 @@ def _measure_of(unit: str, name: str) -> Measure:
     """Find the kind of quantity that has a unit."""
     for known in Unit:
         measure = Measure("a quantity", known, f"1 {known}")
-        try:
-            if known != Unit.ONE:
+        with suppress(UnitsError, ComponentError):
+            if known == Unit.ONE:
+                to_ratio(f"1 {unit}", owner=OWNER, name=name)
+            else:
                 to_si(f"1 {unit}", measure, owner=OWNER, name=name)
-                return measure
-            to_ratio(f"1 {unit}", owner=OWNER, name=name)
-        except (UnitsError, ComponentError):
-            continue
-        return measure
+            return measure
     known = ", ".join(str(one) for one in Unit)
     msg = f"{OWNER}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
     raise UnitsError(msg)

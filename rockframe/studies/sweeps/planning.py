@@ -176,15 +176,14 @@ def kept_histories(
 
 Read = TypeVar("Read")
 
-_RESULTS: Final = frozenset(
+_TAKEN: Final = {*TIME, *EVENT} | {
     row.name
     for table in (
         HISTORIES, ENERGY_HISTORIES, ACCELERATIONS, REACTIONS, OTHERS, EVENTS_AND_SCALARS,
-        FORCE_SCALARS, POINTS, POINT_PEAKS,
+        FORCE_SCALARS, POINTS, POINT_PEAKS, SWEEP,
     )
     for row in table
-)  # fmt: skip
-_TAKEN: Final = _RESULTS | {*TIME, *EVENT, *(row.name for row in SWEEP)}
+}  # fmt: skip
 """Names that are not left for axes."""
 
 

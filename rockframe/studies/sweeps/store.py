@@ -282,8 +282,8 @@ class Store:
         described, arrays = _read(self.folder / _LABELS)
         axes, columns = (
             tuple(
-                Axis.from_dict(axis, _values(each, arrays, axis["name"]))
-                for axis, each in described[kind]
+                Axis.from_dict(axis, arrays[axis["name"]] if words is None else np.array(words))
+                for axis, words in described[kind]
             )
             for kind in ("axes", "columns")
         )
@@ -368,10 +368,6 @@ def _make(path: Path, study: Study, chunk: int) -> None:
 def _words(axis: Axis) -> list[str] | None:
     """Give the values of an axis that are words."""
     return axis.values.tolist() if axis.values.dtype.kind == "U" else None
-
-
-def _values(words: list[str] | None, arrays: Mapping[str, Generic], name: str) -> Generic:
-    return arrays[name] if words is None else np.array(words)
 
 
 def _sampled(one: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
