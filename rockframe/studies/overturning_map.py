@@ -175,23 +175,16 @@ def _without_stands(counts: Array) -> Array:
 
 def _labels(system: System, levels: Array, frequencies: Array) -> dict[str, Any]:
     """Give the coordinates; on rigid ground also those without a dimension."""
-
-    def labels(name: str, dim: str, values: Array) -> tuple[str, Array, dict[str, Any]]:
-        return dim, values, SCHEMA[name].attributes()
-
-    found = {
-        "amplitude": labels("amplitude", SCALE, levels),
-        "frequency": labels("frequency", MOTION, frequencies),
-    }
-    found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
+    rows = [("amplitude", SCALE, levels), ("frequency", MOTION, frequencies)]
     setting = system.setting
     if isinstance(setting, RigidGroundSetting):
         uplift = min(setting.uplift_accelerations)
         angular = 2.0 * math.pi * frequencies
         own = setting.body.frequency_at(system.options.gravity)
-        for name, dim, values in (
+        rows += [
             ("relative_peak_ground_acceleration", SCALE, levels / uplift),
             ("relative_pulse_frequency", MOTION, angular / own),
-        ):
-            found[name] = labels(name, dim, values)
+        ]
+    found = {name: (dim, values, SCHEMA[name].attributes()) for name, dim, values in rows}
+    found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
     return found

@@ -32,7 +32,6 @@ class Structures:
     # for each dimension over which structures differ, the number of the structure at each place
     groups: Mapping[str, Generic]
     coordinates: Mapping[str, xr.Variable]  # what they are told apart by
-    names: tuple[str, ...]  # what differs from one to another
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -135,7 +134,7 @@ def _grouped(
         for name in (*columns, *([dim] if plain else [])):
             values = runs[name]
             coordinates[name] = xr.Variable(dim, values.to_numpy()[first], values.attrs)
-    return Structures(groups, coordinates, tuple(kept))
+    return Structures(groups, coordinates)
 
 
 def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic, Generic]:
