@@ -28,7 +28,6 @@ _ACCEPTED: Final = 0.44
 class Level:
     """A sample given that the threshold before is exceeded."""
 
-    scores: Array  # standard normal numbers, a row for each sample
     demands: Array  # NaN where a run told none, which is so at the first level alone
     origins: Generic  # which run each is, counted from the first one of all
     families: Generic  # from which sample of the first level each descends
@@ -79,9 +78,7 @@ def subset_levels(
     left_out = int(np.isnan(demands).sum())
     for number in range(1, most + 1):
         threshold = limit if number == most else _threshold(demands, share, limit)
-        level = Level(
-            scores, demands, origins, families, threshold, chains, acceptance, runs, left_out
-        )
+        level = Level(demands, origins, families, threshold, chains, acceptance, runs, left_out)
         yield level
         if threshold >= limit:
             return

@@ -78,11 +78,11 @@ class _Group:
     cases: list[tuple[int, int, Any]] = field(default_factory=list[tuple[int, int, Any]])
 
     def add(
-        self, case: int, scene: LaneScene, key: Any, motion: Callable[[], Motion | None]
+        self, case: int, scene: LaneScene, key: Any, ground: Callable[[int], Motion | None]
     ) -> None:
         """Take a case up."""
         if key not in self.motions:
-            self.motions[key] = motion()  # which may fail
+            self.motions[key] = ground(case)  # which may fail
         self.scenes.setdefault(id(scene), scene)
         self.cases.append((case, id(scene), key))
 
@@ -133,7 +133,15 @@ def run_side_by_side(
         groups: dict[Any, _Group] = {}
         for case in which[begin : begin + TOGETHER]:
             try:
-                _take_up(cases, case, scenes, groups, ready)
+                key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
+                if key not in scenes:
+                    scenes[key] = None  # unless it can be prepared
+                    found = prepared(*cases.planned(case))
+                    scenes[key] = found if found is not None and ready(found) else None
+                if (scene := scenes[key]) is not None:
+                    moved = (id(cases.unscaled(case)), cases.motion_key(case)[1])
+                    group = groups.setdefault(scene.kind, _Group())
+                    group.add(case, scene, moved, cases.ground)
             except RockframeError:  # which is told of where the case runs alone
                 continue
             except Exception as problem:
@@ -142,30 +150,6 @@ def run_side_by_side(
             if stopped():
                 return
             yield from group.run()
-
-
-def _take_up(
-    cases: CasesOfJob,
-    case: int,
-    scenes: dict[Any, LaneScene | None],
-    groups: dict[Any, _Group],
-    ready: Callable[[LaneScene], bool],
-) -> None:
-    key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
-    if key not in scenes:
-        scenes[key] = None  # unless it can be prepared
-        found = prepared(*cases.planned(case))
-        scenes[key] = found if found is not None and ready(found) else None
-    scene = scenes[key]
-    if scene is None:
-        return
-
-    def motion() -> Motion | None:
-        found = cases.motion(case)
-        return None if found is None else found.si
-
-    moved = (id(cases.unscaled(case)), cases.motion_key(case)[1])
-    groups.setdefault(scene.kind, _Group()).add(case, scene, moved, motion)
 
 
 def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
