@@ -99,11 +99,10 @@ def measure_words(name: str, period: Any) -> str:
     words = name.replace("_", " ")
     if period is None or name not in _SPECTRAL:
         return words
-    several = np.atleast_1d(period)
-    least, most = several[0], several[-1]
-    return (
-        f"{words} at {least:.6g} s" if name != AVERAGE else f"{words}, {least:.4g} to {most:.4g} s"
-    )
+    periods = np.atleast_1d(period)
+    if name == AVERAGE:
+        return f"{words}, {periods[0]:.4g} to {periods[-1]:.4g} s"
+    return f"{words} at {periods[0]:.6g} s"
 
 
 def of_study(name: str, period: Periods) -> dict[str, Any]:
@@ -132,14 +131,20 @@ class Intensity:
         name = one_of_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
         if name not in _SPECTRAL:
             return cls(name, None)
-        if name == AVERAGE:
-            return cls(name, _read_periods(period, owner))
+        several = name == AVERAGE
         if period is None:
-            msg = f"{owner}: intensity {name!r} needs a period, for example period='0.5 s'"
+            needed = "the periods over which it is averaged" if several else "a period"
+            example = "(numpy.linspace(0.2, 3, 57), 's')" if several else "'0.5 s'"
+            msg = f"{owner}: intensity {name!r} needs {needed}, for example period={example}"
             raise ComponentError(msg)
-        one: Any = period
-        seconds = to_si(one, PERIOD, owner=owner, name="period", condition=POSITIVE)
-        return cls(name, seconds)
+        if not several:
+            one: Any = period
+            return cls(name, to_si(one, PERIOD, owner=owner, name="period", condition=POSITIVE))
+        periods = tuple(checked_periods(period, owner=owner).tolist())
+        if periods[0] <= 0.0:
+            msg = f"{owner}: periods must be above zero, whose logarithm is averaged"
+            raise ComponentError(msg)
+        return cls(name, periods)
 
     def of(self, motion: GroundMotion) -> float:
         """Give the measure of a motion, in SI units."""
@@ -157,21 +162,6 @@ class Intensity:
     def attributes(self) -> dict[str, Any]:
         """Give the CF attributes of its values."""
         return SCHEMA[self.name].attributes()
-
-
-def _read_periods(given: PeriodLike | None, owner: str) -> tuple[float, ...]:
-    """Read the periods over which spectral values are averaged [s]."""
-    if given is None:
-        msg = (
-            f"{owner}: intensity {AVERAGE!r} needs the periods over which it is averaged, for "
-            "example period=(numpy.linspace(0.2, 3, 57), 's')"
-        )
-        raise ComponentError(msg)
-    seconds = tuple(checked_periods(given, owner=owner).tolist())
-    if seconds[0] <= 0.0:
-        msg = f"{owner}: periods must be above zero, whose logarithm is averaged"
-        raise ComponentError(msg)
-    return seconds
 
 
 def measure_in(
@@ -286,15 +276,14 @@ def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion]) -> xr.DataAr
     (name,) = axes
     if name == "scale":
         return runs[name]
-    period = runs.attrs.get("spectral_period")
-    # what reaches the unit of the target, times the target
-    return runs[name] * of_motions(runs, motions, lambda one: _unit_factor(one, name, period))
 
+    def of_unit(motion: GroundMotion) -> float:
+        """Give the factor that reaches the unit of the target."""
+        one = motion_of_case(motion, name, 1.0, runs.attrs.get("spectral_period"))
+        at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
+        return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
 
-def _unit_factor(motion: GroundMotion, name: str, period: float | None) -> float:
-    one = motion_of_case(motion, name, 1.0, period)
-    at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
-    return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
+    return runs[name] * of_motions(runs, motions, of_unit)
 
 
 _OF_THE_BLOCK: Final = ("overturning_angle", "uplift_acceleration")

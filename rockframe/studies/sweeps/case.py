@@ -4,6 +4,7 @@ import json
 import math
 from collections import OrderedDict
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -23,13 +24,7 @@ from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
 from rockframe.studies.sweeps.chunk import AGAIN
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
-from rockframe.studies.sweeps.scenes import (
-    FunctionScene,
-    SweptScene,
-    SystemScene,
-    scene_of,
-    started,
-)
+from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene, scene_of
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 from rockframe.units import Measure, Unit, to_ratio, to_si
@@ -155,17 +150,20 @@ def case(
         values[Axis.from_dict(described, np.array([value]))] = value
     name = _value(dataset, MOTION, place)
     motion = unscaled_motions(attributes, [name], motions, kept)[name]
-    made = _scene(None if scene is None else scene_of(scene), attributes)
-    of_scene = {axis: one for axis, one in values.items() if axis.changes in OF_SCENES}
-    system = _system(made, of_scene)
-    if motion is None:
-        motion = system.motion
+    system = _system(
+        _scene(None if scene is None else scene_of(scene), attributes),
+        {axis: one for axis, one in values.items() if axis.changes in OF_SCENES},
+    )
+    motion = system.motion if motion is None else motion
+    options = json.loads(attributes["run_json"])
+    options = {name: value for name, value in options.items() if value is not None}
+    start = {axis.parameter: one for axis, one in values.items() if axis.changes is Changes.START}
+    options["initial"] = InitialState.from_dict(options["initial"]).with_si(start)
+    options["accuracy"] = Accuracy(**options["accuracy"])
+    options["points"] = options.get("points") or None
     for axis, value in values.items():
         if axis.changes is Changes.MOTION and motion is not None:
             motion = motion_of_case(motion, axis.name, value, attributes.get("spectral_period"))
-    options = _options(json.loads(attributes["run_json"]))
-    start = {axis.parameter: one for axis, one in values.items() if axis.changes is Changes.START}
-    options["initial"] = started(options["initial"], start)
     if REPEATED in dataset and _value_of(dataset[REPEATED], place) == 1.0:
         options["accuracy"] = LEVELS[AGAIN]
     return SweepCase(system, motion, options)
@@ -202,14 +200,6 @@ def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
     return {name: found.get(name, 0) for name in dims}
 
 
-def _float(number: float | np.number[Any]) -> float:
-    """Give a number as a float, infinite where it is a whole number larger than any."""
-    try:
-        return float(number)
-    except OverflowError:
-        return math.inf
-
-
 def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
     values = np.atleast_1d(labels.to_numpy())
     if name == MOTION:
@@ -217,17 +207,15 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
     near = ""
     if values.dtype.kind == "f":
         unit = Unit(labels.attrs["units"])
-        example = f"{values[0]:g}" if unit == Unit.ONE else f"{values[0]:g} {unit}"
-        measure = Measure("a value", unit, example)
-        number = (
-            _float(wanted)
-            if isinstance(wanted, int | float | np.number)
-            else (
-                to_ratio(wanted, owner=_OWNER, name=name)
-                if measure.unit == Unit.ONE
-                else to_si(wanted, measure, owner=_OWNER, name=name)
-            )
-        )
+        if isinstance(wanted, int | float | np.number):
+            number = math.inf
+            with suppress(OverflowError):  # of a whole number larger than any float
+                number = float(wanted)
+        elif unit == Unit.ONE:
+            number = to_ratio(wanted, owner=_OWNER, name=name)
+        else:
+            measure = Measure("a value", unit, f"{values[0]:g} {unit}")
+            number = to_si(wanted, measure, owner=_OWNER, name=name)
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
             return nearest
@@ -327,12 +315,3 @@ def known_motions(runs: xr.Dataset, given: object = None) -> dict[str, GroundMot
         names = [name for name in names if name in used]
     found = unscaled_motions(runs.attrs, names, given, store_of(runs), needed=False)
     return {name: motion for name, motion in found.items() if motion is not None}
-
-
-def _options(described: dict[str, Any]) -> dict[str, Any]:
-    """Give the arguments of a run as simulate takes them."""
-    options = {name: value for name, value in described.items() if value is not None}
-    options["initial"] = InitialState.from_dict(options["initial"])
-    options["accuracy"] = Accuracy(**options["accuracy"])
-    options["points"] = options.get("points") or None
-    return options

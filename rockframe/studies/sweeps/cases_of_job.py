@@ -13,7 +13,7 @@ from rockframe.signals import Motion
 from rockframe.simulation.plan import Plan, fit_plan
 from rockframe.studies.sweeps.axes import OF_SCENES, Changes
 from rockframe.studies.sweeps.motions import FACTOR, motion_of_case
-from rockframe.studies.sweeps.scenes import SystemScene, started
+from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import SweepJob
 from rockframe.system.assembly import Assembly
 
@@ -146,7 +146,7 @@ class CasesOfJob:
         faults: list[str] = []
         arguments = self.job.arguments
         if start and isinstance(arguments.initial, InitialState):
-            arguments = replace(arguments, initial=started(arguments.initial, start))
+            arguments = replace(arguments, initial=arguments.initial.with_si(start))
         plan = fit_plan(arguments, system, motion, faults)
         if faults:
             raise AssemblyError(faults)

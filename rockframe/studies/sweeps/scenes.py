@@ -43,11 +43,6 @@ STARTS: Final = {
 """Axes by their names: which parameter of an initial state each changes, and its kind."""
 
 
-def started(initial: InitialState, values: Mapping[str, float]) -> InitialState:
-    """Give an initial state with the values of a case in the place of its own."""
-    return initial.with_si(values) if values else initial
-
-
 Values: TypeAlias = Mapping[Axis, Any]
 """Of one case, by the axes that change the scene."""
 
