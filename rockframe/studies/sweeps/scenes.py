@@ -153,27 +153,26 @@ class SystemScene:
         return [
             (slot, part, part.varied()[parameter])
             for slot, part in parts.items()
-            if parameter in part.varied() and kind in ("", *_names(part), *self._labels(part))
+            if parameter in part.varied() and kind in ("", *self._called(part))
         ]
 
-    def _labels(self, part: Component) -> tuple[str, ...]:
-        """Give what axes call a link beside its class: as results do, in one word; none of others.
+    def _called(self, part: Component) -> list[str]:
+        """Give what axes may call a part: its class, and those that it is derived from.
 
-        As an axis has it, "restrainer 1" is restrainer_1.
+        A link first what results call it, in one word: "restrainer 1" is restrainer_1.
         """
         links = self.assembly.parts.links
-        labels = link_labels(links)
-        own = next((name for one, name in zip(links, labels, strict=True) if one is part), None)
-        return () if own is None else tuple(dict.fromkeys([re.sub(r"\W", "_", own), own]))
+        labels = zip(links, link_labels(links), strict=True)
+        own = [name for one, name in labels if one is part]
+        kinds = [kind for kind in type(part).__mro__ if issubclass(kind, Component)]
+        words = (re.sub(r"\W", "_", name) for name in own)
+        return [*words, *own, *(kind.__name__ for kind in kinds if kind != Component)]
 
     def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
         if having:
             kinds = [type(part).__name__ for part in having]
             if len(set(kinds)) < len(kinds):  # several links
-                kinds = [
-                    next(iter(self._labels(part)), kind)
-                    for part, kind in zip(having, kinds, strict=True)
-                ]
+                kinds = [self._called(part)[0] for part in having]
             ways = " or ".join(f"'{kind}.{parameter}'" for kind in kinds)
             return (
                 f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one, in "
@@ -181,7 +180,7 @@ class SystemScene:
             )
         parts = self._parts().values()
         known = [
-            f"{next(iter(self._labels(part)), type(part).__name__)}.{parameter}"
+            f"{self._called(part)[0]}.{parameter}"
             for part in parts
             if "." in name and parameter in part.varied()
         ]
@@ -208,7 +207,8 @@ class FunctionScene:
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names an argument, or else the motion's scale."""
         kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-        if not any(n == name and one.kind in kinds for n, one in self._parameters.items()):
+        argument = inspect.signature(self.function).parameters.get(name)
+        if argument is None or argument.kind not in kinds:
             name = full_name(name)
             of_run = _of_run(name, given)
             if of_run is not None:
@@ -219,10 +219,11 @@ class FunctionScene:
     def faults(self, axes: Iterable[Axis]) -> list[str]:
         """Tell whether the function takes the axes, and all that it needs is among them."""
         given = {axis.name: None for axis in axes if axis.changes is Changes.ARGUMENT}
+        signature = inspect.signature(self.function)
         try:
-            inspect.signature(self.function).bind(**given)
+            signature.bind(**given)
         except TypeError as problem:
-            unknown = [name for name in given if name not in self._parameters]
+            unknown = [name for name in given if name not in signature.parameters]
             question = suggestion(unknown[0], OF_A_SWEEP).removesuffix(".") if unknown else ""
             return [f"the axes do not fit the arguments of {self.name}: {problem}{question}"]
         return []
@@ -249,10 +250,6 @@ class FunctionScene:
     def name(self) -> str:
         """Name of the function."""
         return name_of(self.function)
-
-    @property
-    def _parameters(self) -> Mapping[str, inspect.Parameter]:
-        return inspect.signature(self.function).parameters
 
 
 SweptScene: TypeAlias = SystemScene | FunctionScene
@@ -359,9 +356,3 @@ def _caution(one: Declared[Any, Any], values: Generic, owner: str) -> None:
         if words is not None:
             warn(f"{OWNER}: {owner}: {words}", ModelWarning)
             return
-
-
-def _names(part: Component) -> list[str]:
-    """Give the names of a part's class, and of the classes that it is derived from."""
-    kinds = type(part).__mro__
-    return [kind.__name__ for kind in kinds if issubclass(kind, Component) and kind != Component]
