@@ -112,23 +112,24 @@ class Cloud:
             logs, responses, line, fit_logistic(logs, fell), fit_logistic(logs[~fell], moved[~fell])
         )
 
+    @property
+    def between(self) -> Generic:
+        """Which runs moved and did not overturn."""
+        return (self.responses > 0.0) & np.isfinite(self.responses)
+
     def log_likelihoods(self) -> Array:
         """Give the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
         if self.line is None:
             return np.full(len(self.logs), np.nan)
         falls, moves = self.overturning.at(self.logs), self.moving.at(self.logs)
-        fell, moved = np.isinf(self.responses), self.responses > 0.0
+        fell, spread = np.isinf(self.responses), self.line.dispersion
         found = np.where(
             fell, np.log(np.maximum(falls, 1e-300)), np.log1p(-np.minimum(falls, 1.0 - 1e-16))
         )
-        stood = ~fell
-        chance = np.where(moved, moves, 1.0 - moves)
-        found[stood] += np.log(np.maximum(chance[stood], 1e-300))
-        between = moved & ~fell
-        over = self.line.residuals / self.line.dispersion
-        found[between] += -0.5 * (over**2 + math.log(2.0 * math.pi)) - math.log(
-            self.line.dispersion
-        )
+        chance = np.where(self.responses > 0.0, moves, 1.0 - moves)
+        found[~fell] += np.log(np.maximum(chance[~fell], 1e-300))
+        over = self.line.residuals / spread
+        found[self.between] += -0.5 * (over**2 + math.log(2.0 * math.pi)) - math.log(spread)
         return found
 
     def probabilities(self, logs: Array, level: float) -> Array:

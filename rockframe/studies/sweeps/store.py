@@ -86,7 +86,7 @@ def read_shapes(path: Path) -> dict[str, tuple[int, ...]]:
             raise StudyError(msg) from problem
 
 
-def write_whole(path: Path, content: bytes, *, replace: bool = True) -> bool:
+def write_whole(path: Path, content: bytes, *, replace: bool = True) -> None:
     """Write a file so that others see all of it or nothing, even if this process is killed."""
     part = path.with_name(f".{path.name}.{os.getpid()}.{os.urandom(4).hex()}.part")
     try:
@@ -96,24 +96,15 @@ def write_whole(path: Path, content: bytes, *, replace: bool = True) -> bool:
             os.fsync(file.fileno())
         if replace:
             part.replace(path)
-            return True
-        return _linked(part, path)
+            return
+        try:
+            path.hardlink_to(part)
+        except (OSError, NotImplementedError):  # there is one, or file systems have no links
+            if not path.exists():
+                part.replace(path)
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
-
-
-def _linked(part: Path, path: Path) -> bool:
-    """Give a file its name, unless another one has it."""
-    try:
-        path.hardlink_to(part)
-    except FileExistsError:
-        return False
-    except (OSError, NotImplementedError):  # file systems without links
-        if path.exists():
-            return False
-        part.replace(path)
-    return True
 
 
 FORMAT: Final = 3
