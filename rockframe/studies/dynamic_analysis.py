@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from inspect import signature
 from typing import Any, Final, Unpack
 
 import numpy as np
@@ -44,10 +45,6 @@ from rockframe.system.options import PointsLike
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
-_ARGUMENTS: Final = (
-    *SweepArguments.__annotations__, "scale", "limits", "intensity", "period", "resolution",
-    "bracket_width",
-)  # fmt: skip
 _SCALES: Final = tuple(0.1 * k for k in range(1, 41))
 
 
@@ -153,7 +150,8 @@ def incremental_dynamic_analysis(
     1.13
     """
     scene = scene_of(system)
-    line_axes = read_line_axes(axes, scene, owner=_OWNER, others=_ARGUMENTS)
+    arguments = signature(incremental_dynamic_analysis).parameters
+    line_axes = read_line_axes(axes, scene, owner=_OWNER, others=arguments)
     states = limit_states(limits, owner=_OWNER)
     scales = read_scales(scale, owner=_OWNER)
     share = read_width(bracket_width, owner=_OWNER)

@@ -1,7 +1,7 @@
 """Axes of an analysis that follows lines of scales: a line for each of their combinations."""
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, cast
@@ -74,7 +74,7 @@ def read_line_axes(
     scene: SweptScene,
     *,
     owner: str,
-    others: Sequence[str],
+    others: Iterable[str],
     beside: Sequence[Axis] = (),
 ) -> LineAxes:
     """Read the axes of an analysis; `others` are names of its arguments, `beside` its own axes."""

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from inspect import signature
 from typing import Any, Final, Unpack
 
 import numpy as np
@@ -64,6 +65,7 @@ class BlockSizes:
             (2.0 * of_angle(angle)[:, None] * radius).ravel() for of_angle in (np.sin, np.cos)
         )
         scene = scene_of(self.system)
+        arguments = signature(overturning_spectrum).parameters
         # a wall has a height, too
         beside = [part for part in self.system.parts.structural() if not isinstance(part, Block)]
         shared = {name for part in beside for name in part.varied()}
@@ -72,7 +74,7 @@ class BlockSizes:
             for name, values in (("width", width), ("height", height))
         }
         own = [scene.axis(name, each) for name, each in sizes.items()]
-        further = read_line_axes(axes, scene, owner=owner, others=_ARGUMENTS, beside=own)
+        further = read_line_axes(axes, scene, owner=owner, others=arguments, beside=own)
         self.columns = further.columns(sizes)
         self._sizes = {"slenderness": len(slenderness), "rocking_period": len(periods)}
         self._sizes |= further.sizes
@@ -89,16 +91,18 @@ def _by_shape_factor(system: System, owner: str) -> System:
 
     An inertia and a height of the centre of mass that were given would stay as they are.
     """
-    block = system.parts.block
-    if block is None or type(block) is not Block:
+    block, fault = system.parts.block, ""
+    if type(block) is not Block:
         fault = f"a {type(block or next(iter(system.parts.structural()))).__name__}"
-        raise ComponentError(_needs_a_block(owner, fault))
-    above = abs(block.si.centre_height - block.si.half_height)
-    if block.si.eccentricity != 0.0 or above > _ROUNDING * block.si.height:
+    elif block.si.eccentricity != 0.0 or (
+        abs(block.si.centre_height - block.si.half_height) > _ROUNDING * block.si.height
+    ):
         fault = "a block whose centre of mass is not in its middle"
-        raise ComponentError(_needs_a_block(owner, fault))
-    if system.parts.cap is not None:
-        raise ComponentError(_needs_a_block(owner, "a scene with a cap"))
+    elif system.parts.cap is not None:
+        fault = "a scene with a cap"
+    if fault or block is None:
+        msg = f"{owner}: system needs a block of width and height on its base, got {fault}"
+        raise ComponentError(msg)
     if block.given.inertia is None and block.given.centre_height is None:
         return system
     with collected_warnings():  # block and system have warned when they were made
@@ -108,16 +112,8 @@ def _by_shape_factor(system: System, owner: str) -> System:
         return System(scaling, *others, **options)
 
 
-def _needs_a_block(owner: str, fault: str) -> str:
-    return f"{owner}: system needs a block of width and height on its base, got {fault}"
-
-
 _ROCKING: Final = "rocking_spectrum"
 _OVERTURNING: Final = "overturning_spectrum"
-_ARGUMENTS: Final = (
-    *SweepArguments.__annotations__, "periods", "slenderness", "scale", "intensity", "period",
-    "resolution", "bracket_width",
-)  # fmt: skip
 
 
 @takes(SweepArguments, further="axes")
