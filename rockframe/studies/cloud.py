@@ -398,7 +398,7 @@ def _labelled(
     cloud, of_bounds = runs.cloud, math.nan if runs.repeated else confidence
     along = np.linspace(cloud.logs.min(), cloud.logs.max(), _POINTS)
     curves = [_curve(cloud, level, along, of_bounds, seed) for level in levels.values()]
-    name, over = str(measure.name), ("limit_state",)
+    name, over = str(measure.name), {"limit_state": len(levels)}
     line, falls = cloud.line, cloud.overturning
     of_line = [math.nan] * 5 if line is None else [
         line.intercept, line.slope, math.sqrt(line.covariance[1, 1]), line.dispersion,
@@ -430,11 +430,11 @@ def _labelled(
         of_states[f"dispersion{end}"] = np.array([one.dispersion[k] for one in curves])
     of_states["trial_count"] = np.full(len(levels), len(cloud.logs))
     of_states["left_out_count"] = np.full(len(levels), int((~runs.kept).sum()))
+    found = with_variables(found, of_states, over=tuple(over))
     points = {
         f"exceedance_probability{end}": np.stack([one.points[k] for one in curves])
         for k, end in enumerate(_ENDS)
     }
-    found = with_variables(found, of_states, over=over)
     found = with_variables(found, points, over=(*over, name))
     found = found.assign_coords({name: (name, np.exp(along), measure.attrs)})
     found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
@@ -442,7 +442,7 @@ def _labelled(
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
         for level in levels.values()
     ]
-    found = with_stripes(found, counted, {"limit_state": len(levels)}, confidence)
+    found = with_stripes(found, counted, over, confidence)
     for one in _OF_INTENSITY:
         found[one].attrs["units"] = measure.attrs.get("units", "1")
     return found

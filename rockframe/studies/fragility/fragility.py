@@ -14,10 +14,11 @@ from rockframe.results.schema import with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
 from rockframe.studies.confidence import read_level
-from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
+from rockframe.studies.fragility.labelling import Means, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Fit
 from rockframe.studies.fragility.ordered import ordered_fits
 from rockframe.studies.fragility.trials import (
+    StructureTrials,
     Trials,
     flat,
     motion_numbers,
@@ -219,9 +220,7 @@ def fragility(
             if of_capacities:
                 found.append(_of_capacities(analysis, state, verdict, along))
             else:
-                made, count = trials_of_runs(verdict, along, by_motion=by_motion)
-                left_out = verdict.size - int(made.weight.sum())
-                found.append(StructureTrials(made, flat(verdict, along), left_out, count))
+                found.append(trials_of_runs(verdict, along, by_motion=by_motion))
     over = dict(zip(structures.groups, structures.shape, strict=True))
     about: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
     together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
@@ -318,9 +317,7 @@ def _of_capacities(
         msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
         raise SchemaError(msg)
     one = analysis.sel(limit_state=state.name) if "limit_state" in analysis.dims else analysis
-    trials, lines = trials_of_capacities(one, verdict.notnull(), measures)
-    count = len(trials.weight)
-    return StructureTrials(trials, None, lines - count, count)
+    return trials_of_capacities(one, verdict.notnull(), measures)
 
 
 def _ordered(

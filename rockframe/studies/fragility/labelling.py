@@ -14,7 +14,7 @@ from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, gap, jackknife
-from rockframe.studies.fragility.trials import Trials
+from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import bounded
 
 _POINTS: Final = 101
@@ -48,17 +48,6 @@ class Means:
 
         share = 0.5 + 0.5 * self.confidence
         return float(ndtri(share) if math.isinf(clusters) else stdtrit(clusters - 1.0, share))
-
-
-@dataclass(frozen=True, eq=False)
-class StructureTrials:
-    """What was found out of one structure against one limit state."""
-
-    trials: Trials  # what is known of its capacity
-    # intensities, and whether they were exceeded, of each run; None of capacities
-    runs: tuple[Array, Array] | None
-    left_out: int  # how many runs or capacities are no trials
-    independent: int  # how many trials, or motions of trials, are independent
 
 
 @dataclass(frozen=True, eq=False)

@@ -190,11 +190,22 @@ class Trials:
         return self.lower.shape[1]
 
 
+@dataclass(frozen=True, eq=False)
+class StructureTrials:
+    """What was found out of one structure against one limit state."""
+
+    trials: Trials  # what is known of its capacity
+    # intensities, and whether they were exceeded, of each run; None of capacities
+    runs: tuple[Array, Array] | None
+    left_out: int  # how many runs or capacities are no trials
+    independent: int  # how many trials, or motions of trials, are independent
+
+
 def trials_of_runs(
     exceeded: xr.DataArray, measures: Sequence[xr.DataArray], *, by_motion: bool
-) -> tuple[Trials, int]:
+) -> StructureTrials:
     """Give the trials of runs, each of which exceeds a limit state or does not."""
-    columns, verdict = flat(exceeded, measures)
+    runs = columns, verdict = flat(exceeded, measures)
     kept = ~np.isnan(verdict) & np.all(columns > 0.0, axis=1) & np.all(np.isfinite(columns), axis=1)
     cluster = motion_numbers(exceeded)[kept]
     motions = len(np.unique(cluster))
@@ -204,17 +215,18 @@ def trials_of_runs(
         size = len(points)
         over = np.bincount(place.ravel(), weights=verdict, minlength=size)
         every = np.bincount(place.ravel(), minlength=size).astype(np.float64)
-        return Trials.of_verdicts(points, over.astype(np.float64), every), motions
-    return Trials.of_verdicts(logs, verdict, np.ones(len(verdict)), cluster), motions
+        found = Trials.of_verdicts(points, over.astype(np.float64), every)
+    else:
+        found = Trials.of_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
+    return StructureTrials(found, runs, int((~kept).sum()), motions)
 
 
 def trials_of_capacities(
     analysis: xr.Dataset, known: xr.DataArray, measures: Sequence[xr.DataArray]
-) -> tuple[Trials, int]:
+) -> StructureTrials:
     """Give the trials of a dynamic analysis, one for each line, from its first exceedance.
 
-    A line is a motion, and a value of all else that is taken for one population. Their number is
-    given, too.
+    A line is a motion, and a value of all else that is taken for one population.
     """
     sizes = {str(dim): size for dim, size in known.sizes.items() if dim != SCALE}
     scales = analysis[SCALE].to_numpy()
@@ -226,9 +238,9 @@ def trials_of_capacities(
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
     told = has_lower | has_upper
-    weight = np.ones(int(told.sum()))
-    found = Trials(lower[told], upper[told], has_lower[told], has_upper[told], weight, None)
-    return found, len(told)
+    count = int(told.sum())
+    found = Trials(lower[told], upper[told], has_lower[told], has_upper[told], np.ones(count), None)
+    return StructureTrials(found, None, len(told) - count, count)
 
 
 def _first_brackets(

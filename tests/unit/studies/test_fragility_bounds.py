@@ -7,9 +7,9 @@ from scipy import optimize, stats
 
 import rockframe as rf
 from rockframe.studies.fragility import labelling
-from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
+from rockframe.studies.fragility.labelling import Means, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, boundary, fit
-from rockframe.studies.fragility.trials import Trials
+from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import COVERAGE, bounded, words_of_bounds
 
 SCALES = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])
