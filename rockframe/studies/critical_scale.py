@@ -25,13 +25,7 @@ from rockframe.simulation.run import run, summary_of
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.soundness import STILL_MOVING, has_limit
 from rockframe.simulation.system import System
-from rockframe.studies.flips import (
-    Followed,
-    flips_sentence,
-    follow,
-    least_overturning,
-    unfinished,
-)
+from rockframe.studies.flips import Followed, flips_sentence, follow, least_overturning, unfinished
 from rockframe.studies.intensities import ScaledIntensity, of_study
 from rockframe.studies.lines import read_resolution, read_width
 from rockframe.studies.sweeps.execution import bar_of

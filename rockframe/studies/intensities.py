@@ -10,11 +10,7 @@ import xarray as xr
 
 from rockframe.arguments import one_of_names, text
 from rockframe.errors import ComponentError, SchemaError, StudyError, nearest, shown
-from rockframe.measures import (
-    average_spectral_acceleration,
-    intensity_measures,
-    response_spectrum,
-)
+from rockframe.measures import average_spectral_acceleration, intensity_measures, response_spectrum
 from rockframe.measures.intensity import measure_of_ground
 from rockframe.measures.response import checked_periods
 from rockframe.motion import GroundMotion
@@ -22,12 +18,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
 from rockframe.studies.sweeps import case
-from rockframe.studies.sweeps.motions import (
-    ABBREVIATIONS,
-    SPECTRAL,
-    motion_of_case,
-    named_motions,
-)
+from rockframe.studies.sweeps.motions import ABBREVIATIONS, SPECTRAL, motion_of_case, named_motions
 from rockframe.units import (
     ACCELERATION,
     PERIOD,

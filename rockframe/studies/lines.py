@@ -139,10 +139,7 @@ def brackets_of(scales: Array, verdicts: Array) -> list[Bracket]:
 
 
 def narrowed(
-    brackets: Sequence[Bracket],
-    look: Callable[[str, Wanted], tuple[Array, bool]],
-    *,
-    width: float,
+    brackets: Sequence[Bracket], look: Callable[[str, Wanted], tuple[Array, bool]], *, width: float
 ) -> tuple[list[Bracket], bool]:
     """Halve brackets in rounds until they are narrow; tell if all of them are.
 

@@ -364,10 +364,7 @@ def probability_of_overturning(
     runs = sweep(system, named, cases=table, **run)
     found = _counted(runs, [one.name for one in spreads], several=several > 1, level=level)
     return found.assign_attrs(
-        title="Probability of overturning",
-        seed=first,
-        confidence=level,
-        **{SAMPLED: str(way)},
+        title="Probability of overturning", seed=first, confidence=level, **{SAMPLED: str(way)}
     )
 
 

@@ -117,10 +117,7 @@ class CollectedResults:
 
 
 def each_run(
-    cases: CasesOfJob,
-    which: Sequence[int],
-    stopped: Callable[[], bool],
-    patience: float | None,
+    cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool], patience: float | None
 ) -> Iterator[Finished | FinishedTogether | Failed]:
     """Run cases."""
     alone = set(which)

@@ -11,25 +11,14 @@ import xarray as xr
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint, point_labels
-from rockframe.results.schema import (
-    SCHEMA,
-    build_dataset,
-    with_variables,
-    without_fill_values,
-)
+from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
 from rockframe.studies.sweeps.axes import Grid
-from rockframe.studies.sweeps.chunk import (
-    DRIVER,
-    SCREEN,
-    CaseResults,
-    CollectedResults,
-    Driver,
-)
+from rockframe.studies.sweeps.chunk import DRIVER, SCREEN, CaseResults, CollectedResults, Driver
 from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.studies.sweeps.words import SCREENED, summed_up, whole_verdict

@@ -271,11 +271,7 @@ def _integrated(
 
 
 def _told(
-    cases: CasesOfJob,
-    groups: Sequence[_Batch],
-    group_of: Places,
-    ran: Places,
-    outcomes: Outcomes,
+    cases: CasesOfJob, groups: Sequence[_Batch], group_of: Places, ran: Places, outcomes: Outcomes
 ) -> Iterator[Finished | FinishedTogether]:
     """Tell what became of runs: of those together that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes

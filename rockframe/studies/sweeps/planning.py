@@ -15,14 +15,7 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import (
-    RecordWarning,
-    RockframeError,
-    SolverWarning,
-    StudyError,
-    shown,
-    warn,
-)
+from rockframe.errors import RecordWarning, RockframeError, SolverWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import GROUPS, SCHEMA
@@ -47,12 +40,7 @@ from rockframe.simulation.plan import (
 )
 from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid, faults_of_values
 from rockframe.studies.sweeps.chunk import AGAIN, FIRST, SCREEN
-from rockframe.studies.sweeps.motions import (
-    NO_MOTION,
-    OF_THE_SCENE,
-    SPECTRAL,
-    motion_number,
-)
+from rockframe.studies.sweeps.motions import NO_MOTION, OF_THE_SCENE, SPECTRAL, motion_number
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,
