@@ -112,6 +112,8 @@ IN_FOLDERS: Final = 4
 """Format of studies whose chunks stand in folders of their own, since they are many."""
 FILES_OF_A_FOLDER: Final = 1000
 """Most chunks of a folder; file systems, and what lists folders, are slow with far more."""
+_WITHOUT_ORDER: Final = (1, 2)
+"""Formats that read motions in another order, and whose digests left out what functions use."""
 _STUDY: Final = "study.json"
 _LABELS: Final = "labels.arrays"
 _FOLDERS: Final = "chunks-*/"
@@ -393,10 +395,13 @@ def _read_head(path: Path) -> dict[str, Any]:
         msg = f"{file}: damaged: {problem}"
         raise StudyError(msg) from problem
     if form not in (FORMAT, IN_FOLDERS):
+        why = "which this version cannot read"
+        if form in _WITHOUT_ORDER:
+            why = "which does not tell for certain whose results it holds"
         msg = (
-            f"{path}: found a study of rockframe {version} (format {form}), which this version "
-            f"cannot read; this is rockframe {__version__} (formats {FORMAT} and {IN_FOLDERS}): "
-            "run the study again, in another folder"
+            f"{path}: found a study of rockframe {version} (format {form}), {why}; this is "
+            f"rockframe {__version__} (formats {FORMAT} and {IN_FOLDERS}): run the study again, in "
+            "another folder"
         )
         raise StudyError(msg)
     if not whole:
