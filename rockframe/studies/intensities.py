@@ -17,7 +17,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
-from rockframe.studies.sweeps import case
+from rockframe.studies.sweeps.case import store_of, unscaled_motions
 from rockframe.studies.sweeps.motions import ABBREVIATIONS, SPECTRAL, motion_of_case, named_motions
 from rockframe.units import (
     ACCELERATION,
@@ -218,14 +218,14 @@ def intensity_in(
     """Give an intensity measure of the motion of each case of a sweep."""
     if intensity.name in runs.coords and intensity.period is None:
         return runs[intensity.name]
-    before = unscaled_motions(runs, motions, owner=owner)
+    before = motions_of_runs(runs, motions, owner=owner)
     factor = _factors(runs, before)
     measured = of_motions(runs, before, intensity.of)
     found = measured * np.abs(factor) ** POWERS[intensity.name]
     return found.assign_attrs(intensity.attributes()).rename(intensity.name)
 
 
-def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
+def motions_of_runs(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
     """Give the motions of a sweep by their names, as they were before they were scaled."""
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
@@ -241,7 +241,7 @@ def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str
         )
         raise StudyError(msg)
     which = [name for name in names if name in used]
-    every = case.unscaled_motions(runs.attrs, which, given, case.store_of(runs))
+    every = unscaled_motions(runs.attrs, which, given, store_of(runs))
     found = {name: motion for name, motion in every.items() if motion is not None}
     if len(found) < len(every):
         msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"

@@ -254,7 +254,7 @@ class Seen:
 
 
 @dataclass(frozen=True, eq=False)
-class Followed:
+class FollowedLines:
     """What was found along lines."""
 
     scan: xr.Dataset  # the runs at the scales of the first row
@@ -302,7 +302,7 @@ class Lines:
 
     def followed(
         self, scales: Array, *, width: float, resolution: float | None = None, **kept: Any
-    ) -> Followed:
+    ) -> FollowedLines:
         """Run all rows and motions at all scales, and narrow every change of a verdict.
 
         With a resolution the intervals below what first exceeds are made narrower than that
@@ -329,7 +329,7 @@ class Lines:
             goes_on = "; the same call goes on, as it has a store" if rounds.store else ""
             msg = f"{self.owner}: interrupted; brackets are wider than asked{goes_on}"
             warn(msg, SolverWarning)
-        return Followed(scan, seen, found)
+        return FollowedLines(scan, seen, found)
 
     def _seen(
         self, rounds: Rounds, runs: xr.Dataset, resolution: float | None

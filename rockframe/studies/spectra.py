@@ -16,7 +16,7 @@ from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.simulation.system import System
-from rockframe.studies.intensities import POWERS, Intensity, of_motions, of_study, unscaled_motions
+from rockframe.studies.intensities import POWERS, Intensity, motions_of_runs, of_motions, of_study
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.line_axes import over_rows, read_line_axes
 from rockframe.studies.lines import (
@@ -266,7 +266,7 @@ def overturning_spectrum(
     shown = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
     capacities, flips = along.capacities(shape), along.flips(shape)
     capacity = capacities["capacity_scale"]
-    unit = of_motions(scan, unscaled_motions(scan, named, owner=_OVERTURNING), measure.of)
+    unit = of_motions(scan, motions_of_runs(scan, named, owner=_OVERTURNING), measure.of)
     powers = capacity ** np.where(np.isinf(capacity), 1, POWERS[measure.name])
     values = {
         **capacities,
