@@ -318,18 +318,13 @@ def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
     return [*dict.fromkeys(found)]
 
 
-@dataclass(frozen=True, eq=False)
-class _Curve:
-    """The fragility of one limit state, with bounds."""
+def _curve(
+    cloud: Cloud, level: float, along: Array, confidence: float, seed: int
+) -> tuple[FragilityStatus, Array, Array, Array]:
+    """Give status, probabilities at some intensities, median and dispersion of a level.
 
-    status: FragilityStatus
-    points: Array  # probability and its bounds; shape (3, intensities)
-    median: Array  # and its bounds
-    dispersion: Array
-
-
-def _curve(cloud: Cloud, level: float, along: Array, confidence: float, seed: int) -> _Curve:
-    """Give the fragility of a level at some intensities; bounds unless confidence is NaN."""
+    Each with its bounds, NaN where confidence is.
+    """
     status = _status(cloud, level)
     wide = np.linspace(cloud.logs.min() - _BEYOND, cloud.logs.max() + _BEYOND, _WIDE)
     middle, spread = _parameters(cloud.probabilities(wide, level)[None], wide)
@@ -337,7 +332,7 @@ def _curve(cloud: Cloud, level: float, along: Array, confidence: float, seed: in
     points[0] = cloud.probabilities(along, level)
     medians, spreads = np.full((2, 3), np.nan)
     if status not in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
-        return _Curve(status, points, medians, spreads)
+        return status, points, medians, spreads
     medians[0], spreads[0] = np.exp(middle[0]), spread[0]
     if status is FragilityStatus.SEPARATED:
         medians[0], spreads[0] = np.exp(cloud.overturning.coefficients[0]), 0.0
@@ -351,7 +346,7 @@ def _curve(cloud: Cloud, level: float, along: Array, confidence: float, seed: in
         every = [np.where(np.isnan(one), np.inf, one) for one in each]
         medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
         spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
-    return _Curve(status, points, medians, spreads)
+    return status, points, medians, spreads
 
 
 def _status(cloud: Cloud, level: float) -> FragilityStatus:
@@ -422,20 +417,18 @@ def _labelled(
         {"bands": "posterior", "trials": "cloud", "confidence": confidence},
         title="Cloud analysis", source="least squares and logistic regression",
     )  # fmt: skip
-    limits = np.array([*levels.values()])
-    of_states = {"fragility_status": np.array([one.status for one in curves]),
-                 "response_limit": limits}  # fmt: skip
+    status, *of_curves = zip(*curves, strict=True)
+    points, medians, spreads = map(np.stack, of_curves)
+    of_states = {"fragility_status": np.array(status),
+                 "response_limit": np.array([*levels.values()])}  # fmt: skip
     for k, end in enumerate(_ENDS):
-        of_states[f"median_intensity{end}"] = np.array([one.median[k] for one in curves])
-        of_states[f"dispersion{end}"] = np.array([one.dispersion[k] for one in curves])
+        of_states[f"median_intensity{end}"] = medians[:, k]
+        of_states[f"dispersion{end}"] = spreads[:, k]
     of_states["trial_count"] = np.full(len(levels), len(cloud.logs))
     of_states["left_out_count"] = np.full(len(levels), int((~runs.kept).sum()))
     found = with_variables(found, of_states, over=tuple(over))
-    points = {
-        f"exceedance_probability{end}": np.stack([one.points[k] for one in curves])
-        for k, end in enumerate(_ENDS)
-    }
-    found = with_variables(found, points, over=(*over, name))
+    shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(_ENDS)}
+    found = with_variables(found, shares, over=(*over, name))
     found = found.assign_coords({name: (name, np.exp(along), measure.attrs)})
     found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
     counted = [

@@ -176,7 +176,7 @@ def incremental_dynamic_analysis(
     found = with_variables(
         found, {"censored_count": censored}, over=("limit_state", *line_axes.sizes)
     )
-    found = found.assign_coords(labels_of_states(states))
+    found = with_variables(found, labels_of_states(states))
     if measure is not None:
         found = found.assign({measure.name: intensity_in(scan, measure, given, owner=_OWNER)})
         found.attrs |= of_study(measure.name, measure.period)

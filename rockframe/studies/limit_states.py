@@ -11,8 +11,8 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, several
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
-from rockframe.results.outcome import overturns
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.outcome import Generic, overturns
+from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
@@ -129,16 +129,12 @@ def read_in_unit(
     return to_si(given, measure, owner=owner, name=name, condition=condition)
 
 
-def labels_of_states(states: Sequence[LimitState]) -> dict[str, xr.Variable]:
-    """Give the coordinates along limit states."""
-    labels = build_dataset(
-        {
-            "limit_state": np.array([state.name for state in states], dtype=object),
-            "rotation_limit": np.array([state.rotation for state in states]),
-        },
-        {},
-    )
-    return {str(name): labels[name].variable for name in labels.variables}
+def labels_of_states(states: Sequence[LimitState]) -> dict[str, Generic]:
+    """Give the labels along limit states."""
+    return {
+        "limit_state": np.array([state.name for state in states], dtype=object),
+        "rotation_limit": np.array([state.rotation for state in states]),
+    }
 
 
 def states_json(states: Sequence[LimitState]) -> str:

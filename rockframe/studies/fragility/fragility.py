@@ -231,7 +231,8 @@ def fragility(
         [(str(one.name), dict(one.attrs)) for one in measures], means,
         about | told_period(runs, given, period, owner=_OWNER), fits,
     )  # fmt: skip
-    dataset = dataset.assign_coords({**structures.coordinates, **labels_of_states(states)})
+    dataset = dataset.assign_coords(structures.coordinates)
+    dataset = with_variables(dataset, labels_of_states(states))
     if of_capacities:
         below = np.array([int((~one.trials.has_lower).sum()) for one in found])
         below = below.reshape((*over.values(), len(states)))

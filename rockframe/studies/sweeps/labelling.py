@@ -138,7 +138,15 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
 def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
     """Add the axes, and what is said of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
-    return without_fill_values(dataset.assign_coords(_of_bodies(labels, dataset.sizes)))
+    # the numbers of bodies, and the names of restrainers, that results are of
+    found: dict[str, Any] = {}
+    if (count := dataset.sizes.get(BODY[0])) is not None:
+        found[BODY[0]] = 1 + np.arange(count)
+    if (count := dataset.sizes.get(RESTRAINER[0])) is not None:
+        names = json.loads(str(labels.attributes.get("restrainer_names", "[]")))
+        numbers = [str(k + 1) for k in range(count)]
+        found[RESTRAINER[0]] = np.array(names if len(names) == count else numbers, dtype=object)
+    return without_fill_values(with_variables(dataset, found))
 
 
 def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
@@ -153,19 +161,6 @@ def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
         names = np.array(labels.motions, dtype=object)[grid.motion_column]
         found[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
     return found
-
-
-def _of_bodies(labels: Labels, sizes: Mapping[Any, int]) -> Mapping[Any, xr.DataArray]:
-    """Give the numbers of bodies, and the names of restrainers, that results are of."""
-    found: dict[str, Any] = {}
-    if BODY[0] in sizes:
-        found[BODY[0]] = 1 + np.arange(sizes[BODY[0]])
-    if RESTRAINER[0] in sizes:
-        count = sizes[RESTRAINER[0]]
-        names = json.loads(str(labels.attributes.get("restrainer_names", "[]")))
-        numbers = [str(k + 1) for k in range(count)]
-        found[RESTRAINER[0]] = np.array(names if len(names) == count else numbers, dtype=object)
-    return build_dataset(found, {}).coords
 
 
 def _driver(found: Generic) -> str:
