@@ -20,7 +20,7 @@ from rockframe.studies.fragility.ordered import ordered_fits
 from rockframe.studies.fragility.trials import (
     StructureTrials,
     Trials,
-    flat,
+    laid_out,
     motion_numbers,
     structures_of,
     trials_of_capacities,
@@ -328,8 +328,8 @@ def _ordered(
     bands: Bands,
 ) -> list[Fit]:
     """Fit all limit states of a structure with one dispersion."""
-    rows = np.stack([flat(one, [along])[1] for one in verdicts])
-    intensity = flat(verdicts[0], [along])[0][:, 0]
+    rows = np.stack([one.to_numpy().ravel().astype(np.float64) for one in verdicts])
+    intensity = laid_out(along, verdicts[0]).astype(np.float64)
     kept = ~np.isnan(rows).any(axis=0) & (intensity > 0.0) & np.isfinite(intensity)
     names = [state.name for state in states]
     motions = motion_numbers(verdicts[0])[kept]

@@ -205,7 +205,9 @@ def trials_of_runs(
     exceeded: xr.DataArray, measures: Sequence[xr.DataArray], *, by_motion: bool
 ) -> StructureTrials:
     """Give the trials of runs, each of which exceeds a limit state or does not."""
-    runs = columns, verdict = flat(exceeded, measures)
+    columns = np.column_stack([laid_out(one, exceeded).astype(np.float64) for one in measures])
+    verdict = exceeded.to_numpy().ravel().astype(np.float64)
+    runs = columns, verdict
     kept = ~np.isnan(verdict) & np.all(columns > 0.0, axis=1) & np.all(np.isfinite(columns), axis=1)
     cluster = motion_numbers(exceeded)[kept]
     motions = len(np.unique(cluster))
@@ -267,12 +269,6 @@ def _in_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -
     laid = values.variable.set_dims({**lacking, **values.sizes}).transpose(*sizes, *own)
     count = math.prod(sizes.values())
     return laid.to_numpy().reshape((count, values.sizes[along] if own else 1))
-
-
-def flat(first: xr.DataArray, others: Sequence[xr.DataArray]) -> tuple[Array, Array]:
-    """Lay numbers of runs out in rows."""
-    rows = [laid_out(other, first).astype(np.float64) for other in others]
-    return np.column_stack(rows), first.to_numpy().ravel().astype(np.float64)
 
 
 def laid_out(values: xr.DataArray, like: xr.DataArray) -> Generic:
