@@ -253,7 +253,8 @@ def cloud_analysis(
     seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label or "", owner=_OWNER)
-    asked = _levels(limits, values)
+    levels = listed_limits(limits, owner=_OWNER)
+    asked = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
     floor = read_least(least, values, owner=_OWNER)
     found = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
@@ -309,13 +310,6 @@ def read_least(given: Any, values: xr.DataArray, *, owner: str) -> float:
 def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> float:
     unit, words = str(values.attrs.get("units", "1")), str(values.name).replace("_", " ")
     return read_in_unit(given, unit, words, owner=owner, name=name, condition=POSITIVE)
-
-
-def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
-    """Read levels of the response, as they are given, beside overturning."""
-    levels = listed_limits(limits, owner=_OWNER)
-    found = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
-    return [*dict.fromkeys(found)]
 
 
 def _curve(

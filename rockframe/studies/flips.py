@@ -215,8 +215,9 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     if gaps:
         text += f", stands again {_listed(gaps)}"
     text += f"; looked at {len(scales)} scales up to {number(largest)}"
-    if not math.isnan(found.largest_gap):
-        text += f", at most {_at_most(found.largest_gap)} apart"
+    if not math.isnan(gap := found.largest_gap):  # to two digits, rounded up
+        size = 10.0 ** (math.floor(math.log10(gap)) - 1)
+        text += f", at most {math.ceil(gap / size - _ROUNDING) * size:.2g} apart"
     slides = share_words(np.array([run.slides for run in found.shown.values()]))
     text += f"; {slides}" if slides else ""
     slid = slip_words(np.array([run.slip for run in found.shown.values()]))
@@ -231,12 +232,6 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     if undecided:
         text += f" {unfinished(undecided)}, the first at {number(undecided[0])}."
     return text
-
-
-def _at_most(gap: float) -> str:
-    """Give a distance to two digits, rounded up."""
-    size = 10.0 ** (math.floor(math.log10(gap)) - 1)
-    return f"{math.ceil(gap / size - _ROUNDING) * size:.2g}"
 
 
 def unfinished(undecided: Sequence[float]) -> str:
