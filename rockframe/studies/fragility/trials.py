@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from rockframe.arguments import several
@@ -40,14 +41,9 @@ class Structures:
 
     def parts(self, values: Values) -> Iterator[Values]:
         """Give what belongs to each structure, the last dimension fastest."""
-        places = [
-            [np.flatnonzero(group == k) for k in range(size)]
-            for group, size in zip(self.groups.values(), self.shape, strict=True)
-        ]
         for number in np.ndindex(self.shape):
-            chosen = {
-                dim: each[k] for dim, each, k in zip(self.groups, places, number, strict=True)
-            }
+            groups = zip(self.groups.items(), number, strict=True)
+            chosen = {dim: np.flatnonzero(group == k) for (dim, group), k in groups}
             yield values.isel(chosen, missing_dims="ignore")
 
 
@@ -141,13 +137,9 @@ def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic,
     """Give the first place of each group of like rows, and the group of each place."""
     if apart:
         return np.arange(size), np.arange(size)
-    numbers = [np.unique(one.astype(str) if one.dtype == object else one, return_inverse=True)[1]
-               for one in columns]  # fmt: skip
-    _, first, group = np.unique(
-        np.column_stack(numbers), axis=0, return_index=True, return_inverse=True
-    )
-    order = np.argsort(first)
-    return first[order], np.argsort(order)[group.ravel()]
+    table = pd.DataFrame(dict(enumerate(columns)))
+    group = table.groupby([*table], sort=False, dropna=False).ngroup().to_numpy()
+    return np.unique(group, return_index=True)[1], group
 
 
 @dataclass(frozen=True, eq=False)
