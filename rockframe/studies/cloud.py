@@ -1,7 +1,7 @@
 """Cloud analysis: a straight line in logarithms, with runs that overturn apart."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
@@ -18,8 +18,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
-from rockframe.studies.fragility.labelling import Arrangement, Means, with_stripes
-from rockframe.studies.fragility.likelihood import Bands
+from rockframe.studies.fragility.labelling import with_stripes
 from rockframe.studies.fragility.trials import laid_out, motion_numbers
 from rockframe.studies.intensities import (
     PERIOD_OF,
@@ -45,7 +44,10 @@ _FEWEST: Final = 4
 _POINTS: Final = 101
 _DRAWS: Final = 4000
 """Of the coefficients, for bounds."""
-_ENDS: Final = ("lower", "upper")
+_BEYOND: Final = 3.0
+"""Logarithm of the intensity by which medians are looked for beyond the runs."""
+_WIDE: Final = 601
+_ENDS: Final = ("", "_lower_bound", "_upper_bound")
 _OF_INTENSITY: Final = (
     "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
     "stripe_intensity", "cloud_intensity",
@@ -110,51 +112,54 @@ class Cloud:
             logs, responses, line, fit_logistic(logs, fell), fit_logistic(logs[~fell], moved[~fell])
         )
 
+    @property
+    def between(self) -> Generic:
+        """Which runs moved and did not overturn."""
+        return (self.responses > 0.0) & np.isfinite(self.responses)
+
     def log_likelihoods(self) -> Array:
         """Give the logarithm of the likelihood of each run, :eq:`eq-cloud-likelihood`."""
         if self.line is None:
             return np.full(len(self.logs), np.nan)
         falls, moves = self.overturning.at(self.logs), self.moving.at(self.logs)
-        fell, moved = np.isinf(self.responses), self.responses > 0.0
+        fell, spread = np.isinf(self.responses), self.line.dispersion
         found = np.where(
             fell, np.log(np.maximum(falls, 1e-300)), np.log1p(-np.minimum(falls, 1.0 - 1e-16))
         )
-        stood = ~fell
-        chance = np.where(moved, moves, 1.0 - moves)
-        found[stood] += np.log(np.maximum(chance[stood], 1e-300))
-        between = moved & ~fell
-        over = self.line.residuals / self.line.dispersion
-        found[between] += -0.5 * (over**2 + math.log(2.0 * math.pi)) - math.log(
-            self.line.dispersion
-        )
+        chance = np.where(self.responses > 0.0, moves, 1.0 - moves)
+        found[~fell] += np.log(np.maximum(chance[~fell], 1e-300))
+        over = self.line.residuals / spread
+        found[self.between] += -0.5 * (over**2 + math.log(2.0 * math.pi)) - math.log(spread)
         return found
 
     def probabilities(self, logs: Array, level: float) -> Array:
         """Give the probability that a level is exceeded, :eq:`eq-cloud-fragility`."""
-        falls, moves = self.overturning.at(logs), self.moving.at(logs)
-        if math.isinf(level):
-            return falls
-        if self.line is None:
-            return np.full(logs.shape, np.nan)
-        beyond = _normal(
-            (self.line.intercept + self.line.slope * logs - math.log(level)) / self.line.dispersion
-        )
-        return falls + (1.0 - falls) * moves * beyond
+        line = self.line
+        of_line = None if line is None else (line.intercept, line.slope, line.dispersion)
+        return _beyond(self.overturning.at(logs), self.moving.at(logs), of_line, logs, level)
 
     def drawn(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
         """Draw curves that are as likely; shape (count, intensities)."""
         falls, moves = self.overturning.drawn(logs, rng, count), self.moving.drawn(logs, rng, count)
-        if math.isinf(level) or self.line is None:
-            return falls if math.isinf(level) else np.full((count, len(logs)), np.nan)
-        intercept, slope, spread = (one[:, None] for one in self.line.drawn(rng, count))
-        beyond = _normal((intercept + slope * logs - math.log(level)) / spread)
-        return falls + (1.0 - falls) * moves * beyond
+        of_line = None
+        if self.line is not None and not math.isinf(level):
+            of_line = [one[:, None] for one in self.line.drawn(rng, count)]
+        return _beyond(falls, moves, of_line, logs, level)
 
 
-def _normal(eta: Array) -> Array:
+def _beyond(
+    falls: Array, moves: Array, of_line: Sequence[Any] | None, logs: Array, level: float
+) -> Array:
+    """Give the probability beyond a level from those to overturn and to move, and the line."""
     from scipy.special import ndtr
 
-    return np.asarray(ndtr(eta))
+    if math.isinf(level):
+        return falls
+    if of_line is None:
+        return np.full(np.shape(falls), np.nan)
+    intercept, slope, dispersion = of_line
+    beyond = np.asarray(ndtr((intercept + slope * logs - math.log(level)) / dispersion))
+    return falls + (1.0 - falls) * moves * beyond
 
 
 @hinted()
@@ -248,13 +253,15 @@ def cloud_analysis(
     seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label or "", owner=_OWNER)
-    asked = _levels(limits, values)
+    levels = listed_limits(limits, owner=_OWNER)
+    asked = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
     floor = read_least(least, values, owner=_OWNER)
     found = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
-    dataset = _labelled(
-        found, asked, _names(asked, response, label, values), measure, level, seed,
-        unit=str(values.attrs.get("units", "1")),
-    )  # fmt: skip
+    words = " ".join(filter(None, [response.replace("_", " "), label]))
+    named = {f"{words} {one:g}{unit_behind(values.attrs)}": one for one in asked}
+    dataset = _labelled(found, named | {OVERTURNING: math.inf}, measure, level, seed)
+    for one in ("cloud_response", "response_limit"):
+        dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))
     dataset.attrs |= {
         **{key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs},
         **told_period(runs, [intensity], period, owner=_OWNER),
@@ -305,32 +312,13 @@ def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> floa
     return read_in_unit(given, unit, words, owner=owner, name=name, condition=POSITIVE)
 
 
-def _levels(limits: Iterable[Any], values: xr.DataArray) -> list[float]:
-    """Read levels of the response, as they are given; overturning is the last, at infinity."""
-    levels = listed_limits(limits, owner=_OWNER)
-    found = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
-    return [*dict.fromkeys(found), math.inf]
+def _curve(
+    cloud: Cloud, level: float, along: Array, confidence: float, seed: int
+) -> tuple[FragilityStatus, Array, Array, Array]:
+    """Give status, probabilities at some intensities, median and dispersion of a level.
 
-
-def _names(
-    levels: Sequence[float], response: str, label: str | None, values: xr.DataArray
-) -> list[str]:
-    words = " ".join(filter(None, [response.replace("_", " "), label]))
-    unit = unit_behind(values.attrs)
-    return [OVERTURNING if math.isinf(one) else f"{words} {one:g}{unit}" for one in levels]
-
-
-@dataclass(frozen=True, eq=False)
-class _Curve:
-    """The fragility of one limit state, with bounds."""
-
-    status: FragilityStatus
-    points: Array  # probability and its bounds; shape (3, intensities)
-    median: Array  # and its bounds
-    dispersion: Array
-
-
-def _curve(cloud: Cloud, level: float, along: Array, bounds: "_Bounds") -> _Curve:
+    Each with its bounds, NaN where confidence is.
+    """
     status = _status(cloud, level)
     wide = np.linspace(cloud.logs.min() - _BEYOND, cloud.logs.max() + _BEYOND, _WIDE)
     middle, spread = _parameters(cloud.probabilities(wide, level)[None], wide)
@@ -338,13 +326,13 @@ def _curve(cloud: Cloud, level: float, along: Array, bounds: "_Bounds") -> _Curv
     points[0] = cloud.probabilities(along, level)
     medians, spreads = np.full((2, 3), np.nan)
     if status not in (FragilityStatus.FITTED, FragilityStatus.SEPARATED):
-        return _Curve(status, points, medians, spreads)
+        return status, points, medians, spreads
     medians[0], spreads[0] = np.exp(middle[0]), spread[0]
     if status is FragilityStatus.SEPARATED:
         medians[0], spreads[0] = np.exp(cloud.overturning.coefficients[0]), 0.0
-    elif not math.isnan(bounds.confidence):
-        tails = 0.5 * (1.0 - bounds.confidence), 0.5 * (1.0 + bounds.confidence)
-        rng = np.random.default_rng(bounds.seed)
+    elif not math.isnan(confidence):
+        tails = 0.5 * (1.0 - confidence), 0.5 * (1.0 + confidence)
+        rng = np.random.default_rng(seed)
         drawn = cloud.drawn(np.concatenate([along, wide]), level, rng, _DRAWS)
         points[1:] = np.quantile(drawn[:, : len(along)], tails, axis=0)
         each = _parameters(drawn[:, len(along) :], wide)
@@ -352,19 +340,7 @@ def _curve(cloud: Cloud, level: float, along: Array, bounds: "_Bounds") -> _Curv
         every = [np.where(np.isnan(one), np.inf, one) for one in each]
         medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
         spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
-    return _Curve(status, points, medians, spreads)
-
-
-_BEYOND: Final = 3.0
-"""Logarithm of the intensity by which medians are looked for beyond the runs."""
-_WIDE: Final = 601
-
-
-class _Bounds(NamedTuple):
-    """How bounds are drawn."""
-
-    confidence: float  # NaN where there are none
-    seed: int
+    return status, points, medians, spreads
 
 
 def _status(cloud: Cloud, level: float) -> FragilityStatus:
@@ -402,36 +378,32 @@ def _crossing(eta: Array, logs: Array, level: float) -> Array:
 
 def _labelled(
     runs: CloudOfRuns,
-    levels: Sequence[float],
-    names: Sequence[str],
+    levels: Mapping[str, float],
     measure: xr.DataArray,
     confidence: float,
     seed: int,
-    *,
-    unit: str,
 ) -> xr.Dataset:
-    """Label a cloud and its fragility; the responses have a unit."""
-    cloud, bounds = runs.cloud, _Bounds(math.nan if runs.repeated else confidence, seed)
+    """Label a cloud and its fragility against levels of the response, by their names."""
+    cloud, of_bounds = runs.cloud, math.nan if runs.repeated else confidence
     along = np.linspace(cloud.logs.min(), cloud.logs.max(), _POINTS)
-    curves = [_curve(cloud, level, along, bounds) for level in levels]
-    name, over = str(measure.name), ("limit_state",)
-    line, falls = cloud.line, cloud.overturning.coefficients
-    of_line = [math.nan] * 4 if line is None else [
-        line.intercept, line.slope, line.dispersion, line.determination
+    curves = [_curve(cloud, level, along, of_bounds, seed) for level in levels.values()]
+    name, over = str(measure.name), {"limit_state": len(levels)}
+    line, falls = cloud.line, cloud.overturning
+    of_line = [math.nan] * 5 if line is None else [
+        line.intercept, line.slope, math.sqrt(line.covariance[1, 1]), line.dispersion,
+        line.determination,
     ]  # fmt: skip
-    errors = [math.nan] * 2 if line is None else np.sqrt(np.diag(line.covariance)).tolist()
-    fell = np.isinf(cloud.responses)
+    names = (
+        "regression_intercept", "regression_slope", "regression_slope_error",
+        "residual_dispersion", "determination",
+    )  # fmt: skip
     found = build_dataset(
         {
-            "regression_intercept": of_line[0],
-            "regression_slope": of_line[1],
-            "regression_slope_error": errors[1],
-            "residual_dispersion": of_line[2],
-            "determination": of_line[3],
-            "logistic_intercept": falls[0],
-            "logistic_slope": falls[1],
-            "logistic_slope_error": math.sqrt(cloud.overturning.covariance[1, 1]),
-            "cloud_overturned_count": fell.sum(),
+            **dict(zip(names, of_line, strict=True)),
+            "logistic_intercept": falls.coefficients[0],
+            "logistic_slope": falls.coefficients[1],
+            "logistic_slope_error": math.sqrt(falls.covariance[1, 1]),
+            "cloud_overturned_count": np.isinf(cloud.responses).sum(),
             "resting_count": (cloud.responses == 0.0).sum(),
             "cloud_intensity": np.exp(cloud.logs),
             "cloud_response": cloud.responses,
@@ -439,33 +411,27 @@ def _labelled(
         {"bands": "posterior", "trials": "cloud", "confidence": confidence},
         title="Cloud analysis", source="least squares and logistic regression",
     )  # fmt: skip
-    ends = ("", *(f"_{end}_bound" for end in _ENDS))
-    of_states = {"fragility_status": np.array([one.status for one in curves]),
-                 "response_limit": np.array(levels)}  # fmt: skip
-    for k, end in enumerate(ends):
-        of_states[f"median_intensity{end}"] = np.array([one.median[k] for one in curves])
-        of_states[f"dispersion{end}"] = np.array([one.dispersion[k] for one in curves])
-    counts = {
-        "trial_count": np.full(len(levels), len(cloud.logs)),
-        "left_out_count": np.full(len(levels), int((~runs.kept).sum())),
-    }
-    points = {
-        f"exceedance_probability{end}": np.stack([one.points[k] for one in curves])
-        for k, end in enumerate(ends)
-    }
-    found = with_variables(found, {**of_states, **counts}, over=over)
-    found = with_variables(found, points, over=(*over, name))
+    status, *of_curves = zip(*curves, strict=True)
+    points, medians, spreads = map(np.stack, of_curves)
+    of_states = {"fragility_status": np.array(status),
+                 "response_limit": np.array([*levels.values()])}  # fmt: skip
+    for k, end in enumerate(_ENDS):
+        of_states[f"median_intensity{end}"] = medians[:, k]
+        of_states[f"dispersion{end}"] = spreads[:, k]
+    of_states["trial_count"] = np.full(len(levels), len(cloud.logs))
+    of_states["left_out_count"] = np.full(len(levels), int((~runs.kept).sum()))
+    found = with_variables(found, of_states, over=tuple(over))
+    shares = {f"exceedance_probability{end}": points[:, k] for k, end in enumerate(_ENDS)}
+    found = with_variables(found, shares, over=(*over, name))
     found = found.assign_coords({name: (name, np.exp(along), measure.attrs)})
-    found = with_variables(found, {"limit_state": np.array(list(names), dtype=object)})
+    found = with_variables(found, {"limit_state": np.array(list(levels), dtype=object)})
     counted = [
         (np.exp(cloud.logs)[:, None], (cloud.responses >= level).astype(np.float64))
-        for level in levels
+        for level in levels.values()
     ]
-    layout = Arrangement(over, (len(levels),))
-    found = with_stripes(found, counted, layout, Means(Bands.PROFILE, confidence))
+    found = with_stripes(found, counted, over, confidence)
     for one in _OF_INTENSITY:
         found[one].attrs["units"] = measure.attrs.get("units", "1")
-    found["cloud_response"].attrs["units"] = found["response_limit"].attrs["units"] = unit
     return found
 
 

@@ -28,7 +28,6 @@ _ACCEPTED: Final = 0.44
 class Level:
     """A sample given that the threshold before is exceeded."""
 
-    scores: Array  # standard normal numbers, a row for each sample
     demands: Array  # NaN where a run told none, which is so at the first level alone
     origins: Generic  # which run each is, counted from the first one of all
     families: Generic  # from which sample of the first level each descends
@@ -66,6 +65,7 @@ def subset_levels(
 ) -> Iterator[Level]:
     """Sample level by level, until the limit is exceeded by a share that can be counted.
 
+    By chains of samples, :eq:`eq-conditional-candidate`, from those that exceed a threshold.
     The last level has the limit for its threshold, whether or not it is exceeded: it is that at
     which the share is reached, the one of greatest number, or one whose samples all demand the
     same.
@@ -77,23 +77,35 @@ def subset_levels(
     chains, acceptance, runs, step = count, math.nan, count, _FIRST_STEP
     left_out = int(np.isnan(demands).sum())
     for number in range(1, most + 1):
-        threshold = _threshold(demands, share, limit)
-        threshold = limit if number == most else threshold
-        level = Level(
-            scores, demands, origins, families, threshold, chains, acceptance, runs, left_out
-        )
+        threshold = limit if number == most else _threshold(demands, share, limit)
+        level = Level(demands, origins, families, threshold, chains, acceptance, runs, left_out)
         yield level
         if threshold >= limit:
             return
         (seeds,) = np.nonzero(level.exceeds)
         chains, length = len(seeds), max(2, round(count / len(seeds)))
-        one = _Chains(scores[seeds], demands[seeds], origins[seeds], threshold, step)
-        one.grow(demand, f"level {number + 1:02d}", length, ran, rng)
-        scores, demands, origins = map(np.concatenate, (one.scores, one.demands, one.origins))
+        runs, left_out = chains * (length - 1), 0
+        # all chains make a step at once, so that their runs go side by side
+        states = [(scores[seeds], demands[seeds], origins[seeds])]
+        accepted: list[float] = []
+        for place in range(1, length):
+            scores, demands, origins = states[-1]
+            noise = rng.standard_normal(scores.shape)
+            candidates = math.sqrt(1.0 - step**2) * scores + step * noise
+            found = demand(f"level {number + 1:02d} step {place:02d}", candidates)
+            taken = found >= threshold
+            left_out += int(np.isnan(found).sum())
+            states.append((
+                np.where(taken[:, None], candidates, scores),
+                np.where(taken, found, demands),
+                np.where(taken, ran + np.arange(chains), origins),
+            ))  # fmt: skip
+            ran += chains
+            accepted.append(float(taken.mean()))
+            step = min(1.0, step * math.exp((accepted[-1] - _ACCEPTED) / math.sqrt(place)))
+        scores, demands, origins = map(np.concatenate, zip(*states, strict=True))
         families = np.tile(families[seeds], length)
-        step, left_out, acceptance = one.step, one.left_out, one.acceptance
-        runs = chains * (length - 1)
-        ran += runs
+        acceptance = float(np.mean(accepted))
 
 
 def _threshold(demands: Array, share: float, limit: float) -> float:
@@ -109,44 +121,6 @@ def _threshold(demands: Array, share: float, limit: float) -> float:
     place = int(np.argmin(np.abs(np.log(above / (share * counts.sum())))))
     below, upper = float(values[place]), float(values[place + 1])
     return min(limit, 0.5 * (below + upper) if math.isfinite(upper) else upper)
-
-
-class _Chains:
-    """Chains that all make a step at once, so that their runs go side by side."""
-
-    def __init__(
-        self, scores: Array, demands: Array, origins: Generic, threshold: float, step: float
-    ) -> None:
-        # after each step
-        self.scores, self.demands, self.origins = [scores], [demands], [origins]
-        self.step = step
-        self.left_out = 0
-        self._threshold = threshold
-        self._taken = list[float]()
-
-    def grow(
-        self, demand: Demand, name: str, length: int, ran: int, rng: np.random.Generator
-    ) -> None:
-        """Make all steps, :eq:`eq-conditional-candidate`; so many runs have been made before."""
-        for number in range(1, length):
-            scores, demands, origins = self.scores[-1], self.demands[-1], self.origins[-1]
-            noise = rng.standard_normal(scores.shape)
-            candidates = math.sqrt(1.0 - self.step**2) * scores + self.step * noise
-            found = demand(f"{name} step {number:02d}", candidates)
-            taken = found >= self._threshold
-            self.left_out += int(np.isnan(found).sum())
-            self.scores.append(np.where(taken[:, None], candidates, scores))
-            self.demands.append(np.where(taken, found, demands))
-            self.origins.append(np.where(taken, ran + np.arange(len(found)), origins))
-            ran += len(found)
-            self._taken.append(float(taken.mean()))
-            off = (self._taken[-1] - _ACCEPTED) / math.sqrt(number)
-            self.step = min(1.0, self.step * math.exp(off))
-
-    @property
-    def acceptance(self) -> float:
-        """Share of the candidates that were taken [1]."""
-        return float(np.mean(self._taken))
 
 
 def probability_of(levels: Sequence[Level]) -> float:

@@ -4,6 +4,7 @@ from typing import Final
 
 import numpy as np
 
+from rockframe.arguments import several
 from rockframe.results.outcome import Generic
 from rockframe.signals.arrays import Array
 from rockframe.units import Condition, to_ratio
@@ -15,6 +16,14 @@ _LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.
 def read_level(given: object, *, owner: str) -> float:
     """Read the argument ``confidence``."""
     return to_ratio(given, owner=owner, name="confidence", condition=_LEVEL, example="0.95")
+
+
+def read_shares(given: object, name: str, *, owner: str) -> Array:
+    """Read an argument that is several shares."""
+    listed = several(given, owner=owner, name=name, of="numbers")
+    return np.array(
+        [to_ratio(one, owner=owner, name=name, condition=SHARE, example="0.5") for one in listed]
+    )
 
 
 def clopper_pearson(exceeded: Generic, trials: Generic, confidence: float) -> tuple[Array, Array]:

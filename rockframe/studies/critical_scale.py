@@ -25,17 +25,10 @@ from rockframe.simulation.run import run, summary_of
 from rockframe.simulation.run_arguments import ScaleArguments
 from rockframe.simulation.soundness import STILL_MOVING, has_limit
 from rockframe.simulation.system import System
-from rockframe.studies.flips import (
-    Followed,
-    Look,
-    flips_sentence,
-    follow,
-    least_overturning,
-    unfinished,
-)
+from rockframe.studies.flips import Followed, flips_sentence, follow, least_overturning, unfinished
 from rockframe.studies.intensities import ScaledIntensity, of_study
 from rockframe.studies.lines import read_resolution, read_width
-from rockframe.studies.sweeps.execution import ProgressBar, bar_of
+from rockframe.studies.sweeps.execution import bar_of
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.units import POSITIVE, QuantityLike, RatioLike, to_ratio
 
@@ -159,12 +152,7 @@ def critical_scale(
     finest = read_resolution(resolution, owner=_OWNER)
     count = whole_number(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
     most = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
-    plan = plan_run(
-        system.assembly,
-        motion,
-        outputs=None,
-        **asked,
-    )
+    plan = plan_run(system.assembly, motion, outputs=None, **asked)
     measure = None
     if intensity is not None:
         measure = ScaledIntensity(
@@ -185,12 +173,21 @@ def critical_scale(
     rubs = has_limit(system.assembly)
     step = plan.output_step if rubs else None
 
-    def look(scale: float) -> RunSummary:
-        return summary_of(system.assembly, replace(plan_at(scale), output_step=step))
-
     with bar_of(progress, owner=_OWNER, unit="run") as bar:
-        counted = _counted(look, bar, len(row))
-        found = follow(counted, row, most=most, width=share, resolution=finest, may_slide=rubs)
+        bar.expect(len(row))
+        looks = itertools.count()
+
+        def look(scale: float) -> RunSummary:
+            number = next(looks)
+            if number == len(row):
+                bar.name("more scales")
+            if number >= len(row):
+                bar.expect(1)
+            shown = summary_of(system.assembly, replace(plan_at(scale), output_step=step))
+            bar.update(1)
+            return shown
+
+        found = follow(look, row, most=most, width=share, resolution=finest, may_slide=rubs)
     critical = least_overturning(found.shown)
     told = flips_sentence(found, width=share, resolution=finest)
     if not found.whole:
@@ -214,24 +211,6 @@ def critical_scale(
         return dataset
     dataset = dataset.assign({measure.name: measure.at(critical)})
     return dataset.assign_attrs(of_study(measure.name, measure.period))
-
-
-def _counted(look: Look, bar: ProgressBar, first: int) -> Look:
-    """Let a bar count the runs: those that come first, and as many more as there will be."""
-    bar.expect(first)
-    looks = itertools.count()
-
-    def counted(scale: float) -> RunSummary:
-        number = next(looks)
-        if number == first:
-            bar.name("more scales")
-        if number >= first:
-            bar.expect(1)
-        shown = look(scale)
-        bar.update(1)
-        return shown
-
-    return counted
 
 
 def _uplift_scale(system: System, plan: Plan) -> float:

@@ -2,14 +2,15 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from inspect import signature
 from typing import Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ModelWarning, StudyError, warn
+from rockframe.errors import ModelWarning, warn
 from rockframe.results.outcome import overturns
-from rockframe.results.schema import build_dataset, with_variables
+from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
@@ -29,26 +30,21 @@ from rockframe.studies.lines import (
     CAPACITY,
     INTERRUPTED,
     SCALE,
+    SOURCE,
     VERDICT,
     Lines,
-    bracket_arrays,
-    least_exceeding,
     read_resolution,
     read_scales,
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import MotionsLike, named_motions
-from rockframe.studies.sweeps.scenes import own_motion, scene_of
+from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.scenes import needed_motions, scene_of
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.system.options import PointsLike
 from rockframe.units import QuantityLike, RatioLike
 
 _OWNER: Final = "incremental_dynamic_analysis"
-_ARGUMENTS: Final = (
-    *SweepArguments.__annotations__, "scale", "limits", "intensity", "period", "resolution",
-    "bracket_width",
-)  # fmt: skip
 _SCALES: Final = tuple(0.1 * k for k in range(1, 41))
 
 
@@ -154,57 +150,48 @@ def incremental_dynamic_analysis(
     1.13
     """
     scene = scene_of(system)
-    line_axes = read_line_axes(axes, scene, owner=_OWNER, others=_ARGUMENTS)
+    arguments = signature(incremental_dynamic_analysis).parameters
+    line_axes = read_line_axes(axes, scene, owner=_OWNER, others=arguments)
     states = limit_states(limits, owner=_OWNER)
     scales = read_scales(scale, owner=_OWNER)
     share = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
     measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)
-    given = own_motion(scene) if motions is None else motions
-    if given is None:
-        msg = f"{_OWNER}: there is no motion to scale; give one"
-        raise StudyError(msg)
+    given = needed_motions(motions, scene, owner=_OWNER)
     asked: Any = {**run, "points": points}
-    kept = {"outputs": outputs, "output_step": output_step}
-    lines = Lines(system, named_motions(given), line_axes.columns, asked, _OWNER, kept)
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)
 
-    scan, seen, brackets = lines.followed(scales, verdicts, width=share, resolution=finest)
-    scan = line_axes.arranged(scan)
+    lines = Lines(system, given, line_axes.columns(), asked, _OWNER, verdicts)
+    along = lines.followed(
+        scales, width=share, resolution=finest, outputs=outputs, output_step=output_step
+    )
+    scan = line_axes.arranged(along.scan)
     over = {**line_axes.sizes, MOTION: scan.sizes[MOTION]}
     shape = (len(states), *over.values())
-    below, above, _, after = (
-        one.reshape((*shape, -1)) for one in bracket_arrays(brackets, seen.first.shape)
-    )
-    capacity = least_exceeding(seen.first.reshape(shape), above, after)
-    narrow = build_dataset(
-        {
-            "capacity_scale": capacity,
-            "capacity_resolution": seen.resolution.reshape(shape),
-            "flip_count": np.isfinite(below).sum(axis=-1),
-            "scale_below": below,
-            "scale_above": above,
-            "exceeds_above": after,
-        },
-        {},
-        over=("limit_state", *over),
-        source="scan and bisection of event-driven runs",
-    )
+    capacities = along.capacities(shape)
+    found = with_variables(scan, {**capacities, **along.flips(shape)}, over=("limit_state", *over))
+    censored = np.isinf(capacities["capacity_scale"]).sum(axis=-1)
     found = with_variables(
-        scan.assign(narrow.data_vars),
-        {"censored_count": np.isinf(capacity).sum(axis=-1)},
-        over=("limit_state", *line_axes.sizes),
+        found, {"censored_count": censored}, over=("limit_state", *line_axes.sizes)
     )
-    found = found.assign_coords(labels_of_states(states))
+    found = with_variables(found, labels_of_states(states))
     if measure is not None:
         found = found.assign({measure.name: intensity_in(scan, measure, given, owner=_OWNER)})
         found.attrs |= of_study(measure.name, measure.period)
-    _say_what_lies_below(found)
+    below, least = _at_the_least(found), float(found[SCALE].min())
+    if below.any():
+        which = "motions" if below.ndim == 1 else "lines"
+        warn(
+            f"{_OWNER}: the scan starts too high: {int(below.sum())} of {below.size} {which} "
+            f"overturn at its least scale, {least:.4g}, already, and their capacities lie at or "
+            "below it; give lesser scales",
+            ModelWarning,
+        )
     found.attrs |= {
         "title": "Incremental dynamic analysis of a rocking system",
-        "source": narrow.attrs["source"],
+        "source": SOURCE,
         "capacity": CAPACITY,
         STATES: states_json(states),
         "resolution": finest,
@@ -218,18 +205,6 @@ def _at_the_least(found: xr.Dataset) -> Array:
     """Tell which motions overturned at the least scale: their capacities may lie below it."""
     capacity = found["capacity_scale"].isel(limit_state=-1).to_numpy()
     return capacity == float(found[SCALE].min())
-
-
-def _say_what_lies_below(found: xr.Dataset) -> None:
-    below = _at_the_least(found)
-    if below.any():
-        lines = "motions" if below.ndim == 1 else "lines"
-        warn(
-            f"{_OWNER}: the scan starts too high: {int(below.sum())} of {below.size} {lines} "
-            f"overturn at its least scale, {float(found[SCALE].min()):.4g}, already, and their "
-            "capacities lie at or below it; give lesser scales",
-            ModelWarning,
-        )
 
 
 def verdict_of_analysis(dataset: xr.Dataset) -> str:

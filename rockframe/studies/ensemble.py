@@ -12,9 +12,9 @@ from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
-from rockframe.studies.confidence import SHARE, clopper_pearson, read_level
+from rockframe.studies.confidence import clopper_pearson, read_level, read_shares
 from rockframe.studies.probability import SAMPLED
-from rockframe.units import RatioLike, to_ratio
+from rockframe.units import RatioLike
 
 _OWNER: Final = "ensemble_statistics"
 
@@ -82,12 +82,7 @@ def ensemble_statistics(
     20
     """
     asked = read_level(confidence, owner=_OWNER)
-    shares = np.array(
-        [
-            to_ratio(one, owner=_OWNER, name="quantiles", condition=SHARE, example="0.5")
-            for one in several(quantiles, owner=_OWNER, name="quantiles", of="numbers")
-        ]
-    )
+    shares = read_shares(quantiles, "quantiles", owner=_OWNER)
     values = _values(runs, name)
     together = several(pooled, owner=_OWNER, name="pooled", of="names")
     level = np.nan if _dependent(values, runs.attrs, together) else asked
@@ -115,12 +110,10 @@ def ensemble_statistics(
         title="Statistics of an ensemble",
         source="empirical distribution",
     )
-    for one in ("ordered_value", *(f"quantile_value{end}" for end in ("", *_ENDS))):
-        found[one].attrs |= {key: values.attrs[key] for key in ("units",) if key in values.attrs}
+    if "units" in values.attrs:
+        for one in ("ordered_value", *(name for name in found if "quantile_value" in str(name))):
+            found[one].attrs["units"] = values.attrs["units"]
     return found
-
-
-_ENDS: Final = ("_lower_bound", "_upper_bound")
 
 
 def _values(runs: Any, name: str) -> xr.DataArray:

@@ -93,8 +93,11 @@ def follow(
             _narrow(side, look, flip, width)
     except KeyboardInterrupt:
         whole = False
-    ends = (near for near, _ in _wide(side, resolution, may_slide=may_slide, beyond=True))
-    return Followed(_in_order(side), min([*ends, *_undecided(side), side.places[-1]]), whole)
+    ends = [near for near, _ in _wide(side, resolution, may_slide=may_slide, beyond=True)]
+    shown = _in_order(side)
+    ends += [near for near, far in side.intervals()
+             if None in (shown[near].overturned, shown[far].overturned)]  # fmt: skip
+    return Followed(shown, min([*ends, side.places[-1]]), whole)
 
 
 def _wide(
@@ -156,13 +159,6 @@ def _clearance(side: Side, near: float, far: float) -> float:
     return min(one.clearances[0] if one.within_the_angle else 0.0 for one in ends)
 
 
-def _undecided(side: Side) -> Iterator[float]:
-    """Give the lower ends of intervals with an end that has no verdict."""
-    for near, far in side.intervals():
-        if None in (side.shown[near].overturned, side.shown[far].overturned):
-            yield near
-
-
 def _narrow(side: Side, look: Look, flip: Flip, width: float) -> None:
     """Bisect a bracket, until it is narrow or a run in its middle has no verdict."""
     below, above = flip.below, flip.above
@@ -219,8 +215,9 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     if gaps:
         text += f", stands again {_listed(gaps)}"
     text += f"; looked at {len(scales)} scales up to {number(largest)}"
-    if not math.isnan(found.largest_gap):
-        text += f", at most {_at_most(found.largest_gap)} apart"
+    if not math.isnan(gap := found.largest_gap):  # to two digits, rounded up
+        size = 10.0 ** (math.floor(math.log10(gap)) - 1)
+        text += f", at most {math.ceil(gap / size - _ROUNDING) * size:.2g} apart"
     slides = share_words(np.array([run.slides for run in found.shown.values()]))
     text += f"; {slides}" if slides else ""
     slid = slip_words(np.array([run.slip for run in found.shown.values()]))
@@ -235,12 +232,6 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     if undecided:
         text += f" {unfinished(undecided)}, the first at {number(undecided[0])}."
     return text
-
-
-def _at_most(gap: float) -> str:
-    """Give a distance to two digits, rounded up."""
-    size = 10.0 ** (math.floor(math.log10(gap)) - 1)
-    return f"{math.ceil(gap / size - _ROUNDING) * size:.2g}"
 
 
 def unfinished(undecided: Sequence[float]) -> str:

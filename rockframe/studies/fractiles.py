@@ -16,7 +16,7 @@ from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
-from rockframe.studies.confidence import SHARE
+from rockframe.studies.confidence import read_shares
 from rockframe.studies.intensities import PeriodLike, measure_in, told_period
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
@@ -104,12 +104,7 @@ def fractile_curves(
     {'quantile': 3, 'peak_ground_acceleration': 201}
     """
     runs = check_runs(runs, owner=_OWNER)
-    shares = np.array(
-        [
-            to_ratio(one, owner=_OWNER, name="fractiles", condition=SHARE, example="0.5")
-            for one in several(fractiles, owner=_OWNER, name="fractiles", of="numbers")
-        ]
-    )
+    shares = read_shares(fractiles, "fractiles", owner=_OWNER)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label or "", owner=_OWNER)
     lines = _lines(runs, measure, abs(values))
@@ -126,32 +121,28 @@ def fractile_curves(
     responses = np.stack([one.at(along) for one in lines])
     reached = np.stack([one.first(asked) for one in lines])
     name = str(measure.name)
-    labels = build_dataset(
-        {MOTION: np.array([one.name for one in lines], dtype=object), "quantile": shares}, {}
-    )
-    parts = [
-        build_dataset({"motion_response": responses}, {}, over=(MOTION, name)),
-        build_dataset(
-            {"response_fractile": fractiles_of(responses, shares)}, {}, over=("quantile", name)
-        ),
-        build_dataset({"overturned_count": np.isinf(responses).sum(axis=0)}, {}, over=(name,)),
-        build_dataset(
-            {"intensity_fractile": fractiles_of(reached, shares)}, {}, over=("quantile", _LEVEL)
-        ),
-        build_dataset({"unreached_count": np.isinf(reached).sum(axis=0)}, {}, over=(_LEVEL,)),
-    ]
-    found = xr.merge([part.drop_attrs(deep=False) for part in parts], join="exact", compat="equals")
-    found = found.assign_coords({**labels.coords, name: (name, along, measure.attrs)})
+    found = build_dataset({}, {}, title=_TITLE, source="runs of scaled motions")
+    for one, value, over in (
+        ("motion_response", responses, (MOTION, name)),
+        ("response_fractile", fractiles_of(responses, shares), ("quantile", name)),
+        ("overturned_count", np.isinf(responses).sum(axis=0), (name,)),
+        ("intensity_fractile", fractiles_of(reached, shares), ("quantile", _LEVEL)),
+        ("unreached_count", np.isinf(reached).sum(axis=0), (_LEVEL,)),
+    ):
+        found = with_variables(found, {one: value}, over=over)
+    names = np.array([one.name for one in lines], dtype=object)
+    found = with_variables(found, {MOTION: names, "quantile": shares})
+    found = found.assign_coords({name: (name, along, measure.attrs)})
     found = with_variables(found, {_LEVEL: asked})
     unit = values.attrs.get("units", "1")
     for one in ("motion_response", "response_fractile", _LEVEL):
         found[one].attrs["units"] = unit
     found["intensity_fractile"].attrs["units"] = measure.attrs.get("units", "1")
-    about = build_dataset({}, {}, title=_TITLE, source="runs of scaled motions").attrs
     told = told_period(runs, [intensity], period, owner=_OWNER)
     kept = {key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs}
     return found.assign_attrs(
-        {**about, **kept, "intensity": name, **told, "response": _words(response, label),
+        {**kept, "intensity": name, **told,
+         "response": response if label is None else f"{response} {label}",
          "verdict": _sentence(lines, along, responses, measure)}
     )  # fmt: skip
 
@@ -310,10 +301,6 @@ def _levels(given: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
         msg = f"{_OWNER}: levels must be one or more, and increase, got {shown(given)}"
         raise ComponentError(msg)
     return found
-
-
-def _words(response: str, label: str | None) -> str:
-    return response if label is None else f"{response} {label}"
 
 
 def _sentence(lines: Sequence[_Line], along: Array, responses: Array, measure: xr.DataArray) -> str:

@@ -1,9 +1,9 @@
 """How often a limit state is exceeded: a fragility and a hazard curve in one number."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, cast
+from typing import Any, Final, cast
 
 import numpy as np
 import xarray as xr
@@ -128,33 +128,21 @@ def annual_rate(
     given = checked_dataset(fragility, owner=_OWNER)
     measure = _measure(given)
     curve = read_hazard(hazard, given[measure], between)
-    rows = [_of_one(one, curve, measure) for one in _each(given)]
-    dims = tuple(str(dim) for dim in given["fragility_status"].dims)
-    shape = given["fragility_status"].shape
-
-    def laid(name: str) -> Array:
-        values = np.array([getattr(row, name) for row in rows])
-        return values.reshape((*shape, *values.shape[1:]))
-
-    scalars = build_dataset(
-        {
-            "annual_rate": laid("rate"),
-            "annual_rate_lower_bound": laid("lower"),
-            "annual_rate_upper_bound": laid("upper"),
-            "unreached_rate_below": laid("below"),
-            "unreached_rate_above": laid("above"),
-            "outside_trials_share": laid("outside"),
-        },
+    status = given["fragility_status"]
+    dims = tuple(map(str, status.dims))
+    places = (dict(zip(status.dims, place, strict=True)) for place in np.ndindex(status.shape))
+    rows = [_of_one(given.isel(place), curve, measure) for place in places]
+    arrays = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    found = build_dataset(
+        {name: each.reshape((*status.shape, *each.shape[1:])) for name, each in arrays.items()},
         {}, over=dims, title="Annual rate of exceeding limit states",
         source="integral of a fragility over a hazard curve",
     )  # fmt: skip
-    shares = {"rate_share": laid("shares"), "quantile_intensity": laid("quantiles")}
     labels = {
         "contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
         "quantile": np.array(_SHARES),
     }
     kept = [str(name) for name in given.coords if set(given[name].dims) <= set(dims)]
-    found = with_variables(scalars, shares, over=dims)
     found = found.assign_coords({name: given[name].variable for name in kept})
     found = with_variables(found, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
@@ -205,14 +193,8 @@ def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCu
             f"{values.size} and {rates.size}"
         )
         raise ComponentError(msg)
-    falls = np.all(np.diff(values) > 0.0) and values[0] > 0.0
-    falls = (
-        falls
-        and np.all(rates > 0.0)
-        and np.all(np.isfinite(rates))
-        and np.all(np.diff(rates) < 0.0)
-    )
-    if not falls:
+    falls = np.all(np.diff(values) > 0.0) and np.all(np.diff(rates) < 0.0)
+    if not (falls and values[0] > 0.0 and rates[-1] > 0.0 and math.isfinite(rates[0])):
         msg = (
             f"{_OWNER}: in a hazard curve intensities above zero rise, and rates above zero fall; "
             f"found {shown(values.tolist())} and {shown(rates.tolist())}"
@@ -253,49 +235,36 @@ def _measure(given: xr.Dataset) -> str:
     return several[0]
 
 
-def _each(given: xr.Dataset) -> Iterator[xr.Dataset]:
-    """Give each structure and limit state."""
-    status = given["fragility_status"]
-    for place in np.ndindex(status.shape):
-        yield given.isel(dict(zip(status.dims, place, strict=True)))
-
-
-class _Rate(NamedTuple):
-    """The rate of one limit state, and where it comes from."""
-
-    rate: float
-    lower: float
-    upper: float
-    below: float
-    above: float
-    outside: float
-    shares: Array
-    quantiles: Array
-
-
 _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
-def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> _Rate:
-    nothing = np.full(_BINS, np.nan)
+def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]:
+    """Give the rate of one limit state, and where it comes from; NaN without a fragility."""
+    names = (
+        "annual_rate", "annual_rate_lower_bound", "annual_rate_upper_bound",
+        "unreached_rate_below", "unreached_rate_above", "outside_trials_share",
+    )  # fmt: skip
     if int(one["fragility_status"]) not in _KNOWN:
-        none = math.nan
-        return _Rate(none, none, none, none, none, none, nothing, np.full(len(_SHARES), none))
+        sizes = {"rate_share": _BINS, "quantile_intensity": len(_SHARES)}
+        none = {name: np.full(size, np.nan) for name, size in sizes.items()}
+        return dict.fromkeys(names, np.nan) | none
     edges, parts = contributions(one, curve, measure)
     rate = float(parts.sum())
     summed = np.concatenate([[0.0], np.cumsum(parts)]) / rate
     logs = np.log(edges)
-    lower, upper = (
+    bounds = (
         _of_curve(one[f"exceedance_probability_{end}_bound"], one[measure], curve)
         for end in ("lower", "upper")
     )
-    below, above = (float(contributions(one, part, measure)[1].sum()) for part in curve.beyond())
+    beyond = (float(contributions(one, part, measure)[1].sum()) for part in curve.beyond())
     seen = one["stripe_intensity"].to_numpy()
     seen = np.log(seen[one["stripe_trials"].to_numpy() > 0])
     least, most = np.interp([seen.min(), seen.max()], logs, summed)
-    shares = np.diff(np.interp(np.log(_edges(curve)), logs, summed))
-    quantiles = np.exp(np.interp(_SHARES, summed, logs))
-    return _Rate(rate, lower, upper, below, above, 1.0 - (most - least), shares, quantiles)
+    numbers = rate, *bounds, *beyond, 1.0 - (most - least)
+    return dict(zip(names, numbers, strict=True)) | {
+        "rate_share": np.diff(np.interp(np.log(_edges(curve)), logs, summed)),
+        "quantile_intensity": np.exp(np.interp(_SHARES, summed, logs)),
+    }
 
 
 def _edges(curve: HazardCurve) -> Array:

@@ -10,25 +10,15 @@ import xarray as xr
 
 from rockframe.arguments import one_of_names, text
 from rockframe.errors import ComponentError, SchemaError, StudyError, nearest, shown
-from rockframe.measures import (
-    average_spectral_acceleration,
-    intensity_measures,
-    response_spectrum,
-)
+from rockframe.measures import average_spectral_acceleration, intensity_measures, response_spectrum
 from rockframe.measures.intensity import measure_of_ground
 from rockframe.measures.response import checked_periods
 from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
-from rockframe.results.variables.motions import MEASURES
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
-from rockframe.studies.sweeps.case import remembered, store_of, unscaled_motion
-from rockframe.studies.sweeps.motions import (
-    ABBREVIATIONS,
-    SPECTRAL,
-    motion_of_case,
-    named_motions,
-)
+from rockframe.studies.sweeps.case import store_of, unscaled_motions
+from rockframe.studies.sweeps.motions import ABBREVIATIONS, SPECTRAL, motion_of_case, named_motions
 from rockframe.units import (
     ACCELERATION,
     PERIOD,
@@ -83,8 +73,9 @@ PERIOD_OF: Final = "intensity_period"
 """Attribute that keeps the period of a spectral intensity, or those of an average [s]."""
 Periods: TypeAlias = float | tuple[float, ...] | None
 """That of an oscillator, or those over which its values are averaged [s]."""
-_OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
-_SPECTRAL: Final = (*_OSCILLATORS, AVERAGE)
+OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
+"""Measures that need the period of an oscillator."""
+_SPECTRAL: Final = (*OSCILLATORS, AVERAGE)
 """Measures that are of a period, or of several."""
 
 
@@ -99,11 +90,10 @@ def measure_words(name: str, period: Any) -> str:
     words = name.replace("_", " ")
     if period is None or name not in _SPECTRAL:
         return words
-    several = np.atleast_1d(period)
-    least, most = several[0], several[-1]
-    return (
-        f"{words} at {least:.6g} s" if name != AVERAGE else f"{words}, {least:.4g} to {most:.4g} s"
-    )
+    periods = np.atleast_1d(period)
+    if name == AVERAGE:
+        return f"{words}, {periods[0]:.4g} to {periods[-1]:.4g} s"
+    return f"{words} at {periods[0]:.6g} s"
 
 
 def of_study(name: str, period: Periods) -> dict[str, Any]:
@@ -132,14 +122,20 @@ class Intensity:
         name = one_of_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
         if name not in _SPECTRAL:
             return cls(name, None)
-        if name == AVERAGE:
-            return cls(name, _read_periods(period, owner))
+        several = name == AVERAGE
         if period is None:
-            msg = f"{owner}: intensity {name!r} needs a period, for example period='0.5 s'"
+            needed = "the periods over which it is averaged" if several else "a period"
+            example = "(numpy.linspace(0.2, 3, 57), 's')" if several else "'0.5 s'"
+            msg = f"{owner}: intensity {name!r} needs {needed}, for example period={example}"
             raise ComponentError(msg)
-        one: Any = period
-        seconds = to_si(one, PERIOD, owner=owner, name="period", condition=POSITIVE)
-        return cls(name, seconds)
+        if not several:
+            one: Any = period
+            return cls(name, to_si(one, PERIOD, owner=owner, name="period", condition=POSITIVE))
+        periods = tuple(checked_periods(period, owner=owner).tolist())
+        if periods[0] <= 0.0:
+            msg = f"{owner}: periods must be above zero, whose logarithm is averaged"
+            raise ComponentError(msg)
+        return cls(name, periods)
 
     def of(self, motion: GroundMotion) -> float:
         """Give the measure of a motion, in SI units."""
@@ -157,21 +153,6 @@ class Intensity:
     def attributes(self) -> dict[str, Any]:
         """Give the CF attributes of its values."""
         return SCHEMA[self.name].attributes()
-
-
-def _read_periods(given: PeriodLike | None, owner: str) -> tuple[float, ...]:
-    """Read the periods over which spectral values are averaged [s]."""
-    if given is None:
-        msg = (
-            f"{owner}: intensity {AVERAGE!r} needs the periods over which it is averaged, for "
-            "example period=(numpy.linspace(0.2, 3, 57), 's')"
-        )
-        raise ComponentError(msg)
-    seconds = tuple(checked_periods(given, owner=owner).tolist())
-    if seconds[0] <= 0.0:
-        msg = f"{owner}: periods must be above zero, whose logarithm is averaged"
-        raise ComponentError(msg)
-    return seconds
 
 
 def measure_in(
@@ -237,23 +218,20 @@ def intensity_in(
     """Give an intensity measure of the motion of each case of a sweep."""
     if intensity.name in runs.coords and intensity.period is None:
         return runs[intensity.name]
-    before = unscaled_motions(runs, motions, owner=owner)
+    before = motions_of_runs(runs, motions, owner=owner)
     factor = _factors(runs, before)
     measured = of_motions(runs, before, intensity.of)
     found = measured * np.abs(factor) ** POWERS[intensity.name]
     return found.assign_attrs(intensity.attributes()).rename(intensity.name)
 
 
-def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
+def motions_of_runs(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
     """Give the motions of a sweep by their names, as they were before they were scaled."""
-    attributes: Mapping[str, Any] = runs.attrs
-    known, kept = remembered(attributes), store_of(runs)
-    found: dict[str, GroundMotion] = {}
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
         raise SchemaError(msg)
-    used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist())
-    names: list[str] = json.loads(attributes["motion_names"])
+    used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
+    names: list[str] = json.loads(runs.attrs["motion_names"])
     unknown = sorted(used - set(names))
     if unknown:
         msg = (
@@ -262,14 +240,12 @@ def unscaled_motions(runs: xr.Dataset, given: object, *, owner: str) -> dict[str
             "intensity as a DataArray"
         )
         raise StudyError(msg)
-    for number, name in enumerate(names):
-        if name not in used:
-            continue
-        motion = unscaled_motion(given, number, attributes, known, kept)
-        if motion is None:
-            msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
-            raise StudyError(msg)
-        found[name] = motion
+    which = [name for name in names if name in used]
+    every = unscaled_motions(runs.attrs, which, given, store_of(runs))
+    found = {name: motion for name, motion in every.items() if motion is not None}
+    if len(found) < len(every):
+        msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"
+        raise StudyError(msg)
     return found
 
 
@@ -291,19 +267,16 @@ def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion]) -> xr.DataAr
     (name,) = axes
     if name == "scale":
         return runs[name]
-    period = runs.attrs.get("spectral_period")
-    # what reaches the unit of the target, times the target
-    return runs[name] * of_motions(runs, motions, lambda one: _unit_factor(one, name, period))
+
+    def of_unit(motion: GroundMotion) -> float:
+        """Give the factor that reaches the unit of the target."""
+        one = motion_of_case(motion, name, 1.0, runs.attrs.get("spectral_period"))
+        at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
+        return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
+
+    return runs[name] * of_motions(runs, motions, of_unit)
 
 
-def _unit_factor(motion: GroundMotion, name: str, period: float | None) -> float:
-    one = motion_of_case(motion, name, 1.0, period)
-    at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
-    return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
-
-
-OF_OSCILLATORS: Final = tuple(row.name for row in MEASURES if row.dims == OSCILLATOR)
-"""Measures that need the period of an oscillator."""
 _OF_THE_BLOCK: Final = ("overturning_angle", "uplift_acceleration")
 """Numbers beside the measures that are not the motion's."""
 
@@ -321,19 +294,16 @@ class ScaledIntensity:
         damping_ratio: RatioLike,
         owner: str,
     ) -> None:
-        self._motion = motion
+        self._motion, self._system = motion, system
         name = spelled(text(name, owner=owner, name="intensity"))
-        self._block = system.parts.block
-        self._gravity = quantity(system.options.gravity, ACCELERATION)
         self._damping = to_ratio(damping_ratio, owner=owner, name="damping_ratio")
-        spectral = name in OF_OSCILLATORS
+        spectral = name in OSCILLATORS
         if spectral != (period is not None):
             needed = "needs a period, for example period='0.5 s'" if spectral else "has no period"
             msg = f"{owner}: intensity {shown(name)} {needed}"
             raise ComponentError(msg)
         self.period = None if period is None else to_si(period, PERIOD, owner=owner, name="period")
-        of_motion = self._all(motion)
-        known = sorted({*map(str, of_motion.data_vars), *OF_OSCILLATORS} - {*_OF_THE_BLOCK})
+        known = sorted({*map(str, self._measures(motion)), *OSCILLATORS} - {*_OF_THE_BLOCK})
         if name not in known:
             near = nearest(name, [*SHORT, *known])
             msg = f"{owner}: intensity must be one of {', '.join(known)}, got {shown(name)}{near}"
@@ -342,16 +312,14 @@ class ScaledIntensity:
 
     def at(self, scale: float) -> xr.DataArray:
         """Give the measure of the scaled motion; NaN unless the scale is above zero."""
-        if scale > 0.0:
-            return self._one(self._all(self._motion.scaled(scale)))
-        return xr.full_like(self._one(self._all(self._motion)), np.nan)
+        motion = self._motion.scaled(scale) if scale > 0.0 else self._motion
+        found = self._measures(motion)[self.name].isel(dict.fromkeys(SCHEMA[self.name].dims, 0))
+        return found if scale > 0.0 else xr.full_like(found, np.nan)
 
-    def _all(self, motion: GroundMotion) -> xr.Dataset:
+    def _measures(self, motion: GroundMotion) -> xr.Dataset:
         if self.period is not None:
             return response_spectrum(motion, [quantity(self.period, PERIOD)], self._damping)
+        gravity = quantity(self._system.options.gravity, ACCELERATION)
         return intensity_measures(
-            motion, block=self._block, damping_ratio=self._damping, gravity=self._gravity
+            motion, block=self._system.parts.block, damping_ratio=self._damping, gravity=gravity
         )
-
-    def _one(self, measures: xr.Dataset) -> xr.DataArray:
-        return measures[self.name].isel(dict.fromkeys(SCHEMA[self.name].dims, 0))

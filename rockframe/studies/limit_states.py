@@ -11,8 +11,8 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset, several
 from rockframe.errors import ComponentError, SchemaError, nearest, shown
-from rockframe.results.outcome import overturns
-from rockframe.results.schema import SCHEMA, build_dataset
+from rockframe.results.outcome import Generic, overturns
+from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
@@ -129,16 +129,12 @@ def read_in_unit(
     return to_si(given, measure, owner=owner, name=name, condition=condition)
 
 
-def labels_of_states(states: Sequence[LimitState]) -> dict[str, xr.Variable]:
-    """Give the coordinates along limit states."""
-    labels = build_dataset(
-        {
-            "limit_state": np.array([state.name for state in states], dtype=object),
-            "rotation_limit": np.array([state.rotation for state in states]),
-        },
-        {},
-    )
-    return {str(name): labels[name].variable for name in labels.variables}
+def labels_of_states(states: Sequence[LimitState]) -> dict[str, Generic]:
+    """Give the labels along limit states."""
+    return {
+        "limit_state": np.array([state.name for state in states], dtype=object),
+        "rotation_limit": np.array([state.rotation for state in states]),
+    }
 
 
 def states_json(states: Sequence[LimitState]) -> str:
@@ -173,20 +169,18 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     overturned = overturns(runs)
     if state.rotation == 1.0:
         return overturned
+    known, fell = runs["peak_relative_rotation"].notnull(), runs["overturned"] == 1
     if state.variable:
         values = scalar_of(runs, state.variable, state.label, owner="limits")
-        beyond = values.notnull() if math.isnan(state.value) else abs(values) >= state.value
-        known = runs["peak_relative_rotation"].notnull()
-        known = known if math.isnan(state.value) else known & values.notnull()
-        fell = runs["overturned"] == 1
-        return (beyond | fell).astype(float).where(known | fell)
-    beyond = (
-        runs["first_uplift_time"].notnull()
-        if state.rotation == 0.0
-        else runs["peak_relative_rotation"] >= state.rotation
-    )
-    known = runs["peak_relative_rotation"].notnull()
-    return (beyond | (runs["overturned"] == 1)).astype(float).where(known)
+        beyond = values.notnull()
+        if not math.isnan(state.value):
+            beyond, known = abs(values) >= state.value, known & beyond
+        known = known | fell
+    elif state.rotation == 0.0:
+        beyond = runs["first_uplift_time"].notnull()
+    else:
+        beyond = runs["peak_relative_rotation"] >= state.rotation
+    return (beyond | fell).astype(float).where(known)
 
 
 def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:

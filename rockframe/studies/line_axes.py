@@ -3,6 +3,7 @@
 import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, cast
 
 import numpy as np
@@ -28,23 +29,18 @@ class LineAxes:
         """The dimensions that they make, in their order, and their lengths."""
         return {axis.name: len(axis.values) for axis in self.axes}
 
-    @property
-    def columns(self) -> dict[str, tuple[Generic, str]]:
-        """Their combinations in rows of a table, the last axis fastest, with units."""
-        if not self.axes:
-            return {}
-        grid = np.meshgrid(*(np.arange(size) for size in self.sizes.values()), indexing="ij")
-        return {
-            axis.name: (axis.values[places.ravel()], axis.unit or str(Unit.ONE))
-            for axis, places in zip(self.axes, grid, strict=True)
-        }
-
-    def beside(self, rows: Mapping[str, tuple[Generic, str]]) -> dict[str, tuple[Generic, str]]:
-        """Give rows of a table in each of their combinations, which are fastest."""
-        count, own = math.prod(self.sizes.values()), self.columns
-        found = {name: (np.repeat(each, count), unit) for name, (each, unit) in rows.items()}
+    def columns(
+        self, rows: Mapping[str, tuple[Generic, str]] = MappingProxyType({})
+    ) -> dict[str, tuple[Generic, str]]:
+        """Give a table of their combinations for each of some rows, the last axis fastest."""
+        places = np.indices(tuple(self.sizes.values()))
+        count = math.prod(self.sizes.values())
         repeats = max((len(each) for each, _ in rows.values()), default=1)
-        return found | {name: (np.tile(each, repeats), unit) for name, (each, unit) in own.items()}
+        found = {name: (np.repeat(each, count), unit) for name, (each, unit) in rows.items()}
+        return found | {
+            axis.name: (np.tile(axis.values[place.ravel()], repeats), axis.unit or str(Unit.ONE))
+            for axis, place in zip(self.axes, places, strict=True)
+        }
 
     @property
     def labels(self) -> dict[str, xr.Variable]:
@@ -55,9 +51,7 @@ class LineAxes:
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
         """Give what runs over the rows of the table the dimensions of the axes."""
-        if not self.axes:
-            return runs
-        return over_rows(runs, self.sizes, self.labels)
+        return over_rows(runs, self.sizes, self.labels) if self.axes else runs
 
 
 def over_rows(
@@ -80,7 +74,7 @@ def read_line_axes(
     scene: SweptScene,
     *,
     owner: str,
-    others: Sequence[str],
+    others: Iterable[str],
     beside: Sequence[Axis] = (),
 ) -> LineAxes:
     """Read the axes of an analysis; `others` are names of its arguments, `beside` its own axes."""
@@ -96,22 +90,15 @@ def read_line_axes(
             continue
         try:
             found.append(scene.axis(str(name), values))
-        except (StudyError, RockframeError) as problem:
-            told = [str(problem)] if not isinstance(problem, StudyError) else list(problem.faults)
+        except RockframeError as problem:
+            told = problem.faults if isinstance(problem, StudyError) else (str(problem),)
             argument = nearest(name, others)
             faults += [one if argument in one else f"{one}{argument}" for one in told]
-    faults += _faults(found)
+    for axis in found:
+        if axis.changes is Changes.MOTION:
+            faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")
+        faults += faults_of_values(axis.name, axis.values)
     faults += scene.faults([*beside, *found])
     if faults:
         raise StudyError(*faults)
     return LineAxes(tuple(found))
-
-
-def _faults(axes: Iterable[Axis]) -> list[str]:
-    """Tell what is wrong with axes as lines."""
-    faults: list[str] = []
-    for axis in axes:
-        if axis.changes is Changes.MOTION:
-            faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")
-        faults += faults_of_values(axis.name, axis.values)
-    return faults

@@ -1,11 +1,14 @@
 """Verdicts followed along the scale of the motion, in rounds of runs under all motions at once.
 
 First all motions at the scales of a first row; then the middles of wide intervals below what first
-exceeds a limit state; then brackets of all changes of a verdict, which are halved.
+exceeds a limit state; then brackets of all changes of a verdict, which are halved. All these sweeps
+have one bar, and each a folder of its own.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -15,6 +18,7 @@ from rockframe.errors import (
     ComponentError,
     ModelWarning,
     SolverWarning,
+    StudyError,
     collected_warnings,
     shown,
     warn,
@@ -25,24 +29,77 @@ from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.limit_states import interrupted
-from rockframe.studies.rounds import Rounds, rounds_of
-from rockframe.studies.sweeps.arguments import SweepArguments
+from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
+from rockframe.studies.sweeps.execution import ProgressBar, bar_of
 from rockframe.studies.sweeps.motions import TARGETS
+from rockframe.studies.sweeps.planning import plan_study
+from rockframe.studies.sweeps.sweep import folder_of, run_study
 from rockframe.units import Condition, Measure, to_ratio
+from rockframe.version import __version__
 
 if TYPE_CHECKING:
     from rockframe.simulation.system import System
 
-
+SCALE: Final = "scale"
+VERDICT: Final = "verdict"
+CAPACITY: Final = "least scale found to exceed"
+"""What a capacity is, as datasets tell it."""
+SOURCE: Final = f"rockframe {__version__}, scan and bisection of event-driven runs"
+"""Where the numbers of such analyses are from, as datasets tell it."""
+INTERRUPTED: Final = "; interrupted."
+"""Ends the verdict of an analysis whose brackets are wider than asked."""
 MOST_ROUNDS: Final = 60
 """More are not needed, whatever the width: then neighbouring floats have been reached."""
+_WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
+_RESOLUTION: Final = Condition("from 1e-4 to 1", lambda value: 1e-4 <= value <= 1.0)
+_MOST_SCALES: Final = 100_000
 
-Sweep = Callable[[int, Generic, Array], xr.Dataset]
-"""Runs cases: the number of the round, the line of each case, and its scale."""
-Verdicts = Callable[[xr.Dataset], Array]
-"""Gives the verdicts of cases, whole numbers as floats, NaN where there is none; over verdicts,
-then cases."""
+
+@dataclass(frozen=True, eq=False)
+class Rounds:
+    """The sweeps of an analysis, one after the other: what is the same in all of them."""
+
+    scene: "System | Callable[..., System]"  # as for :func:`rockframe.sweep`
+    motions: Mapping[str, GroundMotion] | None
+    run: Mapping[str, Any]  # arguments of each sweep, and who makes the runs
+    store: Path | None
+    bar: ProgressBar
+
+    def sweep(self, part: str, cases: Any, axes: Mapping[str, Any], **more: Any) -> xr.Dataset:
+        """Run the cases of a part, which names a folder and stands on the bar."""
+        asked = {**self.run, **more}
+        means: Any = {name: asked.pop(name, None) for name in ExecutionArguments.__annotations__}
+        del means["progress"]
+        means["store"] = None if self.store is None else self.store / part
+        study = plan_study(self.scene, self.motions, axes, cases, **asked)
+        self.bar.name(part)
+        return run_study(study, self.bar, **means)
+
+
+@contextmanager
+def rounds_of(
+    scene: "System | Callable[..., System]",
+    motions: Mapping[str, GroundMotion] | None,
+    run: Mapping[str, Any],
+    *,
+    owner: str,
+) -> Generator[Rounds]:
+    """Make the folder of an analysis, if it has one, and its bar, which closes when it ends."""
+    given = run.get("store")
+    folder = None if given is None else folder_of(given, owner=owner)
+    try:
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        msg = f"{owner}: store {str(folder)!r} cannot be made: {problem}"
+        raise StudyError(msg) from problem
+    with bar_of(run.get("progress"), owner=owner) as bar:
+        yield Rounds(scene, motions, run, folder, bar)
+
+
+Wanted = list[tuple[int, float]]
+"""Lines, by their numbers, and a scale of each at which it is to be run."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +113,18 @@ class Bracket:
     before: float  # the verdicts there
     after: float
 
+    @property
+    def middle(self) -> float:
+        """The scale in its middle."""
+        return 0.5 * (self.below + self.above)
+
+    def halved(self, shown: float) -> Iterator["Bracket"]:
+        """Give what is left of it where its middle shows a verdict: two of a third verdict."""
+        if shown != self.before:
+            yield replace(self, above=self.middle, after=shown)
+        if shown != self.after:
+            yield replace(self, below=self.middle, before=shown)
+
 
 def brackets_of(scales: Array, verdicts: Array) -> list[Bracket]:
     """Find all changes among verdicts."""
@@ -64,19 +133,17 @@ def brackets_of(scales: Array, verdicts: Array) -> list[Bracket]:
         along = verdicts[verdict, line]
         (known,) = np.nonzero(~np.isnan(along))
         for k in np.flatnonzero(np.diff(along[known]) != 0.0):
-            low, high = known[k], known[k + 1]
-            below, above = float(scales[low]), float(scales[high])
-            before, after = float(along[low]), float(along[high])
-            found.append(Bracket(verdict, line, below, above, before, after))
+            ends = known[k : k + 2]
+            found.append(Bracket(verdict, line, *scales[ends].tolist(), *along[ends].tolist()))
     return found
 
 
 def narrowed(
-    brackets: Sequence[Bracket], sweep: Sweep, verdicts: Verdicts, *, width: float
+    brackets: Sequence[Bracket], look: Callable[[str, Wanted], tuple[Array, bool]], *, width: float
 ) -> tuple[list[Bracket], bool]:
-    """Halve brackets in rounds until they are narrow.
+    """Halve brackets in rounds until they are narrow; tell if all of them are.
 
-    Where the middle has a third verdict a bracket becomes two.
+    By the verdicts that the runs of a part, which has a name, show, and whether all were made.
     """
     done: list[Bracket] = []
     waiting = list(brackets)
@@ -88,33 +155,38 @@ def narrowed(
         if not wide:
             break
         # brackets of several verdicts may have the same middle
-        wanted = sorted({(one.line, 0.5 * (one.below + one.above)) for one in wide})
-        lines, middles = (np.array(each) for each in zip(*wanted, strict=True))
+        wanted = sorted({(one.line, one.middle) for one in wide})
         try:
-            runs = sweep(number, lines, middles)
-            found, whole = verdicts(runs), not interrupted(runs)
+            found, whole = look(f"round {number:02d}", wanted)
         except KeyboardInterrupt:  # between the runs of two rounds
             done, whole = [*done, *wide], False
             break
         place = {case: k for k, case in enumerate(wanted)}
         for one in wide:
-            middle = 0.5 * (one.below + one.above)
-            shown = float(found[one.verdict, place[one.line, middle]])
+            shown = float(found[one.verdict, place[one.line, one.middle]])
             if np.isnan(shown):
                 done.append(one)
             else:
-                waiting += _halved(one, middle, shown)
+                waiting += one.halved(shown)
         if not whole:
             break
     rising = sorted([*done, *waiting], key=lambda one: (one.verdict, one.line, one.below))
     return rising, whole
 
 
-def _halved(one: Bracket, middle: float, shown: float) -> Iterator[Bracket]:
-    if shown != one.before:
-        yield replace(one, above=middle, after=shown)
-    if shown != one.after:
-        yield replace(one, below=middle, before=shown)
+def bracket_arrays(
+    brackets: Sequence[Bracket], shape: tuple[int, int]
+) -> tuple[Array, Array, Array, Array]:
+    """Arrange brackets in arrays: lower and upper scales, and the verdicts there."""
+    rows: dict[tuple[int, int], list[Bracket]] = {}
+    for one in brackets:
+        rows.setdefault((one.verdict, one.line), []).append(one)
+    values = np.full((4, *shape, max(map(len, rows.values()), default=0)), np.nan)
+    for place, several in rows.items():
+        numbers = [(one.below, one.above, one.before, one.after) for one in several]
+        values[(slice(None), *place, slice(len(several)))] = np.transpose(numbers)
+    below, above, before, after = values
+    return below, above, before, after
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,8 +197,9 @@ class Seen:
     verdicts: Array  # over verdicts, lines and scales; NaN where a line was not run, or told none
     moves: Generic  # over lines and scales: whether the base left the ground, or slid
 
-    def joined(self, scales: Array, lines: Generic, verdicts: Array, moves: Generic) -> "Seen":
-        """Add cases: their scales and lines, and what they showed."""
+    def joined(self, cases: Wanted, verdicts: Array, moves: Generic) -> "Seen":
+        """Add cases, and what they showed."""
+        lines, scales = (np.array(each) for each in zip(*cases, strict=True))
         every = np.union1d(self.scales, scales)
         known = np.full((*self.verdicts.shape[:2], len(every)), np.nan)
         moved = np.ones(known.shape[1:], dtype=bool)
@@ -149,9 +222,9 @@ class Seen:
         there = self.moves[line, far]
         return self.scales[known[there]], self.scales[far[there]]
 
-    def middles(self, resolution: float) -> list[tuple[int, float]]:
+    def middles(self, resolution: float) -> Wanted:
         """Give the lines, and the middles of their gaps, that are wider than the resolution."""
-        found: set[tuple[int, float]] = set()
+        found = set[tuple[int, float]]()
         for verdict, line in np.ndindex(self.verdicts.shape[:2]):
             near, far = self.gaps(verdict, line)
             middle = 0.5 * (near + far)
@@ -180,42 +253,35 @@ class Seen:
         return np.where(np.isnan(self.verdicts).all(axis=-1), np.nan, least)
 
 
-def bracket_arrays(
-    brackets: Sequence[Bracket], shape: tuple[int, int]
-) -> tuple[Array, Array, Array, Array]:
-    """Arrange brackets in arrays."""
-    count = np.zeros(shape, dtype=np.intp)
-    for one in brackets:
-        count[one.verdict, one.line] += 1
-    values = np.full((4, *shape, int(count.max(initial=0))), np.nan)
-    count[:] = 0
-    for one in brackets:
-        place = one.verdict, one.line
-        values[(slice(None), *place, count[place])] = one.below, one.above, one.before, one.after
-        count[place] += 1
-    below, above, before, after = values
-    return below, above, before, after
+@dataclass(frozen=True, eq=False)
+class FollowedLines:
+    """What was found along lines."""
 
+    scan: xr.Dataset  # the runs at the scales of the first row
+    seen: Seen  # what these and those in their gaps show
+    brackets: list[Bracket]
 
-def least_exceeding(seen: Array, above: Array, after: Array) -> Array:
-    """Give the least scale that exceeds, seen or in a bracket; infinite where none was found to."""
-    rising = np.where(after == 1.0, above, np.inf).min(axis=-1, initial=np.inf)
-    return np.minimum(rising, seen)
+    def capacities(self, shape: tuple[int, ...]) -> dict[str, Array]:
+        """Give what datasets tell of capacities, over verdicts and lines in some shape."""
+        _, above, _, after = self.arrays(shape)
+        rising = np.where(after == 1.0, above, np.inf).min(axis=-1, initial=np.inf)
+        return {
+            "capacity_scale": np.minimum(rising, self.seen.first.reshape(shape)),
+            "capacity_resolution": self.seen.resolution.reshape(shape),
+        }
 
+    def flips(self, shape: tuple[int, ...]) -> dict[str, Array]:
+        """Give what datasets tell of the changes of verdicts."""
+        below, above, _, after = self.arrays(shape)
+        count = np.isfinite(below).sum(axis=-1)
+        return {
+            "flip_count": count, "scale_below": below, "scale_above": above, "exceeds_above": after
+        }  # fmt: skip
 
-SCALE: Final = "scale"
-CAPACITY: Final = "least scale found to exceed"
-"""What a capacity is, as datasets tell it."""
-_SCAN: Final = "scan"
-INTERRUPTED: Final = "; interrupted."
-"""Ends the verdict of an analysis whose brackets are wider than asked."""
-_WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
-_MOST_SCALES: Final = 100_000
-_RESOLUTION: Final = Condition("from 1e-4 to 1", lambda value: 1e-4 <= value <= 1.0)
-
-LabelledVerdicts = Callable[[xr.Dataset], xr.DataArray]
-"""Gives the verdicts of a sweep over ``verdict`` and its dimensions."""
-VERDICT: Final = "verdict"
+    def arrays(self, shape: tuple[int, ...]) -> Iterator[Array]:
+        """Give lower and upper scales of brackets, and the verdicts there."""
+        every = bracket_arrays(self.brackets, self.seen.verdicts.shape[:2])
+        return (one.reshape((*shape, -1)) for one in every)
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,101 +296,77 @@ class Lines:
     # how all of it is run. The scan and each round have a folder of their own in its store
     run: SweepArguments
     owner: str  # function that asks for it
-    # what only the scan keeps beside: histories, of which the rounds need none
-    kept: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    # gives the verdicts of runs over ``verdict`` and their dimensions: whole numbers as floats, NaN
+    # where there is none
+    verdicts: Callable[[xr.Dataset], xr.DataArray]
 
     def followed(
-        self,
-        scales: Array,
-        verdicts: LabelledVerdicts,
-        *,
-        width: float,
-        resolution: float | None = None,
-    ) -> tuple[xr.Dataset, Seen, list[Bracket]]:
+        self, scales: Array, *, width: float, resolution: float | None = None, **kept: Any
+    ) -> FollowedLines:
         """Run all rows and motions at all scales, and narrow every change of a verdict.
 
         With a resolution the intervals below what first exceeds are made narrower than that
-        before. One bar counts the cases of the scan and of all rounds. After an interrupt (Ctrl-C)
-        the verdict of the scan says so.
+        before. Only the runs of the scan are asked for what is `kept` beside, histories. After an
+        interrupt (Ctrl-C) the verdict of the scan says so.
         """
         with rounds_of(self.scene, self.motions, self.run, owner=self.owner) as rounds:
-            runner = _Runner(self, rounds)
-            scan = runner.scan(scales)
+            heads = self._heads(slice(None))
+            scan = rounds.sweep("scan", heads or None, {SCALE: scales}, **kept)
+
+            def look(part: str, wanted: Wanted) -> tuple[Array, bool]:
+                runs, shown = self._at(rounds, part, wanted)
+                return shown, not interrupted(runs)
+
             with collected_warnings() as said:
-                seen, whole = runner.seen(scan, verdicts, resolution)
+                seen, whole = self._seen(rounds, scan, resolution)
                 found = brackets_of(seen.scales, seen.verdicts)
                 if whole:
-                    found, whole = runner.narrowed(found, verdicts, width)
+                    found, whole = narrowed(found, look, width=width)
         if said and whole:
             warn(f"{self.owner}: in further rounds: {said[0]}", ModelWarning)
         if not whole:
             scan.attrs["verdict"] = f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED}"
-            kept = "; the same call goes on, as it has a store" if rounds.store is not None else ""
-            warn(f"{self.owner}: interrupted; brackets are wider than asked{kept}", SolverWarning)
-        return scan, seen, found
+            goes_on = "; the same call goes on, as it has a store" if rounds.store else ""
+            msg = f"{self.owner}: interrupted; brackets are wider than asked{goes_on}"
+            warn(msg, SolverWarning)
+        return FollowedLines(scan, seen, found)
 
-
-@dataclass(frozen=True, eq=False)
-class _Runner:
-    """Makes the sweeps of an analysis, one after the other."""
-
-    lines: Lines
-    rounds: Rounds
-
-    def scan(self, scales: Array) -> xr.Dataset:
-        """Run all rows and motions at all scales."""
-        heads = self._heads(slice(None))
-        return self.rounds.sweep(_SCAN, heads or None, {SCALE: scales}, **self.lines.kept)
-
-    def seen(
-        self, scan: xr.Dataset, verdicts: LabelledVerdicts, resolution: float | None
+    def _seen(
+        self, rounds: Rounds, runs: xr.Dataset, resolution: float | None
     ) -> tuple[Seen, bool]:
         """Give what the scan showed, and runs in its gaps; tell if all have been made."""
-        order = ([CASE] if self.lines.columns else []) + [MOTION, SCALE]
-        shown = verdicts(scan).transpose(VERDICT, *order).to_numpy()
+        order = ([CASE] if self.columns else []) + [MOTION, SCALE]
+        shown = self.verdicts(runs).transpose(VERDICT, *order).to_numpy()
         shown = shown.reshape(len(shown), -1, shown.shape[-1])
-        moves = _moves(scan).transpose(*order).to_numpy().reshape(shown.shape[1:])
-        seen = Seen(scan[SCALE].to_numpy(), shown, moves)
-        tried: set[tuple[int, float]] = set()
+        moves = _moves(runs).transpose(*order).to_numpy().reshape(shown.shape[1:])
+        seen = Seen(runs[SCALE].to_numpy(), shown, moves)
+        tried = set[tuple[int, float]]()
         for number in range(1, MOST_ROUNDS + 1):
-            if interrupted(scan):
+            if interrupted(runs):
                 return seen, False
             # where a middle told no verdict the gap stays
             wanted = [] if resolution is None else sorted({*seen.middles(resolution)} - tried)
             if not wanted:
                 break
             tried |= set(wanted)
-            lines, middles = (np.array(each) for each in zip(*wanted, strict=True))
             try:
-                scan = self._cases(f"finer {number:02d}", lines, middles)
+                runs, shown = self._at(rounds, f"finer {number:02d}", wanted)
             except KeyboardInterrupt:  # between the runs of two rounds
                 return seen, False
-            found = verdicts(scan).transpose(VERDICT, CASE).to_numpy()
-            seen = seen.joined(middles, lines, found, _moves(scan).to_numpy())
+            seen = seen.joined(wanted, shown, _moves(runs).to_numpy())
         return seen, True
 
-    def narrowed(
-        self, brackets: Sequence[Bracket], verdicts: LabelledVerdicts, width: float
-    ) -> tuple[list[Bracket], bool]:
-        """Narrow every change of a verdict between two scales that were run; tell if all are."""
-
-        def middles(number: int, lines: Generic, scales: Array) -> xr.Dataset:
-            return self._cases(f"round {number:02d}", lines, scales)
-
-        def seen(runs: xr.Dataset) -> Array:
-            return verdicts(runs).transpose(VERDICT, CASE).to_numpy()
-
-        return narrowed(brackets, middles, seen, width=width)
-
-    def _cases(self, part: str, lines: Generic, scales: Array) -> xr.Dataset:
-        """Run lines at scales of their own."""
-        names = list(self.lines.motions)
+    def _at(self, rounds: Rounds, part: str, wanted: Wanted) -> tuple[xr.Dataset, Array]:
+        """Run lines at scales of their own; give the verdicts too, over verdicts and cases."""
+        lines, scales = (np.array(each) for each in zip(*wanted, strict=True))
+        names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))
         cases = {**self._heads(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
-        return self.rounds.sweep(part, cases, {})
+        runs = rounds.sweep(part, cases, {})
+        return runs, self.verdicts(runs).transpose(VERDICT, CASE).to_numpy()
 
     def _heads(self, rows: Any) -> dict[str, Any]:
-        columns = self.lines.columns.items()
+        columns = self.columns.items()
         return {head(name, unit): values[rows] for name, (values, unit) in columns}
 
 

@@ -29,7 +29,6 @@ from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.sweeps.motions import MotionsLike
 
 _OWNER: Final = "compare_intensities"
-_SOURCE: Final = "least squares and logistic regression"
 _AGAINST: Final = 0.05
 """Probability below which a slope of the residuals is told of."""
 Covariates = Mapping[str, Any]
@@ -124,10 +123,10 @@ def compare_intensities(
         told = told_period(runs, [one], period, owner=_OWNER)
         cloud, those, _ = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
         if cloud.line is None:
-            some = int(((cloud.responses > 0.0) & np.isfinite(cloud.responses)).sum())
             msg = (
-                f"{_OWNER}: {some} of {len(cloud.responses)} runs have a response and did not "
-                f"overturn, too few for a line over {measure.name}; give more motions, or others"
+                f"{_OWNER}: {cloud.between.sum()} of {len(cloud.responses)} runs have a response "
+                f"and did not overturn, too few for a line over {measure.name}; give more motions, "
+                "or others"
             )
             raise StudyError(msg)
         named.append(measure_words(str(measure.name), told.get(PERIOD_OF)))
@@ -143,8 +142,7 @@ def compare_intensities(
         name: laid_out(one, runs["status"]).astype(np.float64)[kept[0]]
         for name, one in _covariates(runs, against).items()
     }
-    about = build_dataset({}, {}, title="Comparison of intensity measures", source=_SOURCE).attrs
-    found = _compared(named, clouds, beside).assign_attrs(about)
+    found = _compared(named, clouds, beside)
     words = response if label is None else f"{response} {label}"
     return found.assign_attrs(response=words, verdict=_sentence(found))
 
@@ -228,8 +226,9 @@ def _compared(
     if beside:
         names["covariate"] = np.array(list(beside), dtype=object)
     found = build_dataset(
-        {name: np.array(one) for name, one in values.items()}, {}, over=("measure",)
-    )
+        {name: np.array(one) for name, one in values.items()}, {}, over=("measure",),
+        title="Comparison of intensity measures", source="least squares and logistic regression",
+    )  # fmt: skip
     return with_variables(found, names)
 
 
@@ -237,8 +236,7 @@ def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:
     """Give the slope of the residuals over a covariate, and how probable it is by chance."""
     from scipy.stats import linregress
 
-    between = (cloud.responses > 0.0) & ~np.isinf(cloud.responses)
-    along = covariate[between]
+    along = covariate[cloud.between]
     known = np.isfinite(along)
     if cloud.line is None or known.sum() < 3 or np.ptp(along[known]) == 0.0:
         return math.nan, math.nan

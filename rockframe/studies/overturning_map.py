@@ -11,13 +11,13 @@ from rockframe.arguments import function_of, whole_number
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
-from rockframe.results.schema import SCHEMA, build_dataset, with_variables
+from rockframe.results.schema import SCHEMA, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
 from rockframe.studies.limit_states import overturns
-from rockframe.studies.lines import SCALE, VERDICT, Lines, bracket_arrays, read_rising, read_width
+from rockframe.studies.lines import SCALE, SOURCE, VERDICT, Lines, read_rising, read_width
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.system.options import Overturning
 from rockframe.system.rigid_ground import RigidGroundSetting
@@ -105,42 +105,34 @@ def overturning_map(
     told = whole_number(impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS)
     share = read_width(bracket_width, owner=_OWNER)
     motions = {f"{one!r} {FREQUENCY.unit}": _made(pulse, one) for one in frequencies.tolist()}
-    lines = Lines(system, motions, {}, run, _OWNER)
 
     def ways(runs: xr.Dataset) -> xr.DataArray:
         verdict = overturns(runs)
         counted = runs["impact_count"].clip(max=told).astype(float)
         return xr.where(verdict == 0.0, _STANDS, counted).where(verdict.notnull())
 
-    scan, _, brackets = lines.followed(
-        levels, lambda runs: ways(runs).expand_dims(VERDICT), width=share
-    )
-    below, above, before, after = (one[0] for one in bracket_arrays(brackets, (1, len(motions))))
-    counted = ways(scan)
+    lines = Lines(system, motions, {}, run, _OWNER, lambda runs: ways(runs).expand_dims(VERDICT))
+    along = lines.followed(levels, width=share)
+    counted = ways(along.scan)
     found = with_variables(
-        scan,
+        along.scan,
         {"impacts_before_overturning": _without_stands(counted.to_numpy())},
         over=tuple(map(str, counted.dims)),
     )
-    of_frequencies = build_dataset(
-        {
-            "boundary_count": np.isfinite(below).sum(axis=1),
-            "amplitude_below": below,
-            "amplitude_above": above,
-            "impacts_below": _without_stands(before),
-            "impacts_above": _without_stands(after),
-        },
-        {},
-        over=(MOTION,),
-        source="scan and bisection of event-driven runs",
-    )
-    found = found.assign(of_frequencies.data_vars).assign_coords(
-        _labels(system, levels, frequencies)
-    )
+    below, above, before, after = along.arrays((len(motions),))
+    of_frequencies = {
+        "boundary_count": np.isfinite(below).sum(axis=1),
+        "amplitude_below": below,
+        "amplitude_above": above,
+        "impacts_below": _without_stands(before),
+        "impacts_above": _without_stands(after),
+    }
+    found = with_variables(found, of_frequencies, over=(MOTION,))
+    found = found.assign_coords(_labels(system, levels, frequencies))
     found = found.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
     found.attrs |= {
         "title": "Overturning by pulses",
-        "source": of_frequencies.attrs["source"],
+        "source": SOURCE,
         "bracket_width": share,
         "impacts_told_apart": told,
     }
@@ -183,23 +175,16 @@ def _without_stands(counts: Array) -> Array:
 
 def _labels(system: System, levels: Array, frequencies: Array) -> dict[str, Any]:
     """Give the coordinates; on rigid ground also those without a dimension."""
-
-    def labels(name: str, dim: str, values: Array) -> tuple[str, Array, dict[str, Any]]:
-        return dim, values, SCHEMA[name].attributes()
-
-    found = {
-        "amplitude": labels("amplitude", SCALE, levels),
-        "frequency": labels("frequency", MOTION, frequencies),
-    }
-    found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
+    rows = [("amplitude", SCALE, levels), ("frequency", MOTION, frequencies)]
     setting = system.setting
     if isinstance(setting, RigidGroundSetting):
         uplift = min(setting.uplift_accelerations)
         angular = 2.0 * math.pi * frequencies
         own = setting.body.frequency_at(system.options.gravity)
-        for name, dim, values in (
+        rows += [
             ("relative_peak_ground_acceleration", SCALE, levels / uplift),
             ("relative_pulse_frequency", MOTION, angular / own),
-        ):
-            found[name] = labels(name, dim, values)
+        ]
+    found = {name: (dim, values, SCHEMA[name].attributes()) for name, dim, values in rows}
+    found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
     return found

@@ -201,11 +201,11 @@ class Matters(NamedTuple):
 
     # first-order index: the variance of the share that overturns given the parameter, over that of
     # the verdict, without what chance alone would give [1]
-    first_order: float
+    first_order: float = np.nan
     # greatest difference of the distributions of the parameter in cases of either verdict; NaN of
     # words [1]
-    distance: float
-    chance: float  # probability of shares as uneven if the parameter did not matter [1]
+    distance: float = np.nan
+    chance: float = np.nan  # probability of shares as uneven if the parameter did not matter [1]
 
 
 def ranked(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Matters]:
@@ -225,7 +225,7 @@ def _matters(values: Generic, verdict: Array) -> Matters:
     count = len(verdict)
     falls = float(verdict.sum())
     if falls in (0.0, float(count)):
-        return Matters(np.nan, np.nan, np.nan)
+        return Matters()
     numbers = values.dtype.kind != "U"
     if numbers:
         order = np.argsort(np.argsort(values, kind="stable"), kind="stable")
@@ -237,17 +237,14 @@ def _matters(values: Generic, verdict: Array) -> Matters:
     over = np.bincount(place, weights=verdict)
     groups = len(size)
     if groups < 2 or groups >= count:
-        return Matters(np.nan, np.nan, np.nan)
+        return Matters()
     share = falls / count
     between = float((size * (over / size - share) ** 2).sum()) / (count * share * (1.0 - share))
     index = 1.0 - (1.0 - between) * (count - 1.0) / (count - groups)
     test: Any = chi2_contingency(np.stack([over, size - over]), correction=False)
-    chance = float(test.pvalue)
-    distance = np.nan
-    if numbers:
-        both: Any = ks_2samp(values[verdict == 1.0], values[verdict == 0.0])
-        distance = float(both.statistic)
-    return Matters(max(index, 0.0), distance, chance)
+    both: Any = ks_2samp(values[verdict == 1.0], values[verdict == 0.0]) if numbers else None
+    distance = np.nan if both is None else float(both.statistic)
+    return Matters(max(index, 0.0), distance, float(test.pvalue))
 
 
 _OWNER: Final = "probability_of_overturning"
@@ -364,18 +361,10 @@ def probability_of_overturning(
     }
     if named is not None:
         table[MOTION] = np.array(list(named), dtype=object)[number]
-    runs = sweep(
-        system,
-        named,
-        cases=table,
-        **run,
-    )
+    runs = sweep(system, named, cases=table, **run)
     found = _counted(runs, [one.name for one in spreads], several=several > 1, level=level)
     return found.assign_attrs(
-        title="Probability of overturning",
-        seed=first,
-        confidence=level,
-        **{SAMPLED: str(way)},
+        title="Probability of overturning", seed=first, confidence=level, **{SAMPLED: str(way)}
     )
 
 

@@ -15,6 +15,7 @@ from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.results.joining import CASE_COUNT
+from rockframe.results.outcome import Generic
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.studies import MESSAGE, MOTION
 from rockframe.shared_arguments import takes
@@ -92,32 +93,27 @@ def earthquake_sequences(
     check_system(system, _OWNER)
     rest = to_si(pause, TIME, owner=_OWNER, name="pause", condition=NOT_NEGATIVE)
     named = _sequences(sequences)
-    joined = {name: list(accumulate(each, _followed(rest))) for name, each in named.items()}
+    joined = {
+        name: list(accumulate(each, lambda first, second: _joined(first, second, rest)))
+        for name, each in named.items()
+    }
     longest = max(len(each) for each in joined.values())
     motions = {
         f"{name}, {number}": _joined(motion, None, rest)
         for name, each in joined.items()
         for number, motion in enumerate(each, start=1)
     }
-    runs = sweep(
-        system,
-        motions,
-        **run,
-    )
-    places = [
-        (row, number) for row, each in enumerate(joined.values()) for number in range(len(each))
-    ]
-    arranged = _arranged(runs, places, (len(joined), longest))
-    overturning = _first(arranged)
+    there = np.arange(longest) < np.array([[len(each)] for each in joined.values()])
+    arranged = _arranged(sweep(system, motions, **run), there)
+    fell = overturns(arranged).transpose("sequence", NUMBER).to_numpy() == 1.0
     labels = {
         "sequence": np.array(list(joined), dtype=object),
         NUMBER: np.arange(1, longest + 1),
-        "overturning_earthquake": overturning,
+        "overturning_earthquake": np.where(fell.any(axis=1), fell.argmax(axis=1) + 1, 0),
     }
     found = with_variables(arranged, labels)
-    falls = int((overturning > 0).sum())
-    count = len(joined)
-    verdict = f"Of {'1 sequence' if count == 1 else f'all {count} sequences'} {falls} overturned."
+    of_all = "1 sequence" if len(joined) == 1 else f"all {len(joined)} sequences"
+    verdict = f"Of {of_all} {int(fell.any(axis=1).sum())} overturned."
     return found.assign_attrs(title="Earthquakes in sequence", pause=rest, verdict=verdict)
 
 
@@ -173,46 +169,31 @@ def _of_one_step(motions: list[GroundMotion]) -> list[GroundMotion]:
     ]
 
 
-def _followed(rest: float) -> Any:
-    """Give what joins two motions with a pause between."""
-
-    def joined(first: GroundMotion, second: GroundMotion) -> GroundMotion:
-        return _joined(first, second, rest)
-
-    return joined
-
-
 def _joined(first: GroundMotion, second: GroundMotion | None, rest: float) -> GroundMotion:
     """Join motions, or put still ground after one."""
-    one = first.si
-    still = max(1, round(rest / one.time_step)) if second is not None or rest > 0.0 else 0
+    still = max(1, round(rest / first.si.time_step)) if second is not None or rest > 0.0 else 0
     if still == 0:
         return first
-    two = None if second is None else second.si
-    upwards = one.vertical is not None or (two is not None and two.vertical is not None)
-    horizontal = _after(one.horizontal, None if two is None else two.horizontal, still)
+    both = [one for one in (first, second) if one is not None]
+    horizontal = _after([one.si.horizontal for one in both], still)
     vertical = None
-    if upwards:
-        above = one.vertical or replace(one.horizontal, samples=0.0 * one.horizontal.samples,
-                                        polynomials=None, name="vertical")  # fmt: skip
-        vertical = _after(above, None if two is None else two.vertical, still, two)
-    names = first.name if second is None else f"{first.name}, then {second.name}"
-    return GroundMotion(Motion(horizontal, vertical), name=names)
+    if any(one.si.vertical is not None for one in both):
+        vertical = _after([one.si.vertical or _level(one.si.horizontal) for one in both], still)
+    return GroundMotion(Motion(horizontal, vertical), name=", then ".join(one.name for one in both))
 
 
-def _after(
-    first: Signal, second: Signal | None, still: int, length: Motion | None = None
-) -> Signal:
-    """Put a signal after another one, with intervals of still ground between."""
-    samples = [first.samples, np.zeros(still - 1 if second is not None or length else still)]
+def _level(horizontal: Signal) -> Signal:
+    """Give the vertical component of ground that does not move upwards."""
+    still = np.zeros(horizontal.samples.size)
+    return replace(horizontal, samples=still, polynomials=None, name="vertical")
+
+
+def _after(signals: Sequence[Signal], still: int) -> Signal:
+    """Put intervals of still ground after a signal, and then another one, if there is one."""
+    first, *others = signals
+    samples = [first.samples, np.zeros(still - len(others)), *(one.samples for one in others)]
     pieces = [_six(first.pieces), np.zeros((still, COEFFICIENTS))]
-    if second is not None:
-        samples.append(second.samples)
-        pieces.append(_six(second.pieces))
-    elif length is not None:
-        count = length.horizontal.samples.size
-        samples.append(np.zeros(count))
-        pieces.append(np.zeros((count - 1, COEFFICIENTS)))
+    pieces += [_six(one.pieces) for one in others]
     return Signal(first.time_step, np.concatenate(samples), np.concatenate(pieces), first.name)
 
 
@@ -220,30 +201,21 @@ def _six(pieces: Array) -> Array:
     return np.pad(pieces, ((0, 0), (0, COEFFICIENTS - pieces.shape[1])))
 
 
-def _arranged(
-    runs: xr.Dataset, places: list[tuple[int, int]], shape: tuple[int, int]
-) -> xr.Dataset:
-    """Give runs along motions the dimensions of sequences and earthquakes."""
-    rows, numbers = (np.array(each) for each in zip(*places, strict=True))
+def _arranged(runs: xr.Dataset, there: Generic) -> xr.Dataset:
+    """Give runs along motions the dimensions of sequences and earthquakes, where these are."""
     found: dict[str, xr.Variable] = {}
+    gaps = not there.all()
     for name, one in runs.data_vars.items():
         if one.dims != (MOTION,):
             continue
-        gaps = np.prod(shape) > len(places)
-        values = np.full(shape, np.nan) if gaps else np.empty(shape, dtype=one.dtype)
-        values[rows, numbers] = one.to_numpy()
+        values = np.full(there.shape, np.nan) if gaps else np.empty(there.shape, dtype=one.dtype)
+        values[there] = one.to_numpy()
         attributes = dict(one.attrs)
         if gaps and "flag_values" in attributes:
             attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
         found[str(name)] = xr.Variable(("sequence", NUMBER), values, attributes)
-    said = np.full(shape, NONE, dtype=object)
-    said[rows, numbers] = runs[MESSAGE].to_numpy()
+    said = np.full(there.shape, NONE, dtype=object)
+    said[there] = runs[MESSAGE].to_numpy()
     texts = xr.Variable(("sequence", NUMBER), said, runs[MESSAGE].attrs)
     attributes = {name: one for name, one in runs.attrs.items() if name != CASE_COUNT}
     return xr.Dataset(found, coords={MESSAGE: texts}, attrs=attributes)
-
-
-def _first(found: xr.Dataset) -> Array:
-    """Give the number of the earthquake that overturned; 0 if none did."""
-    fell = overturns(found).transpose("sequence", NUMBER).to_numpy() == 1.0
-    return np.where(fell.any(axis=1), fell.argmax(axis=1) + 1, 0)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from inspect import signature
 from typing import Any, Final, Unpack
 
 import numpy as np
@@ -9,35 +10,32 @@ import xarray as xr
 
 from rockframe.comparison.models import check_system
 from rockframe.components import Block
-from rockframe.errors import ComponentError, StudyError, collected_warnings
-from rockframe.results.outcome import Generic
-from rockframe.results.schema import build_dataset
+from rockframe.errors import ComponentError, collected_warnings
+from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.shared_arguments import takes
 from rockframe.simulation.system import System
-from rockframe.studies.intensities import POWERS, Intensity, of_motions, of_study, unscaled_motions
+from rockframe.studies.intensities import POWERS, Intensity, motions_of_runs, of_motions, of_study
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.line_axes import over_rows, read_line_axes
 from rockframe.studies.lines import (
     CAPACITY,
     SCALE,
+    SOURCE,
     VERDICT,
     Lines,
-    bracket_arrays,
-    least_exceeding,
     read_resolution,
     read_rising,
     read_scales,
     read_width,
 )
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.motions import MotionsLike, named_motions
-from rockframe.studies.sweeps.scenes import scene_of
+from rockframe.studies.sweeps.motions import MotionsLike
+from rockframe.studies.sweeps.scenes import needed_motions, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Unit
 
-SIZE: Final = ("slenderness", "rocking_period")
 _SLENDER: Final = Measure("a pure ratio", Unit.ONE, "4")
 _ROUNDING: Final = 1e-9
 """Relative to the height: a centre of mass that is less beside the middle is there."""
@@ -52,53 +50,59 @@ class BlockSizes:
     def __init__(
         self, system: System, periods: Any, slenderness: Any, axes: object = None, *, owner: str
     ) -> None:
-        self.system = _by_shape_factor(system, _block(system, owner))
+        check_system(system, owner)
+        self.system = _by_shape_factor(system, owner)
         si = self.system.parts.the_block
-        self.periods = read_rising(periods, PERIOD, "periods", owner=owner)
-        ratio = si.height / si.width
-        given = [ratio] if slenderness is None else slenderness
-        self.slenderness = read_rising(given, _SLENDER, "slenderness", owner=owner)
+        periods = read_rising(periods, PERIOD, "periods", owner=owner)
+        given = [si.height / si.width] if slenderness is None else slenderness
+        slenderness = read_rising(given, _SLENDER, "slenderness", owner=owner)
         # omega^2 = mu g / ((1 + mu) R0), Eq. (6)
         scale = si.frequency_at(system.options.gravity) ** 2 * si.radius
-        radius = scale * (0.5 * self.periods / math.pi) ** 2
-        angle = np.arctan(1.0 / self.slenderness)
-        self.width = 2.0 * np.sin(angle)[:, None] * radius
-        self.height = 2.0 * np.cos(angle)[:, None] * radius
+        radius = scale * (0.5 * periods / math.pi) ** 2
+        angle = np.arctan(1.0 / slenderness)
+        # in rows of a table: slenderness by slenderness
+        width, height = (
+            (2.0 * of_angle(angle)[:, None] * radius).ravel() for of_angle in (np.sin, np.cos)
+        )
         scene = scene_of(self.system)
+        arguments = signature(overturning_spectrum).parameters
         # a wall has a height, too
         beside = [part for part in self.system.parts.structural() if not isinstance(part, Block)]
         shared = {name for part in beside for name in part.varied()}
-        self._names = [f"Block.{one}" if one in shared else one for one in ("width", "height")]
-        own = [scene.axis(name, each) for name, each in self._sizes.items()]
-        self._axes = read_line_axes(axes, scene, owner=owner, others=_ARGUMENTS, beside=own)
-
-    @property
-    def _sizes(self) -> dict[str, tuple[Generic, str]]:
-        """Sizes, in rows of a table: slenderness by slenderness."""
-        unit = str(LENGTH.unit)
-        both = (self.width, self.height)
-        return {name: (one.ravel(), unit) for name, one in zip(self._names, both, strict=True)}
-
-    @property
-    def columns(self) -> dict[str, tuple[Generic, str]]:
-        """The same in each combination of further axes."""
-        return self._axes.beside(self._sizes)
+        sizes = {
+            f"Block.{name}" if name in shared else name: (values, str(LENGTH.unit))
+            for name, values in (("width", width), ("height", height))
+        }
+        own = [scene.axis(name, each) for name, each in sizes.items()]
+        further = read_line_axes(axes, scene, owner=owner, others=arguments, beside=own)
+        self.columns = further.columns(sizes)
+        self._sizes = {"slenderness": len(slenderness), "rocking_period": len(periods)}
+        self._sizes |= further.sizes
+        labels = build_dataset({"slenderness": slenderness, "rocking_period": periods}, {})
+        self._labels = {str(name): labels[name].variable for name in labels.coords} | further.labels
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
         """Give what runs over the rows of the table the dimensions of the sizes."""
-        labels = build_dataset(
-            {"slenderness": self.slenderness, "rocking_period": self.periods}, {}
-        )
-        sizes = {"slenderness": len(self.slenderness), "rocking_period": len(self.periods)}
-        named = {str(name): labels[name].variable for name in labels.coords}
-        return over_rows(runs, sizes | self._axes.sizes, named | self._axes.labels)
+        return over_rows(runs, self._sizes, self._labels)
 
 
-def _by_shape_factor(system: System, block: Block) -> System:
+def _by_shape_factor(system: System, owner: str) -> System:
     """Give a system whose block keeps its shape factor where width and height change.
 
     An inertia and a height of the centre of mass that were given would stay as they are.
     """
+    block, fault = system.parts.block, ""
+    if type(block) is not Block:
+        fault = f"a {type(block or next(iter(system.parts.structural()))).__name__}"
+    elif block.si.eccentricity != 0.0 or (
+        abs(block.si.centre_height - block.si.half_height) > _ROUNDING * block.si.height
+    ):
+        fault = "a block whose centre of mass is not in its middle"
+    elif system.parts.cap is not None:
+        fault = "a scene with a cap"
+    if fault or block is None:
+        msg = f"{owner}: system needs a block of width and height on its base, got {fault}"
+        raise ComponentError(msg)
     if block.given.inertia is None and block.given.centre_height is None:
         return system
     with collected_warnings():  # block and system have warned when they were made
@@ -108,33 +112,8 @@ def _by_shape_factor(system: System, block: Block) -> System:
         return System(scaling, *others, **options)
 
 
-def _block(system: System, owner: str) -> Block:
-    block = system.parts.block
-    fault = ""
-    if block is None or type(block) is not Block:
-        fault = f"a {type(block or next(iter(system.parts.structural()))).__name__}"
-    elif not _in_the_middle(block):
-        fault = "a block whose centre of mass is not in its middle"
-    elif system.parts.cap is not None:
-        fault = "a scene with a cap"
-    if fault or block is None:
-        msg = f"{owner}: system needs a block of width and height on its base, got {fault}"
-        raise ComponentError(msg)
-    return block
-
-
-def _in_the_middle(block: Block) -> bool:
-    si = block.si
-    above = abs(si.centre_height - si.half_height)
-    return si.eccentricity == 0.0 and above <= _ROUNDING * si.height
-
-
 _ROCKING: Final = "rocking_spectrum"
 _OVERTURNING: Final = "overturning_spectrum"
-_ARGUMENTS: Final = (
-    *SweepArguments.__annotations__, "periods", "slenderness", "scale", "intensity", "period",
-    "resolution", "bracket_width",
-)  # fmt: skip
 
 
 @takes(SweepArguments, further="axes")
@@ -195,15 +174,10 @@ def rocking_spectrum(
     >>> dict(found.peak_relative_rotation.sizes)
     {'slenderness': 1, 'rocking_period': 3, 'motion': 1}
     """
-    check_system(system, _ROCKING)
     sizes = BlockSizes(system, periods, slenderness, axes, owner=_ROCKING)
     heads = {head(name, unit): values for name, (values, unit) in sizes.columns.items()}
-    runs = sweep(
-        sizes.system,
-        _checked_motions(motions, system, _ROCKING),
-        cases=heads,
-        **run,
-    )
+    named = needed_motions(motions, scene_of(system), owner=_ROCKING)
+    runs = sweep(sizes.system, named, cases=heads, **run)
     return sizes.arranged(runs).assign_attrs(title="Rocking spectrum")
 
 
@@ -276,55 +250,38 @@ def overturning_spectrum(
     >>> found.capacity_intensity.units
     'm s^-2'
     """
-    check_system(system, _OVERTURNING)
     sizes = BlockSizes(system, periods, slenderness, axes, owner=_OVERTURNING)
     scales = read_scales(scale, owner=_OVERTURNING)
     share = read_width(bracket_width, owner=_OVERTURNING)
     finest = read_resolution(resolution, owner=_OVERTURNING)
     measure = Intensity.read(intensity, period, owner=_OVERTURNING)
-    named = named_motions(_checked_motions(motions, system, _OVERTURNING))
-    lines = Lines(sizes.system, named, sizes.columns, run, _OVERTURNING)
-    scan, seen, brackets = lines.followed(
-        scales, lambda runs: overturns(runs).expand_dims(VERDICT), width=share, resolution=finest
-    )
+    named = needed_motions(motions, scene_of(system), owner=_OVERTURNING)
+    lines = Lines(
+        sizes.system, named, sizes.columns, run, _OVERTURNING,
+        lambda runs: overturns(runs).expand_dims(VERDICT),
+    )  # fmt: skip
+    along = lines.followed(scales, width=share, resolution=finest)
+    scan = along.scan
     shape = (scan.sizes[CASE], scan.sizes[MOTION])
-    below, above, _, after = (
-        one[0].reshape(*shape, -1) for one in bracket_arrays(brackets, (1, shape[0] * shape[1]))
-    )
     shown = overturns(scan).transpose(CASE, MOTION, SCALE).to_numpy()
-    capacity = least_exceeding(seen.first[0].reshape(shape), above, after)
-    unit = of_motions(scan, unscaled_motions(scan, named, owner=_OVERTURNING), measure.of)
+    capacities, flips = along.capacities(shape), along.flips(shape)
+    capacity = capacities["capacity_scale"]
+    unit = of_motions(scan, motions_of_runs(scan, named, owner=_OVERTURNING), measure.of)
     powers = capacity ** np.where(np.isinf(capacity), 1, POWERS[measure.name])
-    narrow = build_dataset(
-        {
-            "capacity_scale": capacity,
-            "capacity_resolution": seen.resolution[0].reshape(shape),
-            "capacity_intensity": unit.to_numpy() * powers,
-            "flip_count": np.isfinite(below).sum(axis=-1),
-            "left_out_count": np.isnan(shown).sum(axis=-1),
-            "scale_below": below,
-            "scale_above": above,
-            "exceeds_above": after,
-        },
-        {},
-        over=(CASE, MOTION),
-        source="scan and bisection of event-driven runs",
-    )
-    narrow["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
-    found = scan.drop_dims(SCALE).assign(narrow.data_vars)
+    values = {
+        **capacities,
+        "capacity_intensity": unit.to_numpy() * powers,
+        "flip_count": flips["flip_count"],
+        "left_out_count": np.isnan(shown).sum(axis=-1),
+        **flips,
+    }
+    found = with_variables(scan.drop_dims(SCALE), values, over=(CASE, MOTION))
+    found["capacity_intensity"].attrs["units"] = measure.attributes()["units"]
     return sizes.arranged(found).assign_attrs(
         title="Overturning spectrum",
-        source=narrow.attrs["source"],
+        source=SOURCE,
         **of_study(measure.name, measure.period),
         capacity=CAPACITY,
         resolution=finest,
         bracket_width=share,
     )
-
-
-def _checked_motions(motions: object, system: System, owner: str) -> Any:
-    given = system.motion if motions is None else motions
-    if given is None:
-        msg = f"{owner}: there is no motion; give one"
-        raise StudyError(msg)
-    return given

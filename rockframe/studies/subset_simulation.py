@@ -1,6 +1,7 @@
 """How probable a rare limit state is where parameters and motions are spread."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from typing import Any, Final, Unpack
 
 import numpy as np
@@ -43,9 +44,8 @@ from rockframe.studies.limit_states import (
     limit_states,
     states_json,
 )
-from rockframe.studies.lines import INTERRUPTED
+from rockframe.studies.lines import INTERRUPTED, Rounds, rounds_of
 from rockframe.studies.probability import SAMPLED, Spread, read_correlation, read_spread
-from rockframe.studies.rounds import Rounds, rounds_of
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.case import remember, remembered
 from rockframe.studies.sweeps.planning import check_memory
@@ -220,21 +220,21 @@ def subset_simulation(
 
 def _read_limit(given: object) -> LimitState:
     """Read the limit state, which must be one that responses come near to."""
-    if isinstance(given, str | int | float | tuple):
-        state = limit_states([given], owner=_OWNER, name="limit")[0]
-        if state.rotation > 0.0 or state.value > 0.0:
-            return state
+    if not isinstance(given, str | int | float | tuple):
+        msg = (
+            f"{_OWNER}: limit must be one limit state: 'overturning', a peak rotation over the "
+            f"overturning angle, or ('peak_slip', '5 cm') and the like, got {shown(given)}"
+        )
+        raise ComponentError(msg)
+    state = limit_states([given], owner=_OWNER, name="limit")[0]
+    if not (state.rotation > 0.0 or state.value > 0.0):
         msg = (
             f"{_OWNER}: limit {state.name!r} is met or not, and no response tells how near it is; "
             "give 'overturning', a peak rotation over the overturning angle such as 0.1, or a "
             "variable of runs and a value above zero"
         )
         raise ComponentError(msg)
-    msg = (
-        f"{_OWNER}: limit must be one limit state: 'overturning', a peak rotation over the "
-        f"overturning angle, or ('peak_slip', '5 cm') and the like, got {shown(given)}"
-    )
-    raise ComponentError(msg)
+    return state
 
 
 class _Sampler:
@@ -257,12 +257,9 @@ class _Sampler:
     def demand(self, part: str, scores: Array) -> Array:
         """Run samples, a row of normal scores each."""
         table = self._table(scores)
-        if self.runs:
-            with collected_warnings() as said:
-                runs = self._rounds.sweep(part, table, {})
-            self.said += said
-        else:
+        with collected_warnings() if self.runs else nullcontext([]) as said:
             runs = self._rounds.sweep(part, table, {})
+        self.said += said
         if interrupted(runs):
             raise KeyboardInterrupt
         # of a function that makes the motion the sweep has a dimension for it
@@ -352,27 +349,21 @@ def _labelled(
 
 def _say_what_is_lacking(found: xr.Dataset) -> None:
     """Warn of a probability that is not known, or hardly."""
-    families = int(found["family_count"])
+    families, levels = int(found["family_count"]), found.sizes["sampling_level"]
     if families == 0:
-        warn(
-            f"{_OWNER}: no sample exceeds the limit state, after "
-            f"{found.sizes['sampling_level']} levels: {_stuck(found)}",
-            ModelWarning,
-        )
+        last = found["demand"].where(found["sample_level"] == levels, drop=True)
+        least, most = float(last.min()), float(last.max())
+        why = f"the greatest demand is {most:.3g}; allow more levels"
+        if least == most:
+            why = f"all samples of the last demand {most:.3g}, so that none leads on"
+        msg = f"{_OWNER}: no sample exceeds the limit state, after {levels} levels: {why}"
+        warn(msg, ModelWarning)
     elif families < _FEW_FAMILIES:
         warn(
             f"{_OWNER}: all samples that exceed descend from {families} of the first level, so "
             "that the coefficient of variation is hardly known; draw more cases",
             ModelWarning,
         )
-
-
-def _stuck(found: xr.Dataset) -> str:
-    """Say why the limit state was not reached."""
-    last = found["demand"].where(found["sample_level"] == found.sizes["sampling_level"], drop=True)
-    if float(last.min()) == float(last.max()):
-        return f"all samples of the last demand {float(last.max()):.3g}, so that none leads on"
-    return f"the greatest demand is {float(last.max()):.3g}; allow more levels"
 
 
 def _sentence(

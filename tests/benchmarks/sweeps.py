@@ -21,7 +21,7 @@ from contextlib import contextmanager
 import numpy as np
 
 import rockframe as rf
-from rockframe.studies.sweeps import lanes, runs, study
+from rockframe.studies.sweeps import chunk, lanes, study
 from rockframe.studies.sweeps.chunk import DRIVER, Driver, run_chunk
 from rockframe.studies.sweeps.planning import plan_study
 
@@ -125,7 +125,7 @@ def monte_carlo(motion, name, accuracy) -> str:
     """Tell what a case of a random table costs [ms], and how many ran outside lanes."""
     study.FEWEST_IN_LANES = 1
     system, cases = rf.System(BLOCK, *TABLES[name][0]), table(name, DRAWN)
-    run_together = runs.run_together
+    run_together = chunk.run_together
     ways = {"together": run_together, "one by one": lambda *_: iter(())}
     least = dict.fromkeys(ways, math.inf)
     job = plan_study(system, motion, {}, cases, accuracy=accuracy).job(range(DRAWN))
@@ -133,14 +133,14 @@ def monte_carlo(motion, name, accuracy) -> str:
     try:
         for _ in range(ROUNDS):
             for way, run in ways.items():
-                runs.run_together = run
+                chunk.run_together = run
                 with _loops_timed() as spent:
                     least[way] = min(least[way], _once(lambda: run_chunk(job)))
                 inside = min(inside, spent[0]) if way == "together" else inside
-        runs.run_together = run_together
+        chunk.run_together = run_together
         alone = 1.0 - float(np.mean(run_chunk(job).scalars[DRIVER] == Driver.IN_LANES))
     finally:
-        runs.run_together = run_together
+        chunk.run_together = run_together
     told = ", ".join(f"{way} {1e3 * seconds / DRAWN:.3f} ms" for way, seconds in least.items())
     return f"{told} a case, {1e3 * inside / DRAWN:.3f} ms in lanes; {alone:.1%} outside lanes"
 

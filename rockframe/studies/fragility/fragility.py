@@ -7,21 +7,22 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_names
+from rockframe.arguments import one_of_names, one_of_words
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
 from rockframe.results.variables.analyses import LIMIT_STATE
 from rockframe.simulation.soundness import share_words
 from rockframe.studies.confidence import read_level
-from rockframe.studies.fragility.labelling import Means, StructureTrials, fragility_dataset
+from rockframe.studies.fragility.labelling import Means, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, Fit
 from rockframe.studies.fragility.ordered import ordered_fits
-from rockframe.studies.fragility.structures import structures_of
 from rockframe.studies.fragility.trials import (
+    StructureTrials,
     Trials,
-    flat,
+    laid_out,
     motion_numbers,
+    structures_of,
     trials_of_capacities,
     trials_of_runs,
 )
@@ -193,9 +194,10 @@ def fragility(
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
     verdicts = [exceeds(runs, state) for state in states]
-    repeated = not of_capacities and any(map(_repeated, structures.parts(verdicts[-1])))
-    most = max(len(np.unique(motion_numbers(one))) for one in structures.parts(verdicts[-1]))
-    of_runs = Bands.JACKKNIFE if most <= _MOST_LEFT_OUT else Bands.SANDWICH
+    sizes = [(len(np.unique(motion_numbers(one))), one.size)
+             for one in structures.parts(verdicts[-1])]  # fmt: skip
+    repeated = not of_capacities and any(motions < count for motions, count in sizes)
+    of_runs = Bands.JACKKNIFE if max(sizes)[0] <= _MOST_LEFT_OUT else Bands.SANDWICH
     common = one_of_names(dispersion, _DISPERSIONS, owner=_OWNER, name="dispersion") == _COMMON
     if common and (of_capacities or len(measures) > 1 or bands == "profile"):
         msg = (
@@ -218,19 +220,19 @@ def fragility(
             if of_capacities:
                 found.append(_of_capacities(analysis, state, verdict, along))
             else:
-                made, count = trials_of_runs(verdict, along, by_motion=by_motion)
-                left_out = verdict.size - int(made.weight.sum())
-                found.append(StructureTrials(made, flat(verdict, along), left_out, count))
+                found.append(trials_of_runs(verdict, along, by_motion=by_motion))
     over = dict(zip(structures.groups, structures.shape, strict=True))
     about: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
     together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
     if together:
         about[POOLED] = ", ".join(together)
     dataset = fragility_dataset(
-        found, {**over, "limit_state": len(states)}, [_labels(one) for one in measures], means,
+        found, {**over, "limit_state": len(states)},
+        [(str(one.name), dict(one.attrs)) for one in measures], means,
         about | told_period(runs, given, period, owner=_OWNER), fits,
     )  # fmt: skip
-    dataset = dataset.assign_coords({**structures.coordinates, **labels_of_states(states)})
+    dataset = dataset.assign_coords(structures.coordinates)
+    dataset = with_variables(dataset, labels_of_states(states))
     if of_capacities:
         below = np.array([int((~one.trials.has_lower).sum()) for one in found])
         below = below.reshape((*over.values(), len(states)))
@@ -277,18 +279,14 @@ def _of_counts(
         raise ComponentError(msg)
     means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER))
     made = Trials.of_verdicts(np.log(values)[:, None], over, count)
-    each = (
-        np.repeat(values, count.astype(int)),
-        np.concatenate(
-            [np.repeat([1.0, 0.0], [int(k), int(n - k)]) for k, n in zip(over, count, strict=True)]
-        ),
-    )
-    total = int(count.sum())
-    labels = (which.name, which.attributes())
+    # the runs: of each intensity those that exceeded, and then the others
+    times = np.column_stack([over, count - over]).astype(int).ravel()
+    verdicts = np.repeat(np.tile([1.0, 0.0], len(values)), times)
+    runs = np.repeat(np.repeat(values, 2), times)[:, None], verdicts
     about: dict[str, Any] = {"trials": "trials"}
     found = fragility_dataset(
-        [StructureTrials(made, (each[0][:, None], each[1]), 0, total)],
-        {"limit_state": 1}, [labels], means,
+        [StructureTrials(made, runs, 0, len(verdicts))],
+        {"limit_state": 1}, [(which.name, which.attributes())], means,
         about | told_period(None, [measure], period, owner=_OWNER),
     ).isel(limit_state=0)  # fmt: skip
     return found.assign_attrs(verdict=sentences(found))
@@ -320,9 +318,7 @@ def _of_capacities(
         msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
         raise SchemaError(msg)
     one = analysis.sel(limit_state=state.name) if "limit_state" in analysis.dims else analysis
-    trials, lines = trials_of_capacities(one, verdict.notnull(), measures)
-    count = len(trials.weight)
-    return StructureTrials(trials, None, lines - count, count)
+    return trials_of_capacities(one, verdict.notnull(), measures)
 
 
 def _ordered(
@@ -332,8 +328,8 @@ def _ordered(
     bands: Bands,
 ) -> list[Fit]:
     """Fit all limit states of a structure with one dispersion."""
-    rows = np.stack([flat(one, [along])[1] for one in verdicts])
-    intensity = flat(verdicts[0], [along])[0][:, 0]
+    rows = np.stack([one.to_numpy().ravel().astype(np.float64) for one in verdicts])
+    intensity = laid_out(along, verdicts[0]).astype(np.float64)
     kept = ~np.isnan(rows).any(axis=0) & (intensity > 0.0) & np.isfinite(intensity)
     names = [state.name for state in states]
     motions = motion_numbers(verdicts[0])[kept]
@@ -359,21 +355,11 @@ def _several(given: object) -> list[object]:
     return several
 
 
-def _labels(measure: xr.DataArray) -> tuple[str, dict[str, Any]]:
-    return str(measure.name), dict(measure.attrs)
-
-
-def _repeated(runs: xr.DataArray) -> bool:
-    """Tell whether some motion was run more than once."""
-    return len(np.unique(motion_numbers(runs))) < runs.size
-
-
 def _bands(given: str | None, usual: Bands, measures: int) -> Bands:
     if given is None:
         return usual if measures == 1 or usual is not Bands.PROFILE else Bands.SANDWICH
-    names = [one.name.lower() for one in Bands]
-    one_of_names(given, names, owner=_OWNER, name="bands")
-    if given == "profile" and measures > 1:
+    found = one_of_words(Bands, given, owner=_OWNER, name="bands")
+    if found is Bands.PROFILE and measures > 1:
         msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"
         raise ComponentError(msg)
-    return Bands[given.upper()]
+    return found

@@ -14,7 +14,7 @@ from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
 from rockframe.studies.fragility.likelihood import Bands, Fit, boundary, fit, gap, jackknife
-from rockframe.studies.fragility.trials import Trials
+from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import bounded
 
 _POINTS: Final = 101
@@ -26,7 +26,6 @@ _NO_DISPERSION: Final = 1e6
 _MOST_STRIPES: Final = 30
 _BINS: Final = 10
 """Groups into which intensities are sorted that differ from run to run."""
-_TITLE: Final = "Fragility of a rocking system"
 _OF_INTENSITY: Final = (
     "median_intensity", "median_intensity_lower_bound", "median_intensity_upper_bound",
     "separation_lower_intensity", "separation_upper_intensity", "stripe_intensity",
@@ -34,18 +33,6 @@ _OF_INTENSITY: Final = (
 """Variables in the unit of the intensity."""
 Labels = tuple[str, dict[str, Any]]
 """Name and attributes of an intensity measure."""
-
-
-@dataclass(frozen=True)
-class Arrangement:
-    """How numbers of structures and limit states are arranged."""
-
-    dims: tuple[str, ...]  # dimensions, the last one fastest
-    shape: tuple[int, ...]  # their sizes
-
-    def arranged(self, values: Generic) -> Generic:
-        """Give values, whose first dimension counts, their dimensions."""
-        return values.reshape(*self.shape, *values.shape[1:])
 
 
 @dataclass(frozen=True)
@@ -64,17 +51,6 @@ class Means:
 
 
 @dataclass(frozen=True, eq=False)
-class StructureTrials:
-    """What was found out of one structure against one limit state."""
-
-    trials: Trials  # what is known of its capacity
-    # intensities, and whether they were exceeded, of each run; None of capacities
-    runs: tuple[Array, Array] | None
-    left_out: int  # how many runs or capacities are no trials
-    independent: int  # how many trials, or motions of trials, are independent
-
-
-@dataclass(frozen=True, eq=False)
 class _Fitted:
     """Trials with their fit, its region by profile, and whether there are bounds."""
 
@@ -82,22 +58,26 @@ class _Fitted:
     fit: Fit
     edge: Array | None
     bounded: bool
+    # of one measure whose trials are separated, the logarithms between which its median lies
+    gap: tuple[float, float] | None
 
     @classmethod
     def of(cls, found: StructureTrials, means: Means, given: Fit | None = None) -> "_Fitted":
         """Fit, unless a fit is given, and look for the region where bounds come from it."""
         trials, made = found.trials, given or fit(found.trials, means.bands)
-        separated = made.status is FragilityStatus.SEPARATED and trials.measures == 1
+        parted = None
+        if made.status is FragilityStatus.SEPARATED and trials.measures == 1:
+            parted = gap(trials) or (math.nan, math.nan)
         # capacities that an intensity parts lie together by chance: bounds from how close they
         # are would hold in few samples
         counted = trials.cluster is None and not np.any(trials.has_lower & trials.has_upper)
-        bands = Bands.PROFILE if separated else means.bands
-        bounds = (separated and counted) or made.status is FragilityStatus.FITTED
+        bands = means.bands if parted is None else Bands.PROFILE
+        bounds = (parted is not None and counted) or made.status is FragilityStatus.FITTED
         bounds = bounds and bounded(bands, found.independent) and made.complete
         edge = None
         if bounds and bands is Bands.PROFILE:
             edge = boundary(trials, made, means.confidence)
-        return cls(trials, made, edge, bounds)
+        return cls(trials, made, edge, bounds, parted)
 
 
 def fragility_dataset(
@@ -108,54 +88,58 @@ def fragility_dataset(
     attributes: Mapping[str, Any],
     fits: Sequence[Fit] | None = None,
 ) -> xr.Dataset:
-    """Fit capacities, unless fits are given, and label what is found."""
+    """Fit capacities, unless fits are given, and label what is found.
+
+    For each structure and limit state, whose numbers `over` tells, the last one fastest.
+    """
     given = [None] * len(found) if fits is None else fits
     every = [_Fitted.of(one, means, each) for one, each in zip(found, given, strict=True)]
-    layout = Arrangement(tuple(over), tuple(over.values()))
-    counts = {
+    values: dict[str, Any] = {
         "fragility_status": [one.fit.status for one in every],
         "trial_count": [one.trials.weight.sum() for one in found],
         "left_out_count": [one.left_out for one in found],
         "independent_count": [one.independent for one in found],
     }
-    dataset = build_dataset(
-        {name: layout.arranged(np.array(values)) for name, values in counts.items()},
-        {**attributes, "bands": means.bands.name.lower(), "confidence": means.confidence},
-        over=layout.dims, title=_TITLE, source="greatest likelihood",
-    )  # fmt: skip
-    if len(measures) == 1:
-        (labels,) = measures
-        dataset = _with_parameters(dataset, every, layout, means)
-        dataset = _with_curves(dataset, every, layout, labels, means)
-        runs = [one.runs for one in found if one.runs is not None]
-        dataset = with_stripes(
-            dataset, runs or _decided([one.trials for one in found]), layout, means
-        )
-        unit = labels[1].get("units")
-        for name in _OF_INTENSITY:
-            if name in dataset and unit is not None:
-                dataset[name].attrs["units"] = unit
+    alone = len(measures) == 1
+    if alone:
+        rows = [_parameters(each, means) for each in every]
+        values |= {name: [row[name] for row in rows] for name in rows[0]}
     else:
-        dataset = _with_coefficients(dataset, every, layout, measures)
-        dataset = _with_surface(dataset, every, layout, measures, means)
+        values |= {
+            "fitted_coefficient": [one.fit.coefficients for one in every],
+            "fitted_coefficient_error": [np.sqrt(np.diag(one.fit.covariance)) for one in every],
+        }
+    dataset = build_dataset(
+        _arranged(values, over),
+        {**attributes, "bands": str(means.bands), "confidence": means.confidence},
+        over=tuple(over), title="Fragility of a rocking system", source="greatest likelihood",
+    )  # fmt: skip
+    if not alone:
+        names = np.array(["intercept", *(name for name, _ in measures)], dtype=object)
+        dataset = with_variables(dataset, {"coefficient": names})
+    dataset = _with_curves(dataset, every, over, measures, means)
+    if alone:
+        runs = [one.runs for one in found if one.runs is not None]
+        runs = runs or _decided([one.trials for one in found])
+        dataset = with_stripes(dataset, runs, over, means.confidence)
+        for name in _OF_INTENSITY:
+            if name in dataset and "units" in measures[0][1]:
+                dataset[name].attrs["units"] = measures[0][1]["units"]
     return dataset
 
 
-def _with_parameters(
-    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Arrangement, means: Means
-) -> xr.Dataset:
-    """Add medians and dispersions."""
-    rows = [_parameters(each, means) for each in every]
-    values = {name: layout.arranged(np.array([row[name] for row in rows])) for name in rows[0]}
-    return with_variables(dataset, values, over=layout.dims)
+def _arranged(values: Mapping[str, Any], over: Mapping[str, int]) -> dict[str, Generic]:
+    """Give values of each structure and limit state, which are counted, their dimensions."""
+    arrays = {name: np.asarray(each) for name, each in values.items()}
+    return {n: each.reshape(*over.values(), *each.shape[1:]) for n, each in arrays.items()}
 
 
 def _parameters(each: _Fitted, means: Means) -> dict[str, float]:
     ends = (math.nan, math.nan)
     errors, log_errors, bounds = np.full(2, np.nan), np.full(2, np.nan), np.full((2, 2), np.nan)
-    if each.fit.status is FragilityStatus.SEPARATED:
+    if each.gap is not None:
         # the likelihood rises as the dispersion falls; every median between the ends is as likely
-        ends = gap(each.trials) or ends
+        ends = each.gap
         log_median, spread = 0.5 * sum(ends), 0.0
     else:
         (log_median, log_spread), covariance = _log_parameters(each.fit)
@@ -227,91 +211,48 @@ def _extremes(edge: Array) -> Array:
 
 
 def _with_curves(
-    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Arrangement, labels: Labels, means: Means
+    dataset: xr.Dataset,
+    every: Sequence[_Fitted],
+    over: Mapping[str, int],
+    measures: Sequence[Labels],
+    means: Means,
 ) -> xr.Dataset:
-    """Add exceedance probabilities over the intensity."""
-    name, attributes = labels
-    values = _spaced(every, 0, _POINTS)
-    rows = np.stack([np.ones(_POINTS), np.log(values)])
-    curves = np.stack([_curve(each, rows, means) for each in every])
-    return dataset.assign(_probabilities(curves, layout, name)).assign_coords(
-        {name: (name, values, attributes)}
-    )
+    """Add exceedance probabilities over the intensity, or over two of them."""
+    from scipy.special import ndtr
+
+    count = _POINTS if len(measures) == 1 else _SIDE
+    sides = {name: _spaced(every, k, count) for k, (name, _) in enumerate(measures)}
+    mesh = np.meshgrid(*sides.values(), indexing="ij")
+    rows = np.stack([np.ones(mesh[0].size), *(np.log(one).ravel() for one in mesh)])
+    shares = ndtr(np.stack([_eta(each, rows, means) for each in every]))
+    shares = shares.reshape(len(every), 3, *mesh[0].shape)
+    ends = ("", "_lower_bound", "_upper_bound")
+    values = {f"exceedance_probability{end}": shares[:, k] for k, end in enumerate(ends)}
+    dataset = with_variables(dataset, _arranged(values, over), over=(*over, *sides))
+    return dataset.assign_coords({name: (name, sides[name], about) for name, about in measures})
 
 
-def _curve(each: _Fitted, rows: Array, means: Means) -> Array:
-    """Give eta and its bounds at intensities; shape (3, intensities)."""
-    if each.fit.status is FragilityStatus.SEPARATED:
-        low, high = gap(each.trials) or (math.nan, math.nan)
-        eta = np.where(rows[1] < 0.5 * (low + high), -np.inf, np.inf)
+def _eta(each: _Fitted, rows: Array, means: Means) -> Array:
+    """Give eta and its bounds where coefficients multiply `rows`; shape (3, intensities)."""
+    if each.gap is not None:
+        eta = np.where(rows[1] < 0.5 * sum(each.gap), -np.inf, np.inf)
     else:
         eta = each.fit.coefficients @ rows
     if each.edge is not None:
         at = each.edge.T @ rows
         return np.stack([eta, at.min(axis=0), at.max(axis=0)])
-    if each.fit.status is FragilityStatus.SEPARATED:
-        return np.stack([eta, *np.full((2, len(eta)), np.nan)])
-    return _with_errors(each, rows, means)
-
-
-def _with_errors(each: _Fitted, rows: Array, means: Means) -> Array:
-    """Give eta and its bounds by the covariance of the coefficients."""
-    eta = each.fit.coefficients @ rows
-    deviations = means.deviations(each.fit.clusters) if each.bounded else math.nan
-    reach = deviations * np.sqrt(np.einsum("ik,ij,jk->k", rows, each.fit.covariance, rows))
+    reach = np.full(len(eta), np.nan)
+    if each.bounded:
+        squares = np.einsum("ik,ij,jk->k", rows, each.fit.covariance, rows)
+        reach = means.deviations(each.fit.clusters) * np.sqrt(squares)
     return np.stack([eta, eta - reach, eta + reach])
 
 
-def _with_surface(
-    dataset: xr.Dataset,
-    every: Sequence[_Fitted],
-    layout: Arrangement,
-    measures: Sequence[Labels],
-    means: Means,
-) -> xr.Dataset:
-    """Add exceedance probabilities over two intensities."""
-    sides = [_spaced(every, k, _SIDE) for k in range(len(measures))]
-    mesh = np.meshgrid(*sides, indexing="ij")
-    rows = np.stack([np.ones(_SIDE**2), *(np.log(one).ravel() for one in mesh)])
-    etas = np.stack([_with_errors(each, rows, means) for each in every])
-    names = [name for name, _ in measures]
-    found = _probabilities(etas.reshape(len(every), 3, *mesh[0].shape), layout, *names)
-    coordinates = {
-        name: (name, side, attributes)
-        for (name, attributes), side in zip(measures, sides, strict=True)
-    }
-    return dataset.assign(found).assign_coords(coordinates)
-
-
-def _with_coefficients(
-    dataset: xr.Dataset, every: Sequence[_Fitted], layout: Arrangement, measures: Sequence[Labels]
-) -> xr.Dataset:
-    """Add the coefficients of fits over several measures."""
-    names = ["intercept", *(name for name, _ in measures)]
-    errors = np.sqrt(np.stack([np.diag(one.fit.covariance) for one in every]))
-    fitted = np.stack([one.fit.coefficients for one in every])
-    added = {
-        "fitted_coefficient": layout.arranged(fitted),
-        "fitted_coefficient_error": layout.arranged(errors),
-    }
-    dataset = with_variables(dataset, added, over=layout.dims)
-    return with_variables(dataset, {"coefficient": np.array(names, dtype=object)})
-
-
-def _probabilities(etas: Array, layout: Arrangement, *measures: str) -> dict[str, xr.Variable]:
-    """Label probabilities from eta and its bounds; shape (fits, 3, intensities...)."""
-    from scipy.special import ndtr
-
-    values = {
-        f"exceedance_probability{end}": layout.arranged(ndtr(etas[:, k]))
-        for k, end in enumerate(("", "_lower_bound", "_upper_bound"))
-    }
-    built = build_dataset(values, {}, over=(*layout.dims, *measures))
-    return {str(name): built[name].variable for name in built.data_vars}
-
-
 def with_stripes(
-    dataset: xr.Dataset, counted: Sequence[tuple[Array, Array]], layout: Arrangement, means: Means
+    dataset: xr.Dataset,
+    counted: Sequence[tuple[Array, Array]],
+    over: Mapping[str, int],
+    confidence: float,
 ) -> xr.Dataset:
     """Add how many exceeded, by groups of intensities, with the bounds of Clopper and Pearson."""
     every = np.concatenate([columns[:, 0] for columns, _ in counted])
@@ -323,25 +264,24 @@ def with_stripes(
         middles = every
         cuts = np.concatenate([every, [np.inf]]) - 1e-8
     size = len(middles)
-    count, over = np.zeros((2, len(counted), size), dtype=np.int64)
+    count, exceeded = np.zeros((2, len(counted), size), dtype=np.int64)
     for row, (columns, verdict) in enumerate(counted):
         kept = ~np.isnan(verdict) & (columns[:, 0] > 0.0)
         place = np.searchsorted(cuts, np.log(columns[kept, 0]), side="right") - 1
         place = np.clip(place, 0, max(size - 1, 0))
         count[row] = np.bincount(place, minlength=size)
-        over[row] = np.bincount(place, weights=verdict[kept], minlength=size)
-    lower, upper = clopper_pearson(over, count, means.confidence)
+        exceeded[row] = np.bincount(place, weights=verdict[kept], minlength=size)
+    lower, upper = clopper_pearson(exceeded, count, confidence)
     with np.errstate(invalid="ignore"):
-        fraction = over / count
+        fraction = exceeded / count
     values = {
         "stripe_trials": count,
-        "stripe_exceedances": over,
+        "stripe_exceedances": exceeded,
         "stripe_fraction": fraction,
         "stripe_fraction_lower_bound": lower,
         "stripe_fraction_upper_bound": upper,
     }
-    arranged = {name: layout.arranged(value) for name, value in values.items()}
-    dataset = with_variables(dataset, arranged, over=layout.dims)
+    dataset = with_variables(dataset, _arranged(values, over), over=tuple(over))
     return with_variables(dataset, {"stripe_intensity": np.exp(middles)})
 
 

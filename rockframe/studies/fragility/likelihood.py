@@ -8,7 +8,7 @@ log-concave in the coefficients, so that there is one maximum, or none.
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from enum import IntEnum
+from enum import StrEnum
 from typing import Any, Final, cast
 
 import numpy as np
@@ -25,12 +25,12 @@ _BLOCK: Final = 2_000_000
 """Most values that are held at once."""
 
 
-class Bands(IntEnum):
+class Bands(StrEnum):
     """Where confidence bands come from."""
 
-    PROFILE = 0
-    SANDWICH = 1
-    JACKKNIFE = 2
+    PROFILE = "profile"
+    SANDWICH = "sandwich"
+    JACKKNIFE = "jackknife"
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +57,8 @@ class Fit:
     @classmethod
     def none(cls, status: FragilityStatus, measures: int) -> "Fit":
         """Give the fit of trials that no coefficients fit best."""
-        size = 1 + measures
-        return cls(
-            status,
-            np.full(size, np.nan),
-            np.full((size, size), np.nan),
-            np.full((size,) * 2, np.nan),
-        )
+        square = np.full((1 + measures,) * 2, np.nan)
+        return cls(status, square[0], square, square)
 
 
 def fit(trials: Trials, bands: Bands) -> Fit:

@@ -38,8 +38,12 @@ def ordered_fits(
             raise StudyError(msg)
     shares = verdicts.mean(axis=1) if verdicts.shape[1] else np.zeros(len(names))
     some = (shares > 0.0) & (shares < 1.0)
+    found = [
+        Fit.none(FragilityStatus.ALL_EXCEEDED if one > 0.0 else FragilityStatus.NONE_EXCEEDED, 1)
+        for one in shares
+    ]
     if not some.any():
-        return [_of_share(share) for share in shares]
+        return found
     # states that the same runs exceed have one capacity
     _, places = np.unique(shares[some], return_inverse=True)
     places = places.max() - places
@@ -48,31 +52,17 @@ def ordered_fits(
     best = _greatest(logs, count, len(first))
     if best is None or best[-1] <= 0.0:
         status = FragilityStatus.SEPARATED if best is None else FragilityStatus.NOT_RISING
-        return [
-            Fit.none(status, 1) if one else _of_share(s)
-            for one, s in zip(some, shares, strict=True)
-        ]
+        return [Fit.none(status, 1) if one else f for one, f in zip(some, found, strict=True)]
     covariance, rows = _covariance(logs, count, motions, best, bands)
-    inside = _information(logs, count, best)
-    found: list[Fit] = []
-    of_state = iter(places)
-    for one, share in zip(some, shares, strict=True):
-        if not one:
-            found.append(_of_share(share))
-            continue
-        pair = np.array([next(of_state), len(best) - 1])
+    inside = curvature_of_shares(*_ends(logs, count, best))
+    for state, place in zip(np.flatnonzero(some), places, strict=True):
+        pair = np.array([place, len(best) - 1])
         square = np.ix_(pair, pair)
         without = None if rows is None else (rows[:, pair], np.ones(len(rows)))
-        found.append(
-            Fit(FragilityStatus.FITTED, best[pair], inside[square], covariance[square], without)
+        found[state] = Fit(
+            FragilityStatus.FITTED, best[pair], inside[square], covariance[square], without
         )
     return found
-
-
-def _of_share(share: float) -> Fit:
-    """Give what is known of a limit state that all runs exceed, or none."""
-    status = FragilityStatus.ALL_EXCEEDED if share > 0.0 else FragilityStatus.NONE_EXCEEDED
-    return Fit.none(status, 1)
 
 
 def _ends(logs: Array, count: Generic, at: Array) -> tuple[Array, Array, Array, Array]:
@@ -100,14 +90,6 @@ def _value(logs: Array, count: Generic, at: Array) -> float:
     return float(log_shares(upper, lower).sum())
 
 
-def _scores(logs: Array, count: Generic, at: Array) -> Array:
-    return slopes_of_shares(*_ends(logs, count, at))
-
-
-def _information(logs: Array, count: Generic, at: Array) -> Array:
-    return curvature_of_shares(*_ends(logs, count, at))
-
-
 _STEPS = 100
 _STEEPEST = 1e4
 """Slope, over the spread of the intensities, from which on trials are as good as separated."""
@@ -130,8 +112,9 @@ def _greatest(logs: Array, count: Generic, states: int, start: Array | None = No
         at = np.append(start[:-1] + start[-1] * middle, start[-1] * spread)
     value = _value(scaled, count, at)
     for _ in range(_STEPS):
-        slope = _scores(scaled, count, at).sum(axis=0)
-        step = np.linalg.lstsq(_information(scaled, count, at), slope)[0]
+        ends = _ends(scaled, count, at)
+        slope = slopes_of_shares(*ends).sum(axis=0)
+        step = np.linalg.lstsq(curvature_of_shares(*ends), slope)[0]
         size = 1.0
         while size > 1e-10 and not _value(scaled, count, at + size * step) >= value - 1e-12:
             size *= 0.5
@@ -152,9 +135,10 @@ def _covariance(
     """Give the covariance by motions, :eq:`eq-fragility-sandwich`, :eq:`eq-fragility-jackknife`."""
     names, place = np.unique(motions, return_inverse=True)
     if bands is Bands.SANDWICH:
-        inverse = np.linalg.inv(_information(logs, count, best))
+        ends = _ends(logs, count, best)
+        inverse = np.linalg.inv(curvature_of_shares(*ends))
         summed = np.zeros((len(names), len(best)))
-        np.add.at(summed, place, _scores(logs, count, best))
+        np.add.at(summed, place, slopes_of_shares(*ends))
         factor = len(names) / (len(names) - 1.0) if len(names) > 1 else math.inf
         filled = factor * inverse @ summed.T @ summed @ inverse
         return np.asarray(filled, dtype=np.float64), None

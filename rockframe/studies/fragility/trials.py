@@ -1,21 +1,145 @@
-"""Trials of capacities: what runs and dynamic analyses tell of them.
+"""What runs and dynamic analyses tell of the capacities of structures: trials.
 
-A trial tells between which intensities the capacity lies: of a run that exceeds a limit state it
-lies below the intensity of the run, of one that does not above it, and a dynamic analysis
-encloses it in a bracket.
+The structures of a sweep are fitted apart. A trial tells between which intensities the capacity of
+one lies: of a run that exceeds a limit state it lies below the intensity of the run, of one that
+does not above it, and a dynamic analysis encloses it in a bracket.
 """
 
+import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
+from rockframe.arguments import several
+from rockframe.errors import ComponentError, SchemaError, StudyError, shown
 from rockframe.results.outcome import Generic
-from rockframe.results.variables.studies import MOTION
+from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.lines import SCALE
+from rockframe.studies.sweeps.axes import Changes
+
+Values = TypeVar("Values", xr.DataArray, xr.Dataset)
+
+
+@dataclass(frozen=True, eq=False)
+class Structures:
+    """The structures of a sweep: what differs beside motion and intensity tells them apart."""
+
+    # for each dimension over which structures differ, the number of the structure at each place
+    groups: Mapping[str, Generic]
+    coordinates: Mapping[str, xr.Variable]  # what they are told apart by
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of structures along each dimension."""
+        return tuple(int(group.max()) + 1 for group in self.groups.values())
+
+    def parts(self, values: Values) -> Iterator[Values]:
+        """Give what belongs to each structure, the last dimension fastest."""
+        for number in np.ndindex(self.shape):
+            groups = zip(self.groups.items(), number, strict=True)
+            chosen = {dim: np.flatnonzero(group == k) for (dim, group), k in groups}
+            yield values.isel(chosen, missing_dims="ignore")
+
+
+def structures_of(
+    runs: xr.Dataset, pooled: Iterable[str], given: Sequence[object], *, owner: str
+) -> Structures:
+    """Find the structures of a sweep."""
+    asked = several(pooled, owner=owner, name="pooled", of="names")
+    axes = {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
+    own = [str(one.name) for one in given if isinstance(one, xr.DataArray)]
+    changed = [name for name in axes if name not in own and axes[name] != Changes.MOTION]
+    dims = [str(dim) for dim in runs["status"].dims]
+    differing = [name for name in changed if name in runs.coords or name in dims]
+    lost = [name for name in changed if name not in differing]
+    if lost and CASE in dims:
+        msg = f"{owner}: found a sweep without its coordinate {lost[0]!r}, which tells cases apart"
+        raise SchemaError(msg)
+    explained = {
+        str(dim) for name in (MOTION, *axes, *own) if name in runs.variables
+        for dim in runs[name].dims
+    }  # fmt: skip
+    foreign = [dim for dim in dims if dim not in {*explained, *axes, *own, MOTION, CASE}]
+    _check_motions(runs, foreign, owner, named=len(own) < len(given))
+    known = [*(name for name in differing if runs[name].dims), *foreign]
+    if CASE in asked and CASE in dims:  # stands for all columns of its table
+        columns = [name for name in known if CASE in runs[name].dims]
+        asked = [*(one for one in asked if one != CASE), *columns]
+    wrong = [one for one in asked if one not in (*changed, *foreign)]
+    if wrong:
+        msg = (
+            f"{owner}: pooled names {', '.join(map(shown, wrong))}; what differs in these runs "
+            f"beside motion and intensity: {', '.join(known) or 'nothing'}"
+        )
+        raise ComponentError(msg)
+    kept = [name for name in known if name not in asked]
+    alone = [name for name in differing if not runs[name].dims]
+    found = _grouped(runs, dims, kept, alone)
+    sizes = [np.bincount(group).max() for group in found.groups.values()]
+    rest = [runs.sizes[dim] for dim in dims if dim not in found.groups]
+    if np.prod(found.shape) > 1 and np.prod([*sizes, *rest]) == 1:
+        msg = (
+            f"{owner}: each run has a structure of its own, for {', '.join(kept)} differ from run "
+            f"to run; pooled={tuple(kept)} takes all of them for one"
+        )
+        raise ComponentError(msg)
+    return found
+
+
+def _check_motions(runs: xr.Dataset, foreign: Sequence[str], owner: str, *, named: bool) -> None:
+    """Refuse datasets that were put together so that nobody knows which motions were run."""
+    if foreign and named:
+        msg = (
+            f"{owner}: the sweep had no dimension {', '.join(map(repr, foreign))}; datasets that "
+            "were put together tell the motions of the first alone: fit each of them, or give the "
+            "intensity as a DataArray"
+        )
+        raise StudyError(msg)
+    if MOTION in runs.dims and MOTION in runs.coords:
+        names, count = np.unique(runs[MOTION].to_numpy().astype(str), return_counts=True)
+        if count.max(initial=0) > 1:
+            msg = f"{owner}: the motion {str(names[count > 1][0])!r} stands twice along 'motion'"
+            raise StudyError(msg)
+
+
+def _grouped(
+    runs: xr.Dataset, dims: Sequence[str], kept: Sequence[str], alone: Sequence[str]
+) -> Structures:
+    """Give structures numbers along each dimension, and labels."""
+    groups: dict[str, Generic] = {}
+    coordinates = {
+        str(name): runs[name].variable
+        for name in (*alone, *kept)
+        if name in runs.coords and runs[name].ndim != 1
+    }
+    for dim in dims:
+        columns = [name for name in kept if name in runs.coords and runs[name].dims == (dim,)]
+        shared = dim in kept or any(dim in one.dims for one in coordinates.values())
+        if not columns and not shared:
+            continue
+        first, group = _alike([runs[name].to_numpy() for name in columns], runs.sizes[dim], shared)
+        groups[dim] = group
+        # a dimension of several levels has no labels that a file can keep
+        plain = dim in runs.coords and runs.indexes[dim].nlevels == 1
+        for name in (*columns, *([dim] if plain else [])):
+            values = runs[name]
+            coordinates[name] = xr.Variable(dim, values.to_numpy()[first], values.attrs)
+    return Structures(groups, coordinates)
+
+
+def _alike(columns: Sequence[Generic], size: int, apart: bool) -> tuple[Generic, Generic]:
+    """Give the first place of each group of like rows, and the group of each place."""
+    if apart:
+        return np.arange(size), np.arange(size)
+    table = pd.DataFrame(dict(enumerate(columns)))
+    group = table.groupby([*table], sort=False, dropna=False).ngroup().to_numpy()
+    return np.unique(group, return_index=True)[1], group
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +182,24 @@ class Trials:
         return self.lower.shape[1]
 
 
+@dataclass(frozen=True, eq=False)
+class StructureTrials:
+    """What was found out of one structure against one limit state."""
+
+    trials: Trials  # what is known of its capacity
+    # intensities, and whether they were exceeded, of each run; None of capacities
+    runs: tuple[Array, Array] | None
+    left_out: int  # how many runs or capacities are no trials
+    independent: int  # how many trials, or motions of trials, are independent
+
+
 def trials_of_runs(
     exceeded: xr.DataArray, measures: Sequence[xr.DataArray], *, by_motion: bool
-) -> tuple[Trials, int]:
+) -> StructureTrials:
     """Give the trials of runs, each of which exceeds a limit state or does not."""
-    columns, verdict = flat(exceeded, measures)
+    columns = np.column_stack([laid_out(one, exceeded).astype(np.float64) for one in measures])
+    verdict = exceeded.to_numpy().ravel().astype(np.float64)
+    runs = columns, verdict
     kept = ~np.isnan(verdict) & np.all(columns > 0.0, axis=1) & np.all(np.isfinite(columns), axis=1)
     cluster = motion_numbers(exceeded)[kept]
     motions = len(np.unique(cluster))
@@ -72,17 +209,18 @@ def trials_of_runs(
         size = len(points)
         over = np.bincount(place.ravel(), weights=verdict, minlength=size)
         every = np.bincount(place.ravel(), minlength=size).astype(np.float64)
-        return Trials.of_verdicts(points, over.astype(np.float64), every), motions
-    return Trials.of_verdicts(logs, verdict, np.ones(len(verdict)), cluster), motions
+        found = Trials.of_verdicts(points, over.astype(np.float64), every)
+    else:
+        found = Trials.of_verdicts(logs, verdict, np.ones(len(verdict)), cluster)
+    return StructureTrials(found, runs, int((~kept).sum()), motions)
 
 
 def trials_of_capacities(
     analysis: xr.Dataset, known: xr.DataArray, measures: Sequence[xr.DataArray]
-) -> tuple[Trials, int]:
+) -> StructureTrials:
     """Give the trials of a dynamic analysis, one for each line, from its first exceedance.
 
-    A line is a motion, and a value of all else that is taken for one population. Their number is
-    given, too.
+    A line is a motion, and a value of all else that is taken for one population.
     """
     sizes = {str(dim): size for dim, size in known.sizes.items() if dim != SCALE}
     scales = analysis[SCALE].to_numpy()
@@ -94,9 +232,9 @@ def trials_of_capacities(
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
     told = has_lower | has_upper
-    weight = np.ones(int(told.sum()))
-    found = Trials(lower[told], upper[told], has_lower[told], has_upper[told], weight, None)
-    return found, len(told)
+    count = int(told.sum())
+    found = Trials(lower[told], upper[told], has_lower[told], has_upper[told], np.ones(count), None)
+    return StructureTrials(found, None, len(told) - count, count)
 
 
 def _first_brackets(
@@ -123,12 +261,6 @@ def _in_lines(values: xr.DataArray, sizes: Mapping[str, int], along: str = "") -
     laid = values.variable.set_dims({**lacking, **values.sizes}).transpose(*sizes, *own)
     count = math.prod(sizes.values())
     return laid.to_numpy().reshape((count, values.sizes[along] if own else 1))
-
-
-def flat(first: xr.DataArray, others: Sequence[xr.DataArray]) -> tuple[Array, Array]:
-    """Lay numbers of runs out in rows."""
-    rows = [laid_out(other, first).astype(np.float64) for other in others]
-    return np.column_stack(rows), first.to_numpy().ravel().astype(np.float64)
 
 
 def laid_out(values: xr.DataArray, like: xr.DataArray) -> Generic:

@@ -60,7 +60,7 @@ def sentences(fragility: xr.Dataset) -> str:
         independent, trials = (
             last[f"{name}_count"].to_numpy().ravel()[fitted] for name in ("independent", "trial")
         )
-        bands, kind = Bands[last.attrs["bands"].upper()], last.attrs["trials"]
+        bands, kind = Bands(last.attrs["bands"]), last.attrs["trials"]
         said += words_of_bounds(
             bands, last.attrs["confidence"], independent, trials,
             kind="trials" if kind == "trials" else "motions", measures=len(measures_of(last)),
@@ -69,7 +69,18 @@ def sentences(fragility: xr.Dataset) -> str:
         said += _of_another(fragility)
     if last.attrs.get("dispersions") == "common":
         said.append("One dispersion is common to all limit states.")
-    return " ".join([*said, *_below_scan(last), *_left_out(last)])
+    known, lacking = (int(last[f"{name}_count"].sum()) for name in ("trial", "left_out"))
+    below = int(last["below_scan_count"].sum()) if "below_scan_count" in last else 0
+    if below:  # a scan that starts too high does not part them from zero
+        said.append(
+            f"{below} of {known} capacities are only known to lie at or below the least scale."
+        )
+    if lacking:
+        said.append(
+            f"{lacking} of {lacking + known} {last.attrs['trials']} are left out: they have no "
+            "verdict, or no intensity above zero."
+        )
+    return " ".join(said)
 
 
 def verdict_of_fragility(dataset: xr.Dataset) -> str:
@@ -154,7 +165,7 @@ def _separation(last: xr.Dataset) -> str:
 
 def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
     """Tell of how many fits a single motion keeps the trials from being separated."""
-    if last.attrs["bands"] != Bands.JACKKNIFE.name.lower() or "dispersion" not in last:
+    if last.attrs["bands"] != Bands.JACKKNIFE or "dispersion" not in last:
         return
     lacking = np.isnan(last["dispersion_upper_bound"].to_numpy().ravel()[fitted])
     enough = last["independent_count"].to_numpy().ravel()[fitted] >= min(COVERAGE[Bands.JACKKNIFE])
@@ -164,23 +175,6 @@ def _near_separation(last: xr.Dataset, fitted: Generic) -> Iterator[str]:
         yield (
             f"There are no bounds{of}: without one of the motions there is no fit, for hardly any "
             "run exceeds below one that does not."
-        )
-
-
-def _below_scan(last: xr.Dataset) -> Iterator[str]:
-    """Tell how many capacities a scan that starts too high does not part from zero."""
-    below = int(last["below_scan_count"].sum()) if "below_scan_count" in last else 0
-    if below:
-        known = int(last["trial_count"].sum())
-        yield f"{below} of {known} capacities are only known to lie at or below the least scale."
-
-
-def _left_out(last: xr.Dataset) -> Iterator[str]:
-    lacking, count = (int(last[f"{name}_count"].sum()) for name in ("left_out", "trial"))
-    if lacking:
-        yield (
-            f"{lacking} of {lacking + count} {last.attrs['trials']} are left out: they have no "
-            "verdict, or no intensity above zero."
         )
 
 

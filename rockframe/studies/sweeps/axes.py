@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -65,14 +66,13 @@ class Axis:
 def numbers_of(given: object, measure: Measure, name: str) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
     if measure.unit == Unit.ONE:
-        example = measure.example
-        items = items_of(_as_python(_ratios(given)))
-        floats = all(type(one) is float and math.isfinite(one) for one in items)
-        found = (
-            items
-            if floats
-            else [to_ratio(one, owner=OWNER, name=name, example=example) for one in items]
-        )
+        if (pair := _with_unit(given)) is not None:
+            factor = to_ratio(f"1 {pair[1]}", owner=OWNER, name="unit")
+            given = [factor * float(one) for one in items_of(pair[0])]
+        found = items_of(_as_python(given))
+        if not all(type(one) is float and math.isfinite(one) for one in found):
+            example = measure.example
+            found = [to_ratio(one, owner=OWNER, name=name, example=example) for one in found]
     else:
         _refuse_bare(given, measure, name)
         found = to_si_values(_as_python(given), measure, owner=OWNER, name=name)
@@ -117,12 +117,18 @@ def free_values(given: object, name: str) -> tuple[Generic, str | None]:
     return array, None
 
 
+def _with_unit(given: object) -> tuple[Any, str] | None:
+    """Give values and their unit, where it was given for all of them."""
+    pair = cast("tuple[Any, ...]", given) if isinstance(given, tuple) else ()
+    if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
+        return pair
+    return None
+
+
 def _unit_in(given: object) -> str | None:
     """Give the unit that values were given with; None of bare numbers and of words."""
-    if isinstance(given, tuple):
-        pair = cast("tuple[Any, ...]", given)
-        if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
-            return pair[1]
+    if (pair := _with_unit(given)) is not None:
+        return pair[1]
     first = next(iter(items_of(given)), None)
     if isinstance(given, pint.Quantity):
         first = given
@@ -142,27 +148,15 @@ def _measure_of(unit: str, name: str) -> Measure:
     """Find the kind of quantity that has a unit."""
     for known in Unit:
         measure = Measure("a quantity", known, f"1 {known}")
-        try:
-            if known != Unit.ONE:
+        with suppress(UnitsError, ComponentError):
+            if known == Unit.ONE:
+                to_ratio(f"1 {unit}", owner=OWNER, name=name)
+            else:
                 to_si(f"1 {unit}", measure, owner=OWNER, name=name)
-                return measure
-            to_ratio(f"1 {unit}", owner=OWNER, name=name)
-        except (UnitsError, ComponentError):
-            continue
-        return measure
+            return measure
     known = ", ".join(str(one) for one in Unit)
     msg = f"{OWNER}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
     raise UnitsError(msg)
-
-
-def _ratios(given: object) -> object:
-    """Give pure numbers that came with the unit 1, or per cent, one by one."""
-    if isinstance(given, tuple):
-        pair = cast("tuple[Any, ...]", given)
-        if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
-            factor = to_ratio(f"1 {pair[1]}", owner=OWNER, name="unit")
-            return [factor * float(one) for one in items_of(pair[0])]
-    return given
 
 
 def items_of(given: object) -> list[Any]:
@@ -234,20 +228,17 @@ class Grid:
         """
         scales = [axis.name for axis in self.axes if axis.changes is Changes.MOTION]
         others = [axis.name for axis in self.axes if axis.changes is not Changes.MOTION]
-        last = [*([CASE] if CASE in self.sizes else []), *others]
-        first = [MOTION] if MOTION in self.sizes else []
-        return (*first, *scales, *last)
+        return tuple(n for n in (MOTION, *scales, CASE, *others) if n in self.sizes)
+
+    @property
+    def shape(self) -> list[int]:
+        """Lengths of the dimensions in that order."""
+        return [self.sizes[name] for name in self.order]
 
     def places(self, cases: range | Generic) -> dict[str, Generic]:
         """Give the places along all dimensions of cases, by their numbers in order of running."""
-        shape = [self.sizes[name] for name in self.order]
-        found = np.unravel_index(np.asarray(cases, dtype=np.int64), shape)
+        found = np.unravel_index(np.asarray(cases, dtype=np.int64), self.shape)
         return dict(zip(self.order, found, strict=True))
-
-    def number_of(self, place: Mapping[str, int]) -> int:
-        """Give the number, in the order of running, of the case at a place."""
-        shape = [self.sizes[name] for name in self.order]
-        return int(np.ravel_multi_index([place[name] for name in self.order], shape))
 
     def numbers(self, key: Sequence[Any]) -> Generic:
         """Give the numbers, in the order of running, of the cases at places along all dimensions.
@@ -264,10 +255,9 @@ class Grid:
 
     def arranged(self, values: Generic) -> Generic:
         """Bring values from the order of running into that of the dimensions."""
-        shape = [self.sizes[name] for name in self.order]
-        apart = values.reshape([*shape, *values.shape[1:]])
+        apart = values.reshape([*self.shape, *values.shape[1:]])
         moved = [self.order.index(name) for name in self.sizes]
-        rest = range(len(shape), apart.ndim)
+        rest = range(len(moved), apart.ndim)
         return np.ascontiguousarray(apart.transpose([*moved, *rest]))
 
     def of_cases(self, cases: range | Generic) -> tuple[tuple[Axis, Generic], ...]:

@@ -3,7 +3,8 @@
 import json
 import math
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -21,15 +22,9 @@ from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
 from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
+from rockframe.studies.sweeps.chunk import AGAIN
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
-from rockframe.studies.sweeps.runs import AGAIN
-from rockframe.studies.sweeps.scenes import (
-    FunctionScene,
-    SweptScene,
-    SystemScene,
-    scene_of,
-    started,
-)
+from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene, scene_of
 from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 from rockframe.units import Measure, Unit, to_ratio, to_si
@@ -147,26 +142,28 @@ def case(
             "rf.concat where sweeps differ along one axis, or in their motions, alone"
         )
         raise SchemaError(msg)
-    known = remembered(attributes)
     full = {name if name in dataset.dims else full_name(name): one for name, one in labels.items()}
     place = _place(dataset, full)
-    values = _values(dataset, attributes, place)
-    if motions is not None:
-        named_motions(motions)  # also where they are not needed
-    made = _scene(None if scene is None else scene_of(scene), attributes, known)
-    names: list[str] = json.loads(attributes["motion_names"])
-    number = names.index(_value(dataset, MOTION, place))
-    motion = unscaled_motion(motions, number, attributes, known, kept)
-    of_scene = {axis: one for axis, one in values.items() if axis.changes in OF_SCENES}
-    system = _system(made, of_scene)
-    if motion is None:
-        motion = system.motion
+    values: dict[Axis, Any] = {}
+    for described in json.loads(attributes["axes_json"]):
+        value = _value(dataset, described["name"], place)
+        values[Axis.from_dict(described, np.array([value]))] = value
+    name = _value(dataset, MOTION, place)
+    motion = unscaled_motions(attributes, [name], motions, kept)[name]
+    system = _system(
+        _scene(None if scene is None else scene_of(scene), attributes),
+        {axis: one for axis, one in values.items() if axis.changes in OF_SCENES},
+    )
+    motion = system.motion if motion is None else motion
+    options = json.loads(attributes["run_json"])
+    options = {name: value for name, value in options.items() if value is not None}
+    start = {axis.parameter: one for axis, one in values.items() if axis.changes is Changes.START}
+    options["initial"] = InitialState.from_dict(options["initial"]).with_si(start)
+    options["accuracy"] = Accuracy(**options["accuracy"])
+    options["points"] = options.get("points") or None
     for axis, value in values.items():
         if axis.changes is Changes.MOTION and motion is not None:
             motion = motion_of_case(motion, axis.name, value, attributes.get("spectral_period"))
-    options = _options(json.loads(attributes["run_json"]))
-    start = {axis.parameter: one for axis, one in values.items() if axis.changes is Changes.START}
-    options["initial"] = started(options["initial"], start)
     if REPEATED in dataset and _value_of(dataset[REPEATED], place) == 1.0:
         options["accuracy"] = LEVELS[AGAIN]
     return SweepCase(system, motion, options)
@@ -203,14 +200,6 @@ def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
     return {name: found.get(name, 0) for name in dims}
 
 
-def _float(number: float | np.number[Any]) -> float:
-    """Give a number as a float, infinite where it is a whole number larger than any."""
-    try:
-        return float(number)
-    except OverflowError:
-        return math.inf
-
-
 def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
     values = np.atleast_1d(labels.to_numpy())
     if name == MOTION:
@@ -218,17 +207,15 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
     near = ""
     if values.dtype.kind == "f":
         unit = Unit(labels.attrs["units"])
-        example = f"{values[0]:g}" if unit == Unit.ONE else f"{values[0]:g} {unit}"
-        measure = Measure("a value", unit, example)
-        number = (
-            _float(wanted)
-            if isinstance(wanted, int | float | np.number)
-            else (
-                to_ratio(wanted, owner=_OWNER, name=name)
-                if measure.unit == Unit.ONE
-                else to_si(wanted, measure, owner=_OWNER, name=name)
-            )
-        )
+        if isinstance(wanted, int | float | np.number):
+            number = math.inf
+            with suppress(OverflowError):  # of a whole number larger than any float
+                number = float(wanted)
+        elif unit == Unit.ONE:
+            number = to_ratio(wanted, owner=_OWNER, name=name)
+        else:
+            measure = Measure("a value", unit, f"{values[0]:g} {unit}")
+            number = to_si(wanted, measure, owner=_OWNER, name=name)
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
             return nearest
@@ -256,25 +243,13 @@ def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:
     return along.isel({dim: place[str(dim)] for dim in along.dims}).item()
 
 
-def _values(
-    dataset: xr.Dataset, attributes: Mapping[str, Any], place: Mapping[str, int]
-) -> dict[Axis, Any]:
-    found: dict[Axis, Any] = {}
-    for described in json.loads(attributes["axes_json"]):
-        value = _value(dataset, described["name"], place)
-        found[Axis.from_dict(described, np.array([value]))] = value
-    return found
-
-
-def _scene(
-    given: SweptScene | None, attributes: Mapping[str, Any], known: Study | None
-) -> SweptScene:
+def _scene(given: SweptScene | None, attributes: Mapping[str, Any]) -> SweptScene:
     if "system_json" in attributes:
         system = System.from_dict(json.loads(attributes["system_json"]))
         return SystemScene(system.assembly)
     if given is not None:
         return given
-    if known is not None:
+    if (known := remembered(attributes)) is not None:
         return known.scene
     msg = f"{_OWNER}: the scene was the function {attributes['function']}; give it as scene="
     raise StudyError(msg)
@@ -288,30 +263,37 @@ def _system(scene: SweptScene, values: dict[Axis, Any]) -> System:
     return System(*assembly.parts.structural(), **options)
 
 
-def unscaled_motion(
-    given: object,
-    number: int,
+def unscaled_motions(
     attributes: Mapping[str, Any],
-    known: Study | None,
+    names: Iterable[str],
+    given: object = None,
     kept: Store | None = None,
-) -> GroundMotion | None:
-    """Give a motion of a sweep as it was before it was scaled."""
-    described = json.loads(attributes["motions_json"])[number]
-    if described is None:
-        return None
+    *,
+    needed: bool = True,
+) -> dict[str, GroundMotion | None]:
+    """Give motions of a sweep as they were before they were scaled; those that can be had."""
+    every = json.loads(attributes["motion_names"]), json.loads(attributes["motions_json"])
+    described = dict(zip(*every, strict=True))
+    study = remembered(attributes)
+    at_hand = {} if study is None else study.motions
     if kept is not None:
-        return list(kept.motions().values())[number]
-    if known is not None:
-        return list(known.motions.values())[number]
-    if described.get("constructor"):
-        return GroundMotion.from_dict(described)
-    found = () if given is None else named_motions(given).values()
-    for motion in found:
-        if motion.sha256 == described["sha256"]:
-            return motion
-    has = "is not among those given" if given is not None else "must be given, as motions="
-    msg = f"{_OWNER}: the record {described['name']!r} (sha256 {described['sha256'][:12]}...) {has}"
-    raise StudyError(msg)
+        at_hand = kept.motions()
+    records = {} if given is None else {one.sha256: one for one in named_motions(given).values()}
+    found: dict[str, GroundMotion | None] = {}
+    for name in names:
+        one = described[name]
+        if one is None or name in at_hand:
+            found[name] = None if one is None else at_hand[name]
+        elif one.get("constructor"):
+            found[name] = GroundMotion.from_dict(one)
+        elif one["sha256"] in records:
+            found[name] = records[one["sha256"]]
+        elif needed:
+            has = "must be given, as motions=" if given is None else "is not among those given"
+            digest = one["sha256"][:12]
+            msg = f"{_OWNER}: the record {one['name']!r} (sha256 {digest}...) {has}"
+            raise StudyError(msg)
+    return found
 
 
 def store_of(runs: xr.Dataset) -> Store | None:
@@ -327,26 +309,9 @@ def store_of(runs: xr.Dataset) -> Store | None:
 
 def known_motions(runs: xr.Dataset, given: object = None) -> dict[str, GroundMotion]:
     """Give those motions of a sweep that can be had, by their names, before they were scaled."""
-    attributes: Mapping[str, Any] = runs.attrs
-    known, kept = remembered(attributes), store_of(runs)
-    used = set(np.unique(runs[MOTION].to_numpy().astype(str)).tolist()) if MOTION in runs else None
-    found: dict[str, GroundMotion] = {}
-    for number, name in enumerate(json.loads(attributes["motion_names"])):
-        if used is not None and name not in used:
-            continue
-        try:
-            motion = unscaled_motion(given, number, attributes, known, kept)
-        except StudyError:  # a record that is not at hand
-            continue
-        if motion is not None:
-            found[name] = motion
-    return found
-
-
-def _options(described: dict[str, Any]) -> dict[str, Any]:
-    """Give the arguments of a run as simulate takes them."""
-    options = {name: value for name, value in described.items() if value is not None}
-    options["initial"] = InitialState.from_dict(options["initial"])
-    options["accuracy"] = Accuracy(**options["accuracy"])
-    options["points"] = options.get("points") or None
-    return options
+    names: list[str] = json.loads(runs.attrs["motion_names"])
+    if MOTION in runs:
+        used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
+        names = [name for name in names if name in used]
+    found = unscaled_motions(runs.attrs, names, given, store_of(runs), needed=False)
+    return {name: motion for name, motion in found.items() if motion is not None}

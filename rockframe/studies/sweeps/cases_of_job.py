@@ -11,9 +11,9 @@ from rockframe.motion import GroundMotion
 from rockframe.motion.operations.scaling import multiplied
 from rockframe.signals import Motion
 from rockframe.simulation.plan import Plan, fit_plan
-from rockframe.studies.sweeps.axes import OF_SCENES, Changes
+from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
 from rockframe.studies.sweeps.motions import FACTOR, motion_of_case
-from rockframe.studies.sweeps.scenes import SystemScene, started
+from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import SweepJob
 from rockframe.system.assembly import Assembly
 
@@ -29,13 +29,10 @@ class CasesOfJob:
         self._change = change
         axes = [(axis, each.tolist()) for axis, each in job.axes]
         self._numbers = {axis.name: each for axis, each in job.axes if each.dtype.kind == "f"}
-        self._scale = [(axis.name, each) for axis, each in axes if axis.changes is Changes.MOTION]
-        self._start = [
-            (axis.name, axis.parameter, each)
-            for axis, each in axes
-            if axis.changes is Changes.START
-        ]
-        self._of_scene = [(axis, each) for axis, each in axes if axis.changes in OF_SCENES]
+        self._scale, self._start, self._of_scene = (
+            [(axis, each) for axis, each in axes if axis.changes in kinds]
+            for kinds in ((Changes.MOTION,), (Changes.START,), OF_SCENES)
+        )
         self._scenes: dict[tuple[Any, ...], tuple[Assembly, list[str]]] = {}
         self._motion: tuple[object, GroundMotion | None] = (None, None)
 
@@ -55,7 +52,7 @@ class CasesOfJob:
 
     def start_key(self, case: int) -> tuple[float, ...]:
         """Give what cases of one start have in common, where it is not that of all."""
-        return tuple(each[case] for _, _, each in self._start)
+        return tuple(each[case] for _, each in self._start)
 
     def motion_key(self, case: int) -> tuple[int, float | None]:
         """Give what cases of one motion have in common, where it is not the scene's."""
@@ -81,14 +78,14 @@ class CasesOfJob:
         """Give what differs between cases that is no number, but a word or a count."""
         return tuple(each[case] for axis, each in self._of_scene if axis.name not in self._numbers)
 
-    def _of(self, name: str, values: list[Any], which: Places) -> Any:
+    def _of(self, axis: Axis, values: list[Any], which: Places) -> Any:
         """Give the value of an axis in many cases, which agree where it is no number."""
-        numbers = self._numbers.get(name)
+        numbers = self._numbers.get(axis.name)
         return values[which[0]] if numbers is None else Many(numbers[which])
 
     def scene_together(self, which: Places) -> tuple[Assembly, list[str]]:
         """Give the scene of many cases; what is warned of is the same in all."""
-        values = {axis: self._of(axis.name, each, which) for axis, each in self._of_scene}
+        values = {axis: self._of(axis, each, which) for axis, each in self._of_scene}
         with collected_warnings() as said:
             return self.job.scene.assembled(values), said
 
@@ -109,7 +106,7 @@ class CasesOfJob:
     def ground(self, case: int) -> Motion | None:
         """Give the motion of a case as numbers alone, which takes less."""
         motion = self.unscaled(case)
-        if motion is None or [name for name, _ in self._scale] != [FACTOR]:
+        if motion is None or [axis.name for axis, _ in self._scale] != [FACTOR]:
             found = self.motion(case)
             return None if found is None else found.si
         return multiplied(motion.si, self._scale[0][1][case])
@@ -122,22 +119,22 @@ class CasesOfJob:
         if motion is None:
             msg = "there is no motion to scale; give one"
             raise AssemblyError([msg])
-        ((name, values),) = self._scale
+        ((axis, values),) = self._scale
         key = (id(motion), values[case])
         if self._motion[0] != key:
-            self._motion = (key, motion_of_case(motion, name, values[case], self.job.period))
+            self._motion = (key, motion_of_case(motion, axis.name, values[case], self.job.period))
         return self._motion[1]
 
     def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
         """Give the scene of a case, what is warned of when it is assembled, and the plan."""
         system, said = self.scene(case)
-        start = {name: each[case] for _, name, each in self._start}
+        start = {axis.parameter: each[case] for axis, each in self._start}
         return system, said, self._plan(system, start, self.motion(case))
 
     def planned_together(self, which: Places) -> tuple[Assembly, list[str], Plan]:
         """Give the same of many cases, with the motion of the first before it is scaled."""
         system, said = self.scene_together(which)
-        start = {name: self._of(axis, each, which) for axis, name, each in self._start}
+        start = {axis.parameter: self._of(axis, each, which) for axis, each in self._start}
         return system, said, self._plan(system, start, self.unscaled(int(which[0])))
 
     def _plan(
@@ -146,7 +143,7 @@ class CasesOfJob:
         faults: list[str] = []
         arguments = self.job.arguments
         if start and isinstance(arguments.initial, InitialState):
-            arguments = replace(arguments, initial=started(arguments.initial, start))
+            arguments = replace(arguments, initial=arguments.initial.with_si(start))
         plan = fit_plan(arguments, system, motion, faults)
         if faults:
             raise AssemblyError(faults)

@@ -1,13 +1,17 @@
-"""The runs of a chunk: from a job to arrays of scalars."""
+"""The runs of a chunk: from a job to arrays of scalars.
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+Cases run together, side by side, or one by one; those of screened sweeps whose verdict is in doubt
+run again.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Any, Final
 
 import numpy as np
 
-from rockframe.errors import RockframeError
+from rockframe.errors import PLEASE_REPORT, RockframeError
 from rockframe.many import Places
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
@@ -15,14 +19,28 @@ from rockframe.results.variables.requests import POINT_TIME
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.studies import REPEATED, VERDICT_CHANGED
 from rockframe.results.variables.variable import TIME
-from rockframe.simulation.certify.second_look import Look
-from rockframe.simulation.run import NONE, in_motion, scalars_of
+from rockframe.simulation.certify.second_look import Look, is_sure, look_at, second_look
+from rockframe.simulation.plan import run_length
+from rockframe.simulation.run import NONE, in_motion, respond, scalars_of
 from rockframe.simulation.soundness import STILL_MOVING
+from rockframe.solve.accuracy import LEVELS, AccuracyLevel
 from rockframe.studies.sweeps.cases_of_job import CasesOfJob
-from rockframe.studies.sweeps.lanes import Failed, Finished, FinishedTogether
-from rockframe.studies.sweeps.runs import each_run, in_doubt, looks_of, repeated
+from rockframe.studies.sweeps.lanes import (
+    Failed,
+    Finished,
+    FinishedTogether,
+    run_side_by_side,
+    run_together,
+    when_compiled,
+)
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
 
+SCREEN: Final = "screen"
+"""What stands for the accuracy of screened sweeps."""
+FIRST: Final = AccuracyLevel.FAST
+"""Level at which all cases run."""
+AGAIN: Final = AccuracyLevel.STANDARD
+"""Level at which cases run again whose verdict is in doubt."""
 NO_TEXT: Final = 0
 """Place of the text that says nothing, in the texts of a chunk."""
 DRIVER: Final = "driver"
@@ -98,6 +116,64 @@ class CollectedResults:
         return CaseResults(self._status, self._scalars, self._histories, self._message, texts)
 
 
+def each_run(
+    cases: CasesOfJob, which: Sequence[int], stopped: Callable[[], bool], patience: float | None
+) -> Iterator[Finished | FinishedTogether | Failed]:
+    """Run cases."""
+    alone = set(which)
+    faults: dict[int, Exception] = {}
+    if patience is not None:
+        ready = when_compiled(patience)
+        for several in run_together(cases, which, stopped, ready):
+            if isinstance(several, Finished):
+                alone.discard(several.case)
+            else:
+                alone.difference_update(several.cases.tolist())
+            yield several
+        for found in run_side_by_side(cases, sorted(alone), stopped, ready):
+            if isinstance(found, Failed):
+                faults[found.case] = found.problem
+            else:
+                alone.discard(found.case)
+                yield found
+    for case in sorted(alone):
+        if stopped():
+            return
+        try:
+            system, said, plan = cases.planned(case)
+            response = respond(system, plan)
+            if (fault := faults.get(case)) is not None:  # that it alone does not have
+                words = f"its run beside others failed ({type(fault).__name__}: {fault})"
+                said = [*said, f"{words}, and it ran alone: {PLEASE_REPORT}"]
+            yield Finished(case, system, response.trajectory, said, response)
+        except Exception as problem:  # whatever it is, it is this case's alone
+            yield Failed(case, problem)
+
+
+def looks_of(
+    cases: CasesOfJob, run: Finished | FinishedTogether | Failed
+) -> list[tuple[int, Look]]:
+    """Take from runs what tells of the verdict of each case."""
+    if isinstance(run, FinishedTogether):
+        return run.looks()
+    if isinstance(run, Failed):
+        return []
+    duration = run_length(cases.job.arguments, cases.unscaled(run.case))
+    return [(run.case, look_at(run.system.setting, run.summary, duration))]
+
+
+def in_doubt(
+    cases: CasesOfJob, first: Mapping[int, Look], stopped: Callable[[], bool]
+) -> list[int]:
+    """Run cases a second time, and give those whose verdict is not sure."""
+    doubtful = set(first)
+    for run in each_run(cases.changed(second_look), sorted(first), stopped, cases.job.patience):
+        for case, look in looks_of(cases, run):
+            if is_sure(first[case], look):
+                doubtful.discard(case)
+    return sorted(doubtful)
+
+
 def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> CaseResults | None:
     """Run the cases of a job: side by side where they can, else one after the other.
 
@@ -117,26 +193,23 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
         patience = None
         if job.patience is not None and len(doubtful) >= FEWEST_IN_LANES:
             patience = job.patience * len(doubtful) / len(cases)
-        for run in each_run(cases.changed(repeated), doubtful, stopped, patience):
+        again = cases.changed(lambda _, plan: replace(plan, accuracy=LEVELS[AGAIN]))
+        for run in each_run(again, doubtful, stopped, patience):
             collected.put(run)
             collected.compare(looks, looks_of(cases, run))
     return None if stopped() else collected.rows()
 
 
-def _cautions_and_scalars(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
-    """Give what is to be warned of in a run, and its scalars."""
+def _told(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
+    """Give what is to be warned of in a run, and its scalars, with how it was run."""
     if run.response is not None:
-        return [text for _, text in run.response.cautions()], run.response.scalars
+        driver = Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
+        cautions = [text for _, text in run.response.cautions()]
+        return cautions, {DRIVER: driver, **run.response.scalars}
     missing: list[str] = []
     scalars = scalars_of(run.system, run.summary, missing)
-    moving = in_motion(run.system, run.summary, missing)
-    return [*([STILL_MOVING] if moving else []), *missing], scalars
-
-
-def _driver(run: Finished) -> Driver:
-    if run.response is None:
-        return Driver.IN_LANES
-    return Driver.AS_PYTHON if run.response.trajectory.as_python else Driver.ALONE
+    moving = [STILL_MOVING] if in_motion(run.system, run.summary, missing) else []
+    return [*moving, *missing], {DRIVER: Driver.IN_LANES, **scalars}
 
 
 class _Collector(CollectedResults):
@@ -163,13 +236,13 @@ class _Collector(CollectedResults):
         case, response = run.case, run.response
         if self._status[case] != RunStatus.NOT_RUN:  # of a first run
             self._clear(case)
-        cautions, scalars = _cautions_and_scalars(run)
+        cautions, scalars = _told(run)
         self._say(case, "; ".join([*run.said, *cautions]) or NONE)
         self._status[case] = run.summary.status
         if run.summary.overturned is None:
             self._clear(case)
             return
-        self._put_scalars(case, {DRIVER: _driver(run), **scalars})
+        self._put_scalars(case, scalars)
         if self._kept is not None and response is not None and response.answers.values:
             self._put_histories(case, response.answers.values, self._kept)
 

@@ -34,34 +34,22 @@ class ProgressBar(Protocol):
 
     def name(self, part: str) -> None:
         """Say which part of the whole comes next; how many there will be is not known."""
-        ...
 
     def expect(self, count: int, done: int = 0) -> None:
         """Add cases to the total, of which some were done before."""
-        ...
 
     def update(self, count: int) -> None:
         """Add cases that are done."""
-        ...
-
-
-class _Silent:
-    """A bar that shows nothing."""
-
-    def name(self, part: str) -> None:
-        """Show nothing."""
-
-    def expect(self, count: int, done: int = 0) -> None:
-        """Show nothing."""
-
-    def update(self, count: int) -> None:
-        """Show nothing."""
 
     def close(self) -> None:
-        """Show nothing."""
+        """Show the whole, which grows no longer."""
 
 
-class _Bar:
+class _Silent(ProgressBar):
+    """A bar that shows nothing."""
+
+
+class _Bar(ProgressBar):
     """A bar of tqdm, begun when the first cases are known."""
 
     def __init__(self, kind: Any, owner: str, unit: str, delay: float) -> None:
@@ -71,13 +59,11 @@ class _Bar:
         self._bar: Any = None
 
     def name(self, part: str) -> None:
-        """Say which part comes next, and that the total grows."""
         self._words = f"{self._owner}, {part} ({_GROWS})"
         if self._bar is not None:
             self._bar.set_description_str(self._words, refresh=False)
 
     def expect(self, count: int, done: int = 0) -> None:
-        """Begin the bar, or let its total grow."""
         if self._bar is None:
             self._bar = self._kind(
                 total=count, initial=done, unit=self._unit, desc=self._words, delay=self._delay
@@ -92,11 +78,9 @@ class _Bar:
             widgets.children[1].max = self._bar.total
 
     def update(self, count: int) -> None:
-        """Add cases that are done."""
         self._bar.update(count)
 
     def close(self) -> None:
-        """Show the whole, which grows no longer."""
         if self._bar is not None:
             self._bar.set_description_str(self._owner, refresh=False)
             self._bar.close()
@@ -112,7 +96,7 @@ def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[Progre
         yield bar
 
 
-def _made(given: object, owner: str, unit: str) -> _Silent | _Bar:
+def _made(given: object, owner: str, unit: str) -> ProgressBar:
     if given is not None and not isinstance(given, bool):
         msg = f"{owner}: progress must be True, False or None, got {shown(given)}"
         raise ComponentError(msg)
@@ -259,17 +243,11 @@ class _Caller(Executor):
         return done
 
 
-def _has_threads() -> bool:
+@contextmanager
+def _own_threads() -> Generator[Executor]:
     try:
         Thread(target=int).start()
     except RuntimeError:  # as in a browser
-        return False
-    return True
-
-
-@contextmanager
-def _own_threads() -> Generator[Executor]:
-    if not _has_threads():
         yield _Caller()
         return
     with ThreadPoolExecutor(worker_count(), thread_name_prefix="rockframe") as pool:

@@ -10,7 +10,7 @@ import numpy as np
 from rockframe.errors import StudyError
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import MOTION
-from rockframe.studies.sweeps.axes import Chunk, Grid
+from rockframe.studies.sweeps.axes import Chunk
 from rockframe.studies.sweeps.chunk import CaseResults, CollectedResults
 from rockframe.studies.sweeps.identity import difference
 from rockframe.studies.sweeps.scenes import SystemScene
@@ -79,10 +79,15 @@ class _Source:
             )
             raise StudyError(msg)
         self._grid = self.kept.labels().grid
-        for grid in (self._grid, study.grid):
-            _check_grid(grid, study, folder)
-        kinds = [{axis.name: axis.to_dict() for axis in grid.axes}
-                 for grid in (self._grid, study.grid)]  # fmt: skip
+        grids = self._grid, study.grid
+        tables = any(grid.columns or grid.motion_column is not None for grid in grids)
+        if tables or not isinstance(study.scene, SystemScene):
+            msg = (
+                f"known: from {folder} cases can be taken where both studies are grids of one "
+                "system: of a function or a table nothing tells which cases are the same"
+            )
+            raise StudyError(msg)
+        kinds = [{axis.name: axis.to_dict() for axis in grid.axes} for grid in grids]
         if kinds[0] != kinds[1]:
             msg = (
                 f"known: {folder} holds a study over {', '.join(kinds[0])}; expected the axes "
@@ -98,22 +103,12 @@ class _Source:
     def numbers(self, places: Mapping[str, Generic]) -> Generic:
         """Give the numbers that cases have here, by their places in the other study."""
         each = [self._places[dim][places[dim]] for dim in self._grid.order]
-        shape = [self._grid.sizes[dim] for dim in self._grid.order]
-        found = np.ravel_multi_index([np.maximum(one, 0) for one in each], shape)
+        found = np.ravel_multi_index([np.maximum(one, 0) for one in each], self._grid.shape)
         found[np.any(np.array(each) == _NOBODY, axis=0)] = _NOBODY
         for old in np.unique(found[found != _NOBODY] // self.kept.chunk).tolist():
             if not self.kept.has(self.kept.chunk_at(old)):  # not yet run
                 found[found // self.kept.chunk == old] = _NOBODY
         return found
-
-
-def _check_grid(grid: Grid, study: Study, folder: Path) -> None:
-    if not isinstance(study.scene, SystemScene) or grid.columns or grid.motion_column is not None:
-        msg = (
-            f"known: from {folder} cases can be taken where both studies are grids of one system: "
-            "of a function or a table nothing tells which cases are the same"
-        )
-        raise StudyError(msg)
 
 
 def _places(wanted: list[Any], there: list[Any]) -> Generic:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -11,21 +11,15 @@ import xarray as xr
 from rockframe.results.joining import CASE_COUNT
 from rockframe.results.outcome import Generic
 from rockframe.results.points import BodyPoint, point_labels
-from rockframe.results.schema import (
-    SCHEMA,
-    build_dataset,
-    with_variables,
-    without_fill_values,
-)
+from rockframe.results.schema import SCHEMA, build_dataset, with_variables, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT_PEAKS
 from rockframe.results.variables.runs import EVENTS_AND_SCALARS
 from rockframe.results.variables.studies import CASE, MESSAGE, MOTION
 from rockframe.results.variables.variable import TIME
 from rockframe.studies.sweeps.axes import Grid
-from rockframe.studies.sweeps.chunk import DRIVER, CaseResults, CollectedResults, Driver
-from rockframe.studies.sweeps.runs import SCREEN
-from rockframe.studies.sweeps.scenes import FunctionScene, SystemScene
+from rockframe.studies.sweeps.chunk import DRIVER, SCREEN, CaseResults, CollectedResults, Driver
+from rockframe.studies.sweeps.scenes import SystemScene
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.studies.sweeps.words import SCREENED, summed_up, whole_verdict
 
@@ -74,7 +68,7 @@ def sweep_labels(study: Study) -> Labels:
     if isinstance(scene, SystemScene):
         attributes["model"] = scene.assembly.setting.model
         attributes["system_json"] = scene.assembly.json
-    elif isinstance(scene, FunctionScene):
+    else:
         attributes["function"] = scene.name
     return Labels(grid, tuple(study.motions), study.histories, arguments.points, attributes)
 
@@ -82,7 +76,11 @@ def sweep_labels(study: Study) -> Labels:
 def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) -> xr.Dataset:
     """Label what has been found."""
     grid = labels.grid
-    rows = _joined(grid.count, found)
+    collected = CollectedResults(grid.count)  # in the order of running, with gaps
+    for cases, each in found:
+        collected.put_rows(slice(cases.start, cases.stop), each)
+    rows = collected.rows()
+    few, message = summed_up(rows.texts, rows.message)
     gaps = np.full((grid.count, len(labels.points)), np.nan)
     scalars = {
         name: gaps if SCHEMA[name].dims else np.full(grid.count, np.nan)
@@ -95,7 +93,7 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
     values = {name: grid.arranged(scalars.pop(name)) for name in SCHEMA if name in scalars}
     values["status"] = grid.arranged(rows.status)
     # as objects, each text is there once
-    texts = np.array(rows.texts, dtype=object)[grid.arranged(rows.message)]
+    texts = np.array(few, dtype=object)[grid.arranged(message)]
     said = xr.Variable(tuple(grid.sizes), texts, SCHEMA[MESSAGE].attributes())
     runs = build_dataset(values, {}, over=tuple(grid.sizes))
     attributes = {
@@ -140,50 +138,29 @@ def around_cases(labels: Labels, attributes: Mapping[str, str | float | int]) ->
 def with_coordinates(dataset: xr.Dataset, labels: Labels, message: xr.Variable) -> xr.Dataset:
     """Add the axes, and what is said of the cases."""
     dataset = dataset.assign_coords({**_coordinates(labels), MESSAGE: message})
-    return without_fill_values(dataset.assign_coords(_of_bodies(labels, dataset.sizes)))
-
-
-def _joined(count: int, found: Iterable[tuple[range, CaseResults]]) -> CaseResults:
-    """Put chunks together, in the order of running, with gaps where there are none."""
-    collected = CollectedResults(count)
-    for cases, rows in found:
-        collected.put_rows(slice(cases.start, cases.stop), rows)
-    whole = collected.rows()
-    few, message = summed_up(whole.texts, whole.message)
-    return replace(whole, message=message, texts=few)
+    # the numbers of bodies, and the names of restrainers, that results are of
+    found: dict[str, Any] = {}
+    if (count := dataset.sizes.get(BODY[0])) is not None:
+        found[BODY[0]] = 1 + np.arange(count)
+    if (count := dataset.sizes.get(RESTRAINER[0])) is not None:
+        names = json.loads(str(labels.attributes.get("restrainer_names", "[]")))
+        numbers = [str(k + 1) for k in range(count)]
+        found[RESTRAINER[0]] = np.array(names if len(names) == count else numbers, dtype=object)
+    return without_fill_values(with_variables(dataset, found))
 
 
 def _coordinates(labels: Labels) -> dict[str, xr.Variable]:
     grid = labels.grid
-    found = {
-        axis.name: xr.Variable(axis.name, _labels(axis.values), axis.attributes())
-        for axis in grid.axes
-    }
-    found |= {
-        axis.name: xr.Variable(CASE, _labels(axis.values), axis.attributes())
-        for axis in grid.columns
-    }
+    found: dict[str, xr.Variable] = {}
+    for axis in (*grid.axes, *grid.columns):
+        words = axis.values.dtype.kind == "U"
+        values = axis.values.astype(object) if words else axis.values
+        dim = axis.name if axis in grid.axes else CASE
+        found[axis.name] = xr.Variable(dim, values, axis.attributes())
     if grid.motion_column is not None:
         names = np.array(labels.motions, dtype=object)[grid.motion_column]
         found[MOTION] = xr.Variable(CASE, names, SCHEMA[MOTION].attributes())
     return found
-
-
-def _of_bodies(labels: Labels, sizes: Mapping[Any, int]) -> Mapping[Any, xr.DataArray]:
-    """Give the numbers of bodies, and the names of restrainers, that results are of."""
-    found: dict[str, Any] = {}
-    if BODY[0] in sizes:
-        found[BODY[0]] = 1 + np.arange(sizes[BODY[0]])
-    if RESTRAINER[0] in sizes:
-        count = sizes[RESTRAINER[0]]
-        names = json.loads(str(labels.attributes.get("restrainer_names", "[]")))
-        numbers = [str(k + 1) for k in range(count)]
-        found[RESTRAINER[0]] = np.array(names if len(names) == count else numbers, dtype=object)
-    return build_dataset(found, {}).coords
-
-
-def _labels(values: Generic) -> Generic:
-    return values.astype(object) if values.dtype.kind == "U" else values
 
 
 def _driver(found: Generic) -> str:

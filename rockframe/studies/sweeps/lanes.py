@@ -4,7 +4,7 @@ What is worked out for many cases at once stands in arrays over the cases; it is
 code of a single case, :mod:`rockframe.many`.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -72,28 +72,39 @@ class LaneScene:
 class _Group:
     """Cases whose systems are of one kind."""
 
-    scenes: list[LaneScene] = field(default_factory=list)
-    motions: list[Motion | None] = field(default_factory=list)
-    cases: list[int] = field(default_factory=list)
-    scene_of: list[int] = field(default_factory=list)
-    motion_of: list[int] = field(default_factory=list)
-    _scene_places: dict[int, int] = field(default_factory=dict)
-    _motion_places: dict[Any, int] = field(default_factory=dict)
+    scenes: dict[int, LaneScene] = field(default_factory=dict[int, LaneScene])
+    motions: dict[Any, Motion | None] = field(default_factory=dict[Any, Motion | None])
+    # numbers of cases, with the keys of their scenes and motions
+    cases: list[tuple[int, int, Any]] = field(default_factory=list[tuple[int, int, Any]])
 
     def add(
-        self, case: int, scene: LaneScene, key: Any, motion: Callable[[], Motion | None]
+        self, case: int, scene: LaneScene, key: Any, ground: Callable[[int], Motion | None]
     ) -> None:
         """Take a case up."""
-        place = self._scene_places.setdefault(id(scene), len(self.scenes))
-        if place == len(self.scenes):
-            self.scenes.append(scene)
-        if key not in self._motion_places:
-            found = motion()  # which may fail
-            self._motion_places[key] = len(self.motions)
-            self.motions.append(found)
-        self.cases.append(case)
-        self.scene_of.append(place)
-        self.motion_of.append(self._motion_places[key])
+        if key not in self.motions:
+            self.motions[key] = ground(case)  # which may fail
+        self.scenes.setdefault(id(scene), scene)
+        self.cases.append((case, id(scene), key))
+
+    def run(self) -> Iterator[Finished]:
+        """Run them, and give those of which there is nothing to be warned."""
+        scene_of, motion_of = (
+            np.array([places[one[k]] for one in self.cases])
+            for k, places in ((1, _places(self.scenes)), (2, _places(self.motions)))
+        )
+        found = integrate_lanes(
+            [scene.run for scene in self.scenes.values()], [*self.motions.values()],
+            scene_of, motion_of,
+        )  # fmt: skip
+        for k, (case, number, _) in enumerate(self.cases):
+            scene = self.scenes[number]
+            summary = found.summary(k, scene.run.begun.substeps)
+            if has_no_cautions(scene.system, summary):
+                yield Finished(case, scene.system, summary, scene.said)
+
+
+def _places(keys: Iterable[Any]) -> dict[Any, int]:
+    return {key: place for place, key in enumerate(keys)}
 
 
 def when_compiled(patience: float) -> Callable[[LaneScene], bool]:
@@ -122,7 +133,15 @@ def run_side_by_side(
         groups: dict[Any, _Group] = {}
         for case in which[begin : begin + TOGETHER]:
             try:
-                _take_up(cases, case, scenes, groups, ready)
+                key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
+                if key not in scenes:
+                    scenes[key] = None  # unless it can be prepared
+                    found = prepared(*cases.planned(case))
+                    scenes[key] = found if found is not None and ready(found) else None
+                if (scene := scenes[key]) is not None:
+                    moved = (id(cases.unscaled(case)), cases.motion_key(case)[1])
+                    group = groups.setdefault(scene.kind, _Group())
+                    group.add(case, scene, moved, cases.ground)
             except RockframeError:  # which is told of where the case runs alone
                 continue
             except Exception as problem:
@@ -130,31 +149,7 @@ def run_side_by_side(
         for group in groups.values():
             if stopped():
                 return
-            yield from _run(group)
-
-
-def _take_up(
-    cases: CasesOfJob,
-    case: int,
-    scenes: dict[Any, LaneScene | None],
-    groups: dict[Any, _Group],
-    ready: Callable[[LaneScene], bool],
-) -> None:
-    key = (cases.scene_key(case), cases.start_key(case), cases.length_key(case))
-    if key not in scenes:
-        scenes[key] = None  # unless it can be prepared
-        found = prepared(*cases.planned(case))
-        scenes[key] = found if found is not None and ready(found) else None
-    scene = scenes[key]
-    if scene is None:
-        return
-
-    def motion() -> Motion | None:
-        found = cases.motion(case)
-        return None if found is None else found.si
-
-    moved = (id(cases.unscaled(case)), cases.motion_key(case)[1])
-    groups.setdefault(scene.kind, _Group()).add(case, scene, moved, motion)
+            yield from group.run()
 
 
 def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
@@ -171,18 +166,6 @@ def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
     )  # fmt: skip
     run = LaneRun(system.model, begin)
     return LaneScene(system, said, run, kind_of(system.model))
-
-
-def _run(group: _Group) -> Iterator[Finished]:
-    found = integrate_lanes(
-        [scene.run for scene in group.scenes], group.motions,
-        np.array(group.scene_of), np.array(group.motion_of),
-    )  # fmt: skip
-    for k, case in enumerate(group.cases):
-        scene = group.scenes[group.scene_of[k]]
-        summary = found.summary(k, scene.run.begun.substeps)
-        if has_no_cautions(scene.system, summary):
-            yield Finished(case, scene.system, summary, scene.said)
 
 
 @dataclass(frozen=True)
@@ -225,8 +208,13 @@ def run_together(
     if not cases.go_together:
         return
     kinds: dict[Any, list[_Batch]] = {}
-    for members in _alike(cases, which):
-        for _, group in each_way(lambda some: _assembled(cases, some), members):
+    # what is no number in their scenes, and the length of their motions, is the same in all
+    alike: dict[Any, list[int]] = {}
+    for case in which:
+        alike.setdefault((cases.word_key(case), cases.length_key(case)), []).append(case)
+    for members in alike.values():
+        places = np.array(members, dtype=np.intp)
+        for _, group in each_way(lambda some: _assembled(cases, some), places):
             if ready(group.one):
                 kinds.setdefault(group.one.kind, []).append(group)
     for groups in kinds.values():
@@ -245,14 +233,6 @@ def run_together(
             found.append(outcomes)
         here = np.concatenate(ran)
         yield from _told(cases, groups, group_of[here], every[here], joined(found))
-
-
-def _alike(cases: CasesOfJob, which: Sequence[int]) -> list[Places]:
-    """Divide cases by what is no number in their scenes, and by the length of their motions."""
-    found: dict[Any, list[int]] = {}
-    for case in which:
-        found.setdefault((cases.word_key(case), cases.length_key(case)), []).append(case)
-    return [np.array(members, dtype=np.intp) for members in found.values()]
 
 
 def _assembled(cases: CasesOfJob, some: Places) -> _Batch:
@@ -291,11 +271,7 @@ def _integrated(
 
 
 def _told(
-    cases: CasesOfJob,
-    groups: Sequence[_Batch],
-    group_of: Places,
-    ran: Places,
-    outcomes: Outcomes,
+    cases: CasesOfJob, groups: Sequence[_Batch], group_of: Places, ran: Places, outcomes: Outcomes
 ) -> Iterator[Finished | FinishedTogether]:
     """Tell what became of runs: of those together that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes

@@ -15,14 +15,7 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import (
-    RecordWarning,
-    RockframeError,
-    SolverWarning,
-    StudyError,
-    shown,
-    warn,
-)
+from rockframe.errors import RecordWarning, RockframeError, SolverWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import GROUPS, SCHEMA
@@ -46,13 +39,8 @@ from rockframe.simulation.plan import (
     usual_output_step,
 )
 from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid, faults_of_values
-from rockframe.studies.sweeps.motions import (
-    NO_MOTION,
-    OF_THE_SCENE,
-    SPECTRAL,
-    motion_number,
-)
-from rockframe.studies.sweeps.runs import AGAIN, FIRST, SCREEN
+from rockframe.studies.sweeps.chunk import AGAIN, FIRST, SCREEN
+from rockframe.studies.sweeps.motions import NO_MOTION, OF_THE_SCENE, SPECTRAL, motion_number
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
     SweptScene,
@@ -161,7 +149,7 @@ def kept_histories(
         raise StudyError(msg)
     step = arguments.output_step
     if step is None:
-        steps = _time_steps(motions)
+        steps = {usual_output_step(motion) for motion in motions.values()}
         step = min(steps)
         if len(steps) > 1:
             msg = (
@@ -174,31 +162,16 @@ def kept_histories(
     return Histories(names or None, step, 1 + int(longest / step * (1.0 + 1e-12)))
 
 
-def _at_common_times(
-    arguments: RunRequest, histories: Histories | None, motions: Mapping[str, GroundMotion | None]
-) -> RunRequest:
-    """Have runs whose histories would be of other times give those that are kept."""
-    if histories is None or len(_time_steps(motions)) == 1:
-        return arguments
-    return replace(arguments, output_step=histories.step)
-
-
-def _time_steps(motions: Mapping[str, GroundMotion | None]) -> set[float]:
-    """Give the spacings that histories have where none is asked for."""
-    return {usual_output_step(motion) for motion in motions.values()}
-
-
 Read = TypeVar("Read")
 
-_RESULTS: Final = frozenset(
+_TAKEN: Final = {*TIME, *EVENT} | {
     row.name
     for table in (
         HISTORIES, ENERGY_HISTORIES, ACCELERATIONS, REACTIONS, OTHERS, EVENTS_AND_SCALARS,
-        FORCE_SCALARS, POINTS, POINT_PEAKS,
+        FORCE_SCALARS, POINTS, POINT_PEAKS, SWEEP,
     )
     for row in table
-)  # fmt: skip
-_TAKEN: Final = _RESULTS | {*TIME, *EVENT, *(row.name for row in SWEEP)}
+}  # fmt: skip
 """Names that are not left for axes."""
 
 
@@ -241,13 +214,17 @@ def plan_study(
         asked["accuracy"] = FIRST
     outputs = asked.setdefault("outputs", None)
     arguments = tried(lambda: read_arguments(faults, **asked), None)
-    none: dict[str, GroundMotion | None] = {NO_MOTION: None}
-    given = tried(lambda: _motions(motions, made), none)
+    nothing = OF_THE_SCENE if isinstance(made, FunctionScene) else NO_MOTION
+    none: dict[str, GroundMotion | None] = {nothing: None}
+    given = {**tried(lambda: motions_of_study(motions, made) or none, none)}
     of_case: Generic | None = None
     table = tried(lambda: _table(cases), {})
     if MOTION in table:
-        column = table.pop(MOTION)
-        of_case = tried(lambda: _motion_column(column, list(given)), None)
+        column, names = np.asarray(table.pop(MOTION)).tolist(), list(given)
+        of_case = tried(
+            lambda: np.array([motion_number(one, names, owner="cases") for one in column], np.intp),
+            None,
+        )
     rows = _read(made, table, faults, tried, repeats=True)
     grid_axes = _read(made, axes, faults, tried, repeats=False)
     faults += _twice(rows, grid_axes)
@@ -272,9 +249,12 @@ def plan_study(
     grid = Grid(tuple(grid_axes), tuple(rows), len(given), of_case)
     if not 0 < grid.count <= MOST_CASES:
         faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
-    faults += _without_length(made, given, arguments)
+    if isinstance(made, SystemScene) and arguments.duration is None and None in given.values():
+        faults.append("nothing to simulate: give motions, or a duration for a still ground")
     histories = tried(lambda: kept_histories(made, given, arguments, outputs), None)
-    of_runs = _at_common_times(arguments, histories, given)
+    of_runs = arguments
+    if histories is not None and len({*map(usual_output_step, given.values())}) > 1:
+        of_runs = replace(arguments, output_step=histories.step)  # all at the times that are kept
     numbers = numbers_of_case(of_runs, histories, screened=screened)
     way_out = _LAZILY if kept else _remedies(of_runs, histories, may_be_kept=kept is False)
     too_large = check_memory(numbers, grid.count, way_out, owner=OWNER)
@@ -315,13 +295,6 @@ def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept
     return f"{', '.join(ways[:-1])} or {ways[-1]}" if len(ways) > 1 else ways[0]
 
 
-def _motions(given: object, scene: SweptScene) -> dict[str, GroundMotion | None]:
-    named = motions_of_study(given, scene)
-    if named is not None:
-        return dict(named)
-    return {OF_THE_SCENE if isinstance(scene, FunctionScene) else NO_MOTION: None}
-
-
 def _table(cases: object) -> dict[str, object]:
     """Read the table of cases: its columns by their names, with the units in their heads."""
     if cases is None:
@@ -341,12 +314,6 @@ def _table(cases: object) -> dict[str, object]:
             raise StudyError(msg)
         table[name] = (np.asarray(values), unit.removesuffix("]")) if bracket else values
     return table
-
-
-def _motion_column(column: Any, names: list[str]) -> Generic:
-    """Read which motion each case has, by name or by number."""
-    wanted = np.asarray(column).tolist()
-    return np.array([motion_number(one, names, owner="cases") for one in wanted], dtype=np.intp)
 
 
 def _read(
@@ -414,12 +381,3 @@ def _period(given: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
     if given is None:
         return None
     return to_si(given, PERIOD, owner=OWNER, name="period", condition=POSITIVE)
-
-
-def _without_length(
-    scene: SweptScene, motions: Mapping[str, GroundMotion | None], arguments: RunRequest
-) -> list[str]:
-    none = [motion for motion in motions.values() if motion is None]
-    if none and arguments.duration is None and not isinstance(scene, FunctionScene):
-        return ["nothing to simulate: give motions, or a duration for a still ground"]
-    return []

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, Final, Protocol, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -43,11 +43,6 @@ STARTS: Final = {
 """Axes by their names: which parameter of an initial state each changes, and its kind."""
 
 
-def started(initial: InitialState, values: Mapping[str, float]) -> InitialState:
-    """Give an initial state with the values of a case in the place of its own."""
-    return initial.with_si(values) if values else initial
-
-
 Values: TypeAlias = Mapping[Axis, Any]
 """Of one case, by the axes that change the scene."""
 
@@ -59,22 +54,6 @@ _CHOICES: Final[dict[str, tuple[type[StrEnum], str]]] = {
 }
 _OPTIONS: Final = (*_CHOICES, *MEASURED)
 _SYSTEM: Final = System.__name__
-
-
-class SweptScene(Protocol):
-    """What is simulated at the values of a case."""
-
-    def axis(self, name: str, given: object) -> Axis:
-        """Read an axis: what it changes, and its values."""
-        ...
-
-    def faults(self, axes: Iterable[Axis]) -> list[str]:
-        """Tell which axes do not go together."""
-        ...
-
-    def assembled(self, values: Values) -> Assembly:
-        """Give the scene of a case; warn as :class:`rockframe.System` does."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -174,27 +153,26 @@ class SystemScene:
         return [
             (slot, part, part.varied()[parameter])
             for slot, part in parts.items()
-            if parameter in part.varied() and kind in ("", *_names(part), *self._labels(part))
+            if parameter in part.varied() and kind in ("", *self._called(part))
         ]
 
-    def _labels(self, part: Component) -> tuple[str, ...]:
-        """Give what axes call a link beside its class: as results do, in one word; none of others.
+    def _called(self, part: Component) -> list[str]:
+        """Give what axes may call a part: its class, and those that it is derived from.
 
-        As an axis has it, "restrainer 1" is restrainer_1.
+        A link first what results call it, in one word: "restrainer 1" is restrainer_1.
         """
         links = self.assembly.parts.links
-        labels = link_labels(links)
-        own = next((name for one, name in zip(links, labels, strict=True) if one is part), None)
-        return () if own is None else tuple(dict.fromkeys([re.sub(r"\W", "_", own), own]))
+        labels = zip(links, link_labels(links), strict=True)
+        own = [name for one, name in labels if one is part]
+        kinds = [kind for kind in type(part).__mro__ if issubclass(kind, Component)]
+        words = (re.sub(r"\W", "_", name) for name in own)
+        return [*words, *own, *(kind.__name__ for kind in kinds if kind != Component)]
 
     def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
         if having:
             kinds = [type(part).__name__ for part in having]
             if len(set(kinds)) < len(kinds):  # several links
-                kinds = [
-                    next(iter(self._labels(part)), kind)
-                    for part, kind in zip(having, kinds, strict=True)
-                ]
+                kinds = [self._called(part)[0] for part in having]
             ways = " or ".join(f"'{kind}.{parameter}'" for kind in kinds)
             return (
                 f"axis {name!r} is a parameter of {' and '.join(kinds)}; name one, in "
@@ -202,7 +180,7 @@ class SystemScene:
             )
         parts = self._parts().values()
         known = [
-            f"{next(iter(self._labels(part)), type(part).__name__)}.{parameter}"
+            f"{self._called(part)[0]}.{parameter}"
             for part in parts
             if "." in name and parameter in part.varied()
         ]
@@ -228,35 +206,41 @@ class FunctionScene:
 
     def axis(self, name: str, given: object) -> Axis:
         """Read an axis that names an argument, or else the motion's scale."""
-        arguments = self._arguments()
-        name = name if name in arguments else full_name(name)
-        of_run = None if name in arguments else _of_run(name, given)
-        if of_run is not None:
-            return of_run
+        kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+        argument = inspect.signature(self.function).parameters.get(name)
+        if argument is None or argument.kind not in kinds:
+            name = full_name(name)
+            of_run = _of_run(name, given)
+            if of_run is not None:
+                return of_run
         values, unit = free_values(given, name)
         return Axis(name, values, unit, name.replace("_", " "), Changes.ARGUMENT, name)
 
     def faults(self, axes: Iterable[Axis]) -> list[str]:
         """Tell whether the function takes the axes, and all that it needs is among them."""
         given = {axis.name: None for axis in axes if axis.changes is Changes.ARGUMENT}
+        signature = inspect.signature(self.function)
         try:
-            self._signature().bind(**given)
+            signature.bind(**given)
         except TypeError as problem:
-            unknown = [name for name in given if name not in self._signature().parameters]
+            unknown = [name for name in given if name not in signature.parameters]
             question = suggestion(unknown[0], OF_A_SWEEP).removesuffix(".") if unknown else ""
             return [f"the axes do not fit the arguments of {self.name}: {problem}{question}"]
         return []
 
     def assembled(self, values: Values) -> Assembly:
         """Call the function."""
-        found = self.system(values)
-        return found.assembly
+        return self.system(values).assembly
 
     def system(self, values: Values) -> System:
         """Call the function; give its system."""
-        found = self.function(
-            **{axis.name: _with_unit(value, axis.unit) for axis, value in values.items()}
-        )
+        given = {
+            axis.name: value
+            if axis.unit in (None, Unit.ONE)
+            else quantity(value, Measure("a quantity", Unit(axis.unit), ""))
+            for axis, value in values.items()
+        }
+        found = self.function(**given)
         if not isinstance(found, System):
             msg = f"{self.name} must return a System, got {shown(found)}"
             raise StudyError(msg)
@@ -267,12 +251,9 @@ class FunctionScene:
         """Name of the function."""
         return name_of(self.function)
 
-    def _signature(self) -> inspect.Signature:
-        return inspect.signature(self.function)
 
-    def _arguments(self) -> set[str]:
-        kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-        return {n for n, one in self._signature().parameters.items() if one.kind in kinds}
+SweptScene: TypeAlias = SystemScene | FunctionScene
+"""What is simulated at the values of a case."""
 
 
 def scene_of(given: object) -> SweptScene:
@@ -287,13 +268,18 @@ def scene_of(given: object) -> SweptScene:
 
 def motions_of_study(given: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
     """Read the argument ``motions``: unless given, the one of the scene; None where it has none."""
-    own = own_motion(scene) if given is None else given
-    return None if own is None else named_motions(own)
+    if given is None and isinstance(scene, SystemScene):
+        given = scene.assembly.parts.motion
+    return None if given is None else named_motions(given)
 
 
-def own_motion(scene: SweptScene) -> GroundMotion | None:
-    """Give the motion among a system's parts."""
-    return scene.assembly.parts.motion if isinstance(scene, SystemScene) else None
+def needed_motions(given: object, scene: SweptScene, *, owner: str) -> dict[str, GroundMotion]:
+    """Read the same, and refuse a scene that has none where there are none."""
+    named = motions_of_study(given, scene)
+    if named is None:
+        msg = f"{owner}: there is no motion; give one"
+        raise StudyError(msg)
+    return named
 
 
 def _left_behind(part: Component, behind: tuple[str, ...], given: Mapping[str, str]) -> str:
@@ -370,15 +356,3 @@ def _caution(one: Declared[Any, Any], values: Generic, owner: str) -> None:
         if words is not None:
             warn(f"{OWNER}: {owner}: {words}", ModelWarning)
             return
-
-
-def _names(part: Component) -> list[str]:
-    """Give the names of a part's class, and of the classes that it is derived from."""
-    kinds = type(part).__mro__
-    return [kind.__name__ for kind in kinds if issubclass(kind, Component) and kind != Component]
-
-
-def _with_unit(value: Any, unit: str | None) -> Any:
-    if unit is None or unit == Unit.ONE:
-        return value
-    return quantity(value, Measure("a quantity", Unit(unit), ""))

@@ -37,7 +37,10 @@ _BLOCK: Final = 4096
 
 def write_arrays(path: Path, described: Mapping[str, Any], arrays: Mapping[str, Generic]) -> None:
     """Write a file."""
-    plain = {name: _little(values) for name, values in arrays.items()}
+    plain = {
+        name: np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
+        for name, values in arrays.items()
+    }
     shapes = [[name, values.dtype.str, list(values.shape)] for name, values in plain.items()]
     line = json.dumps({"described": dict(described), "arrays": shapes})
     body = b"".join([line.encode(), b"\n", *(values.tobytes() for values in plain.values())])
@@ -83,7 +86,7 @@ def read_shapes(path: Path) -> dict[str, tuple[int, ...]]:
             raise StudyError(msg) from problem
 
 
-def write_whole(path: Path, content: bytes, *, replace: bool = True) -> bool:
+def write_whole(path: Path, content: bytes, *, replace: bool = True) -> None:
     """Write a file so that others see all of it or nothing, even if this process is killed."""
     part = path.with_name(f".{path.name}.{os.getpid()}.{os.urandom(4).hex()}.part")
     try:
@@ -93,39 +96,15 @@ def write_whole(path: Path, content: bytes, *, replace: bool = True) -> bool:
             os.fsync(file.fileno())
         if replace:
             part.replace(path)
-            return True
-        return _linked(part, path)
+            return
+        try:
+            path.hardlink_to(part)
+        except (OSError, NotImplementedError):  # there is one, or file systems have no links
+            if not path.exists():
+                part.replace(path)
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
-
-
-def try_to_write(folder: Path) -> None:
-    """Write a block into a folder, and take it away again."""
-    part = folder / f".{os.getpid()}.{os.urandom(4).hex()}.part"
-    try:
-        with part.open("xb") as file:
-            file.write(bytes(_BLOCK))
-    finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-
-
-def _linked(part: Path, path: Path) -> bool:
-    """Give a file its name, unless another one has it."""
-    try:
-        path.hardlink_to(part)
-    except FileExistsError:
-        return False
-    except (OSError, NotImplementedError):  # file systems without links
-        if path.exists():
-            return False
-        part.replace(path)
-    return True
-
-
-def _little(values: Generic) -> Generic:
-    return np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
 
 
 FORMAT: Final = 3
@@ -177,7 +156,12 @@ class Store:
             )
             raise StudyError(msg)
         if kept["study_sha256"] != study.digest:
-            raise StudyError(_difference(path, kept["study"], study.to_dict()))
+            differs = difference(kept["study"], json.loads(json.dumps(study.to_dict())))
+            msg = (
+                f"{path}: found another study, which differs in {', '.join(differs)}; expected "
+                "the one that is asked for: give another folder"
+            )
+            raise StudyError(msg)
         return cls._of_head(path, kept)
 
     @classmethod
@@ -235,10 +219,14 @@ class Store:
 
     def check(self) -> None:
         """Try whether anything can be kept, before hours of work."""
+        part = self.folder / f".{os.getpid()}.{os.urandom(4).hex()}.part"
         try:
-            try_to_write(self.folder)
+            part.write_bytes(bytes(_BLOCK))
         except OSError as problem:
             raise _cannot_be_kept(self.folder, problem) from problem
+        finally:
+            with suppress(OSError):
+                part.unlink(missing_ok=True)
 
     def get(self, chunk: Chunk) -> CaseResults:
         """Read what a chunk showed."""
@@ -285,8 +273,8 @@ class Store:
         described, arrays = _read(self.folder / _LABELS)
         axes, columns = (
             tuple(
-                Axis.from_dict(axis, _values(each, arrays, axis["name"]))
-                for axis, each in described[kind]
+                Axis.from_dict(axis, arrays[axis["name"]] if words is None else np.array(words))
+                for axis, words in described[kind]
             )
             for kind in ("axes", "columns")
         )
@@ -303,9 +291,13 @@ class Store:
     def motions(self) -> dict[str, GroundMotion | None]:
         """Read the motions of the study."""
         described, arrays = _read(self.folder / _LABELS)
+        for k, (_, one) in enumerate(described["motions"]):
+            for component, held in _sampled(one).items():
+                for what in held:
+                    held[what] = arrays[f"{_MOTION}{k} {component} {what}"]
         return {
-            name: None if one is None else _motion(k, one, arrays)
-            for k, (name, one) in enumerate(described["motions"])
+            name: None if one is None else GroundMotion.from_dict(one)
+            for name, one in described["motions"]
         }
 
     def _file(self, chunk: Chunk) -> Path:
@@ -369,16 +361,6 @@ def _words(axis: Axis) -> list[str] | None:
     return axis.values.tolist() if axis.values.dtype.kind == "U" else None
 
 
-def _values(words: list[str] | None, arrays: Mapping[str, Generic], name: str) -> Generic:
-    return arrays[name] if words is None else np.array(words)
-
-
-def _motion(number: int, one: dict[str, Any], arrays: Mapping[str, Generic]) -> GroundMotion:
-    for component, held in _sampled(one).items():
-        one[component] = {what: arrays[f"{_MOTION}{number} {component} {what}"] for what in held}
-    return GroundMotion.from_dict(one)
-
-
 def _sampled(one: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
     """Give the components that a motion is described by, where it is described by samples.
 
@@ -426,15 +408,6 @@ def _read_head(path: Path) -> dict[str, Any]:
         msg = f"{file}: damaged: entries are missing"
         raise StudyError(msg)
     return kept
-
-
-def _difference(path: Path, kept: Any, asked: Any) -> str:
-    """Tell in which entries two studies differ."""
-    named = difference(kept, json.loads(json.dumps(asked)))
-    return (
-        f"{path}: found another study, which differs in {', '.join(named)}; expected the one that "
-        "is asked for: give another folder"
-    )
 
 
 def _remove_left_over(path: Path) -> None:

@@ -125,11 +125,12 @@ class Study:
 
     def to_dict(self) -> dict[str, Any]:
         """Tell all that the results depend on: every field, and what a function makes of cases."""
-        return {
-            "rockframe_version": __version__,
-            **description_of(self),
-            "scenes": self._scene_digests(),
-        }
+        # a function's source need not tell what its scenes are
+        scenes = [
+            digest_of(description_of(one)) if isinstance(one, Assembly) else type(one).__name__
+            for one in self._some_scenes
+        ]
+        return {"rockframe_version": __version__, **description_of(self), "scenes": scenes}
 
     @property
     def restrainers(self) -> tuple[str, ...]:
@@ -138,13 +139,6 @@ class Study:
             return self.scene.assembly.setting.link_names
         made = [one.setting.link_names for one in self._some_scenes if isinstance(one, Assembly)]
         return made[0] if made and len(set(made)) == 1 else ()
-
-    def _scene_digests(self) -> list[str]:
-        """Give digests of scenes that a function has made, which its source need not tell."""
-        return [
-            digest_of(description_of(one)) if isinstance(one, Assembly) else type(one).__name__
-            for one in self._some_scenes
-        ]
 
     @cached_property
     def _some_scenes(self) -> list[Assembly | Exception]:
@@ -186,16 +180,16 @@ class Study:
 
     def _time_of_case(self) -> float:
         """Give about how long a case takes alone, by machine code [s]."""
-        lengths = [self._length(motion) for motion in self.motions.values()]
-        fixed = self.arguments.accuracy.rtol is None
-        one = _OVERHEAD + max(lengths) * (_FIXED if fixed else _BY_TOLERANCE)
-        if not fixed:
-            one *= (2e-8 / float(self.arguments.accuracy.rtol or 1.0)) ** 0.2
+        intervals = max(
+            run_length(self.arguments, motion) / usual_output_step(motion)
+            for motion in self.motions.values()
+        )
+        tolerance = self.arguments.accuracy.rtol
+        if tolerance is None:
+            one = _OVERHEAD + intervals * _FIXED
+        else:
+            one = (_OVERHEAD + intervals * _BY_TOLERANCE) * (2e-8 / float(tolerance)) ** 0.2
         return one * (_SCREENED if self.screened else 1.0)
-
-    def _length(self, motion: GroundMotion | None) -> float:
-        """Give the number of intervals of a run."""
-        return run_length(self.arguments, motion) / usual_output_step(motion)
 
 
 def worker_count() -> int:

@@ -1,10 +1,10 @@
 """What is said of a sweep in words: its verdict, its warnings, and texts that are alike."""
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any, Final, Self
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -50,66 +50,48 @@ def whole_verdict(dataset: xr.Dataset) -> str:
 
 def cases_sentence(runs: xr.Dataset, these: str) -> str:
     """Say in one sentence what became of cases, counted in parts that memory holds."""
-    found = sum((_Counts.of(part) for part in _parts_of(runs)), _Counts())
-    text = f"{these} {found.overturned} overturned and {found.stood} did not"
-    if found.would_slide + found.would_hold:
-        text += f"; {found.would_slide} would slide and {found.would_hold} would not"
-    if found.slid:
-        text += f"; {found.slid} slid, by {found.farthest:.3g} m at most"
-    if found.broke:
-        text += f"; in {found.broke} a restrainer broke"
-    lacking = found.cases - found.not_run - found.overturned - found.stood
+    found, farthest = Counter[str](), 0.0
+    for part in _parts_of(runs):
+        slips = slips_of_cases(part)
+        farthest = slips.max(initial=farthest, where=slips > LEAST_SLIP)
+        found.update(_counts(part, slips))
+    text = f"{these} {found['overturned']} overturned and {found['stood']} did not"
+    if found["would slide"] + found["would hold"]:
+        text += f"; {found['would slide']} would slide and {found['would hold']} would not"
+    if found["slid"]:
+        text += f"; {found['slid']} slid, by {farthest:.3g} m at most"
+    if found["broke"]:
+        text += f"; in {found['broke']} a restrainer broke"
+    lacking = found["cases"] - found["not run"] - found["overturned"] - found["stood"]
     if lacking:
         text += f"; {lacking} have no result"
-    if found.not_run:
-        text += f"; {found.not_run} have not been run"
-    if found.screened:
-        again = f"{found.repeated} near a flip were run again by tolerance"
-        text += f"; {again}, which changed {found.changed}"
+    if found["not run"]:
+        text += f"; {found['not run']} have not been run"
+    if found["screened"]:
+        again = f"{found[REPEATED]} near a flip were run again by tolerance"
+        text += f"; {again}, which changed {found[VERDICT_CHANGED]}"
     return f"{text}."
 
 
-@dataclass(frozen=True)
-class _Counts:
-    """Numbers of cases, and how far one of them slid at most [m]."""
-
-    cases: int = 0
-    overturned: int = 0
-    stood: int = 0
-    not_run: int = 0
-    would_slide: int = 0
-    would_hold: int = 0
-    slid: int = 0
-    broke: int = 0
-    screened: int = 0
-    repeated: int = 0
-    changed: int = 0
-    farthest: float = 0.0
-
-    @classmethod
-    def of(cls, runs: xr.Dataset) -> Self:
-        """Count cases."""
-        status, slips = runs["status"].to_numpy(), slips_of_cases(runs)
-        overturned, slid = overturned_by(status), slips > LEAST_SLIP
-        slide, hold = (0, 0)
-        if "would_slide" in runs:
-            slide, hold = counts_of_slides(runs["would_slide"].to_numpy())
-        broke = int((runs[_BROKEN] > 0).sum()) if _BROKEN in runs else 0
-        screened, repeated, changed = 0, 0, 0
-        if REPEATED in runs:
-            screened = int(runs[REPEATED].notnull().sum())
-            repeated, changed = (int((runs[name] == 1.0).sum()) for name in SCREENED)
-        return cls(
-            status.size, int((overturned == 1.0).sum()), int((overturned == 0.0).sum()),
-            int((status == RunStatus.NOT_RUN).sum()), slide, hold, int(slid.sum()), broke,
-            screened, repeated, changed, float(slips[slid].max(initial=0.0)),
-        )  # fmt: skip
-
-    def __add__(self, other: Self) -> Self:
-        numbers = {name: getattr(self, name) + value for name, value in vars(other).items()} | {
-            "farthest": max(self.farthest, other.farthest)
-        }
-        return replace(self, **numbers)
+def _counts(runs: xr.Dataset, slips: Generic) -> dict[str, int]:
+    """Count cases by what became of them."""
+    status = runs["status"].to_numpy()
+    overturned = overturned_by(status)
+    which: dict[str, Any] = {
+        "overturned": overturned == 1.0,
+        "stood": overturned == 0.0,
+        "not run": status == RunStatus.NOT_RUN,
+        "slid": slips > LEAST_SLIP,
+    }
+    if _BROKEN in runs:
+        which["broke"] = runs[_BROKEN] > 0
+    if REPEATED in runs:
+        which |= {"screened": runs[REPEATED].notnull()} | {n: runs[n] == 1.0 for n in SCREENED}
+    found = {name: int(np.count_nonzero(some)) for name, some in which.items()}
+    if "would_slide" in runs:
+        slides = counts_of_slides(runs["would_slide"].to_numpy())
+        found |= dict(zip(("would slide", "would hold"), slides, strict=True))
+    return found | {"cases": status.size}
 
 
 def _parts_of(runs: xr.Dataset) -> Iterator[xr.Dataset]:

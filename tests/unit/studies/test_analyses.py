@@ -11,7 +11,7 @@ from scipy import stats
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning, StudyError
 from rockframe.results.schema import SCHEMA
-from rockframe.studies import rounds as of_rounds
+from rockframe.studies import lines as of_lines
 from rockframe.studies.lines import Bracket, bracket_arrays, brackets_of, narrowed
 from rockframe.studies.probability import ranked
 from rockframe.studies.sweeps import execution
@@ -191,7 +191,7 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
     # at a resolution of one brackets are narrowed at once
     some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
     options = {**some, "store": tmp_path / "s"}
-    run_study, rounds = of_rounds.run_study, itertools.count()
+    run_study, rounds = of_lines.run_study, itertools.count()
 
     def cut(study, bar, **means):
         if next(rounds) <= after:
@@ -207,7 +207,7 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
             return run_study(study, bar, **means)
 
     with monkeypatch.context() as patch:
-        patch.setattr(of_rounds, "run_study", cut)
+        patch.setattr(of_lines, "run_study", cut)
         with pytest.warns(SolverWarning, match="interrupted; brackets are wider.*goes on"):
             found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
         rounds = itertools.count()
@@ -313,20 +313,15 @@ def test_brackets_split_where_a_third_verdict_lies_between():
     shown = np.array([[[verdict(s) for s in scales]]])
     runs = []
 
-    def sweep(number, lines, middles):
-        runs.append(number)
-        return xr.Dataset(
-            {"status": ("case", np.zeros(len(middles), int)), "at": ("case", middles)}
-        )
+    def look(part, wanted):
+        runs.append(part)
+        return np.array([[verdict(s) for _, s in wanted]]), True
 
-    found, whole = narrowed(
-        brackets_of(scales, shown), sweep,
-        lambda seen: np.array([[verdict(s) for s in seen["at"].values]]), width=1e-6,
-    )  # fmt: skip
+    found, whole = narrowed(brackets_of(scales, shown), look, width=1e-6)
     assert whole
     assert [one.above for one in found] == pytest.approx([1.234, 1.301, 3.3], rel=1e-6)
     assert [(one.before, one.after) for one in found] == [(-1.0, 2.0), (2.0, -1.0), (-1.0, 0.0)]
-    assert runs == list(range(1, len(runs) + 1))
+    assert runs == [f"round {k + 1:02d}" for k in range(len(runs))]
     below, above, before, _ = bracket_arrays([*found, Bracket(0, 1, 1.0, 2.0, 0.0, 1.0)], (1, 2))
     assert below.shape == above.shape == (1, 2, 3)
     assert np.isnan(before[0, 1]).tolist() == [False, True, True]

@@ -6,14 +6,10 @@ from pages import table
 from scipy import optimize, stats
 
 import rockframe as rf
-from rockframe.studies.fragility.labelling import (
-    Arrangement,
-    Means,
-    StructureTrials,
-    fragility_dataset,
-)
+from rockframe.studies.fragility import labelling
+from rockframe.studies.fragility.labelling import Means, fragility_dataset
 from rockframe.studies.fragility.likelihood import Bands, FragilityStatus, boundary, fit
-from rockframe.studies.fragility.trials import Trials
+from rockframe.studies.fragility.trials import StructureTrials, Trials
 from rockframe.studies.fragility.words import COVERAGE, bounded, words_of_bounds
 
 SCALES = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])
@@ -260,9 +256,10 @@ def test_what_bounds_are_is_said():
 
 
 def test_layouts_arrange_the_last_dimension_fastest():
-    layout = Arrangement(("width", "limit_state"), (3, 2))
-    assert layout.arranged(np.arange(6)).tolist() == [[0, 1], [2, 3], [4, 5]]
-    assert layout.arranged(np.zeros((6, 4))).shape == (3, 2, 4)
+    values = {"flat": np.arange(6), "deep": np.zeros((6, 4))}
+    found = labelling._arranged(values, {"width": 3, "limit_state": 2})
+    assert found["flat"].tolist() == [[0, 1], [2, 3], [4, 5]]
+    assert found["deep"].shape == (3, 2, 4)
 
 
 def test_pages_tell_what_the_code_tells():

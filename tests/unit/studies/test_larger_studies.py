@@ -12,7 +12,7 @@ from kept_sweep import as_bytes
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.sweeps import lazily, planning, running, words
+from rockframe.studies.sweeps import lazily, planning, sweep, words
 from rockframe.studies.sweeps.store import Store, read_shapes
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
@@ -90,8 +90,8 @@ def agrees(lazy, whole):
 @pytest.mark.parametrize("run", STUDIES)
 def test_what_is_read_lazily_is_what_is_there(run, tmp_path, dask_is_there, monkeypatch):
     monkeypatch.setattr(lazily, "_BLOCK", 1)
-    counted, of = [], words._Counts.of
-    monkeypatch.setattr(words._Counts, "of", lambda runs: counted.append(runs.sizes) or of(runs))
+    counted, counts = [], words._counts
+    monkeypatch.setattr(words, "_counts", lambda *a: counted.append(a[0].sizes) or counts(*a))
     whole = run(accuracy="fast", store=tmp_path / "study")
     lazy = rf.open_study(tmp_path / "study", lazy=True)
     assert (lazy.chunks != {}) == dask_is_there
@@ -244,7 +244,7 @@ def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatc
 
 
 def test_what_takes_days_is_told_of_before_it_begins(monkeypatch, tmp_path):
-    monkeypatch.setattr(running, "_DAY", 1e-5)
+    monkeypatch.setattr(sweep, "_DAY", 1e-5)
     for store, ways in ((None, "no store: with one"), (tmp_path / "study", "jobs on it share")):
         with pytest.warns(SolverWarning, match=rf"8 cases take about .* days with .* {ways}"):
             on = rf.sweep(SYSTEM, MOTIONS, scale=[1.0, 0.5], accuracy="fast", store=store)

@@ -9,7 +9,7 @@ from scipy import stats
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SolverWarning, StudyError
 from rockframe.results.schema import SCHEMA
-from rockframe.studies import rounds
+from rockframe.studies import lines
 from rockframe.studies.conditional_sampling import (
     bounds_of,
     probability_of,
@@ -236,7 +236,7 @@ def test_cases_that_cannot_be_assembled_are_counted():
 
 def test_an_interrupted_simulation_says_so_and_goes_on(tmp_path, monkeypatch):
     whole = simulated(cases=200)
-    run = rounds.run_study
+    run = lines.run_study
     left = [14]
 
     def interrupted(*given, **named):
@@ -246,7 +246,7 @@ def test_an_interrupted_simulation_says_so_and_goes_on(tmp_path, monkeypatch):
         return run(*given, **named)
 
     with monkeypatch.context() as keys:
-        keys.setattr(rounds, "run_study", interrupted)
+        keys.setattr(lines, "run_study", interrupted)
         with pytest.warns(SolverWarning, match="interrupted at level 3; the same call goes on"):
             part = simulated(cases=200, store=tmp_path / "study")
         assert part.verdict.endswith("; interrupted.")

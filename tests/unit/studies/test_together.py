@@ -8,7 +8,7 @@ import pytest
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
-from rockframe.studies.sweeps import chunk, runs, study
+from rockframe.studies.sweeps import chunk, study
 from rockframe.studies.sweeps.lanes import FinishedTogether
 from rockframe.studies.sweeps.planning import plan_study
 
@@ -90,18 +90,18 @@ def both(monkeypatch, scene, cases, motion, **options):
     monkeypatch.setattr(study, "COMPILING_SHARE", float("inf"))
     planned = plan_study(scene, motion, {}, cases, **options)
     job = planned.job(range(planned.grid.count))
-    served, run_together = [0], runs.run_together
+    served, run_together = [0], chunk.run_together
 
     def counted(*arguments):
         for found in run_together(*arguments):
             served[0] += len(found.cases) if isinstance(found, FinishedTogether) else 1
             yield found
 
-    monkeypatch.setattr(runs, "run_together", counted)
+    monkeypatch.setattr(chunk, "run_together", counted)
     together = chunk.run_chunk(job)
-    monkeypatch.setattr(runs, "run_together", lambda *_: iter(()))
+    monkeypatch.setattr(chunk, "run_together", lambda *_: iter(()))
     alone = chunk.run_chunk(job)
-    monkeypatch.setattr(runs, "run_together", run_together)
+    monkeypatch.setattr(chunk, "run_together", run_together)
     return together, alone, served[0]
 
 
