@@ -229,6 +229,8 @@ class Pads(Base, PadNumbers):
             again, again_rate = -reaction, -change
         elif corner == CLEAR:
             leave, leave_rate = -leave, -leave_rate
+            if leave_rate < 0.0 and point.speed <= self.least and point.acceleration < 0.0:
+                leave_rate = 0.0  # it rises: rounding has left it a speed downwards
         elif corner == RELAXING:  # the pad presses again at a positive force
             again, again_rate = -reaction, -change
         else:  # after its separation the pad must have let go before

@@ -37,7 +37,7 @@ def resolve_restitution(given: float | None, greatest: Restitutions) -> Restitut
 def restitution_cautions(chosen: Restitutions, greatest: Restitutions) -> list[str]:
     """Warn of a restitution above eps_max, Eq. (4)."""
     excess, most, restitution = max(
-        (one - limit, limit, one) for one, limit in zip(chosen, greatest, strict=True)
+        (one - max(limit, 0.0), limit, one) for one, limit in zip(chosen, greatest, strict=True)
     )
     if excess <= ROUNDING:
         return []

@@ -314,14 +314,22 @@ def friction_under(part: Component, options: Options) -> BaseFriction | None:
     return BaseFriction(static, kinetic, math.inf if sticks else kinetic)
 
 
+def _slides(parts: Parts, options: Options) -> bool:
+    """Whether a block slides on what it stands on."""
+    behind_wall = parts.wall is not None and not parts.wall.elastic
+    of_stages = parts.cap is not None and options.coupling is Coupling.CASCADE
+    bases = (parts.components.get(slot) for slot in ("pads", "soil", "ground"))
+    under = next((one for one in bases if one is not None), None)
+    slippery = under is not None and friction_under(under, options) is not None
+    return slippery and not (behind_wall or of_stages)
+
+
 def missizes(parts: Parts, options: Options) -> list[str]:
     """Give the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
     faults: list[str] = []
-    behind_wall = parts.wall is not None and not parts.wall.elastic
-    held = behind_wall or parts.ground is None or friction_under(parts.ground, options) is None
     # impacts of bodies that slide, and of those in a stack, let a squat one land flat
-    if block is not None and not parts.own and held:
+    if block is not None and not parts.own and not _slides(parts, options):
         faults += squat(block.si, type(block).__name__)
     if parts.links:
         faults += _beyond_bodies(parts)

@@ -342,7 +342,9 @@ def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
     damping = given.damping
     if damping is None:
         damping = given.damping_ratio * body.mass * vertical
-    restitution = resolve_restitution(given.restitution, body.maximum_restitution)
+    # a corner of a body so squat that it does not roll over keeps nothing of its speed
+    greatest = Restitutions(*(max(one, 0.0) for one in body.maximum_restitution))
+    restitution = resolve_restitution(given.restitution, greatest)
     return PadSupport(load, stiffness, damping, restitution)
 
 

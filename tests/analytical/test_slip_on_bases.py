@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from benchmarks.random_parts import drawn
 from plainly import plainly
 
 import rockframe as rf
@@ -9,6 +10,7 @@ from rockframe.dynamics.chain import model
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
 from rockframe.errors import AssemblyError, ComponentError
+from rockframe.solve.workspace import Status
 
 pytestmark = [pytest.mark.analytical, pytest.mark.filterwarnings("ignore")]
 
@@ -239,3 +241,43 @@ def test_hardly_any_friction_is_next_to_none(friction):
 def test_friction_as_great_as_one_likes_holds(friction):
     held, slippery = (two_bodies(**given).rotation for given in ({}, {"friction": friction}))
     np.testing.assert_allclose(slippery, held, rtol=0.0, atol=1e-12)
+
+
+@BASES
+def test_a_squat_block_slides_where_its_base_has_friction(base):
+    squat = rf.Block(width="2 m", height="1 m", mass="4 t")
+    with pytest.raises(AssemblyError, match="cannot rock"):
+        rf.System(squat, base)
+    system = rf.System(squat, base.replace(friction=0.2))
+    found = system.simulate(motion(), free_vibration="0.3 s", outputs=("energy",))
+    assert found.status.item() == 0
+    assert float(found.energy_residual) < 1e-6
+    assert float(found.peak_slip) > 0.01
+
+
+def test_a_corner_of_a_squat_body_keeps_nothing_of_its_speed_on_pads():
+    squat = rf.Block(width="2 m", height="1 m", mass="4 t")
+    assert squat.maximum_restitution == pytest.approx(-0.2)
+    system = rf.System(squat, PADS.replace(friction=0.3))
+    assert set(system.setting.support.restitution) == {0.0}
+    assert not any("eps_max" in one for one in system.setting.cautions())
+    # let go of tilted it comes to rest, where corners that are thrown back bounce without end
+    tilted = rf.InitialState(rotation="0.2 rad")
+    found = system.simulate(initial=tilted, duration="3 s", outputs=("energy",))
+    assert found.status.item() == 0
+    assert float(found.energy_residual) < 1e-6
+    assert abs(found.rotation[-1]) < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("number", "ends"),
+    [(733, "0.76 s"), (379, "1.88 s"), (1318, "1.74 s"), (358, "2.05 s")],
+)
+def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
+    """Each came down and left in turn, without end, as it touched its pad on its way up."""
+    system, motion = drawn("stack of squat bodies", np.random.default_rng(number))
+    with plainly():
+        found = system.simulate(
+            motion, duration=ends, accuracy="fast", outputs=None, second_look=False
+        )
+    assert int(found.status) <= Status.TOPPLED

@@ -21,6 +21,7 @@ COMPLETE = 2  # the last status of runs that come to their end: completed, overt
 PARTS = (
     "stiff wall", "frame", "frame with tendons", "friction on pads", "friction on soil",
     "elastic wall on rigid ground", "elastic wall on pads", "stack of mixed bases",
+    "stack of squat bodies",
 )  # fmt: skip
 RUNS = 10_000
 NOT_UNIQUE = ("impacts_of_several_modes", "impacts_of_no_mode", "corners_held_without_pressing")
@@ -72,6 +73,25 @@ def drawn_stack(width, height, rng):
     return rf.System(rf.Stack(*blocks, interfaces=bases[:-1]), bases[-1])
 
 
+def drawn_squat(rng):
+    """Give two or three bodies upon one another, most of them too squat to rock, with friction."""
+    width, blocks, bases = rng.uniform(0.5, 3.0), [], []
+    for _ in range(int(rng.choice([2, 2, 3]))):  # from the ground up
+        low, high = (0.1, 0.7) if rng.random() < 0.7 else (0.75, 4.0)
+        height = width * rng.uniform(low, high)
+        blocks.insert(0, rf.Block(
+            width=f"{width} m", height=f"{height} m", mass=f"{2e3 * width * height} kg"
+        ))  # fmt: skip
+        kinds = ["rigid ground", "pads"] if bases else ["rigid ground", "pads", "soil"]
+        static = 10.0 ** rng.uniform(-2.0, 0.3)
+        friction = {
+            "friction": static, "kinetic_friction": min(static * rng.uniform(0.5, 1.0), 0.6)
+        }  # fmt: skip
+        bases.insert(0, drawn_base(str(rng.choice(kinds)), friction, rng))
+        width *= rng.uniform(0.4, 1.0)
+    return rf.System(rf.Stack(*blocks, interfaces=bases[:-1]), bases[-1])
+
+
 def drawn(part, rng):
     """Give a random scene of a part, and a motion."""
     height = rng.uniform(1.0, 12.0)
@@ -82,6 +102,8 @@ def drawn(part, rng):
         system = rf.System(block, rf.RearWall(side=side, restitution=rng.uniform(-1.0, 0.0)))
     elif part == "stack of mixed bases":
         system = drawn_stack(width, height, rng)
+    elif part == "stack of squat bodies":
+        system = drawn_squat(rng)
     elif " on " in part:
         what, on = part.split(" on ")
         slides = what == "friction" or rng.random() < 0.5
