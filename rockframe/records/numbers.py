@@ -261,32 +261,45 @@ class FixedWidth:
         ]
         return np.array(checked, dtype=np.float64)
 
-    def line(self, first: int, place: int) -> int:
-        """Give the line of a field of a header, from 1."""
-        return first + (place - 1) // self.per_line + 1
+    def at(self, source: Source, first: int) -> Fields:
+        """Give the fields of a header that begin in a line."""
+        return Fields(source, self, first)
 
-    def cell(self, source: Source, first: int, place: int) -> str:
-        """Give one field of a header, without blanks around it."""
-        row, column = divmod(place - 1, self.per_line)
-        if first + row >= len(source.lines):
+
+@dataclass(frozen=True)
+class Fields:
+    """Numbers of a header, each by its place, from 1."""
+
+    source: Source
+    layout: FixedWidth
+    first: int  # index of their first line, from 0
+
+    def line(self, place: int) -> int:
+        """Give the line of a field, from 1."""
+        return self.first + (place - 1) // self.layout.per_line + 1
+
+    def cell(self, place: int) -> str:
+        """Give a field without blanks around it; empty if the file ends before it."""
+        row, column = divmod(place - 1, self.layout.per_line)
+        if self.first + row >= len(self.source.lines):
             return ""
-        return source.lines[first + row][column * self.width : (column + 1) * self.width].strip()
+        width, text = self.layout.width, self.source.lines[self.first + row]
+        return text[column * width : (column + 1) * width].strip()
 
-    def number(self, source: Source, first: int, place: int, what: str) -> float:
-        """Read one number of a header."""
-        text, line = self.cell(source, first, place), self.line(first, place)
+    def number(self, place: int, what: str) -> float:
+        """Read one number."""
+        text, line = self.cell(place), self.line(place)
         if not text:
-            raise source.refuse(found=f"no {what}", expected=f"a number ({what})", line=line)
-        return one_number(text, source, line)
+            raise self.source.refuse(found=f"no {what}", expected=f"a number ({what})", line=line)
+        return one_number(text, self.source, line)
 
-    def count(self, source: Source, first: int, place: int, what: str) -> int:
-        """Read one whole number of a header."""
-        text = self.cell(source, first, place)
+    def count(self, place: int, what: str) -> int:
+        """Read one whole number."""
+        text = self.cell(place)
         value = whole(text)
         if value is None:
             found = f"{quoted_first_line(text)} for the {what}"
-            line = self.line(first, place)
-            raise source.refuse(found=found, expected="a whole number", line=line)
+            raise self.source.refuse(found=found, expected="a whole number", line=self.line(place))
         return value
 
 
