@@ -175,7 +175,8 @@ def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMemb
                 with archive.open(info) as stream:
                     data = stream.read(MAXIMUM_BYTES + 1)
             except Exception as problem:  # as above; the others may be sound
-                yield ArchiveMember(info.filename, None, _damaged(problem))
+                reason = f"a file that cannot be unpacked ({type(problem).__name__})"
+                yield ArchiveMember(info.filename, None, reason)
                 continue
             budget.take(len(data))
             yield _member(info.filename, data)
@@ -241,20 +242,18 @@ class _Bounded:
             found = "an archive that announces more than a record has"
             raise RecordError(self._budget.name, found=found, expected="an archive of records")
         data = self._file.read(count)
-        self._spend()
+        self._reach(self._file.tell())
         return data
 
     def seek(self, place: int, whence: int = 0) -> int:
         if whence == 0:  # what is passed over has to be unpacked too
-            self._budget.take(max(0, place - self._furthest))
-            self._furthest = max(self._furthest, place)
+            self._reach(place)
         return self._file.seek(place, whence)
 
     def tell(self) -> int:
         return self._file.tell()
 
-    def _spend(self) -> None:
-        place = self._file.tell()
+    def _reach(self, place: int) -> None:
         self._budget.take(max(0, place - self._furthest))
         self._furthest = max(self._furthest, place)
 
@@ -283,10 +282,6 @@ def _misnamed(name: str) -> str:
 
 def _printable(name: str) -> str:
     return "".join(letter if letter.isprintable() else "?" for letter in name)[:200]
-
-
-def _damaged(problem: Exception) -> str:
-    return f"a file that cannot be unpacked ({type(problem).__name__})"
 
 
 def _too_many(name: str) -> RecordError:

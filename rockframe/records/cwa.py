@@ -29,7 +29,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import NOTHING, Keys, needed, needed_rate, renamed
+from rockframe.records.headers import Keys, filled, needed, needed_rate, renamed, text_of
 from rockframe.records.numbers import FixedWidth, one_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -167,15 +167,13 @@ def _size(printed: str) -> float:
 
 
 def _description(header: Keys) -> Metadata:
-    metadata = renamed(header, _KEPT)
-    origin = header.get("origintime", NOTHING)[0]
-    if origin:
-        metadata["event"] = f"earthquake of {origin} (GMT+08)"
-        metadata["event_time"] = f"{origin} (GMT+08)"
-    start = header.get("starttime", NOTHING)[0]
-    if start:
-        metadata["record_time"] = f"{start} (GMT+08)"
-    return metadata
+    origin, start = text_of(header, "origintime"), text_of(header, "starttime")
+    times = {
+        "event": origin and f"earthquake of {origin} (GMT+08)",
+        "event_time": origin and f"{origin} (GMT+08)",
+        "record_time": start and f"{start} (GMT+08)",
+    }
+    return renamed(header, _KEPT) | filled(times)
 
 
 CWA: Final = Format(

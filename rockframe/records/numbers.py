@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 # written so that no digit can be matched in two ways: a failed match stays linear
 NUMBER: Final = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
-_ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
+ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
 _SHAPE: Final = re.compile(r"[-+]?\d*(\.\d*)?(?:[EeDd][-+]?(\d+))?", re.ASCII)
 _SAME_SHAPE: Final = 20
 _FEWEST: Final = 4
@@ -102,9 +102,9 @@ def is_plain(text: str) -> bool:
 
 def one_number(text: str, source: Source, line: int) -> float:
     """Read one field that must be one finite number."""
-    if _ONE_NUMBER.fullmatch(text) is None:
+    if ONE_NUMBER.fullmatch(text) is None:
         raise source.refuse(found=quoted_first_line(text), expected="a number", line=line)
-    value = float(text.upper().replace("D", "E"))
+    value = float(with_e(text))
     if not math.isfinite(value):
         raise source.refuse(
             found=f"{quoted_first_line(text)}, which overflows",
@@ -192,7 +192,7 @@ def _careful(field: str, source: Source, line: int) -> list[float]:
     # sign, or without a decimal point, that place is a guess.
     pieces: list[str] = []
     position = 0
-    for match in _ONE_NUMBER.finditer(field):
+    for match in ONE_NUMBER.finditer(field):
         if match.start() != position:
             break
         pieces.append(match.group())

@@ -26,7 +26,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import NUMBER, Fields, FixedWidth, whole, with_e
+from rockframe.records.numbers import ONE_NUMBER, Fields, FixedWidth, whole, with_e
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -54,7 +54,6 @@ _UNKNOWN_INTEGER: Final = -32768
 _UNKNOWN_REAL: Final = 1.7e38
 _FASTEST: Final = 1e5
 _PEAKS: Final = (30, 32)
-_REAL: Final = re.compile(NUMBER, re.ASCII)
 _HORIZONTAL: Final = 90
 _DOWN: Final = 180
 
@@ -140,7 +139,7 @@ def _samples(source: Source, request: Request, kind: str, integers: Fields) -> R
 def _stated_peak(reals: Fields) -> list[Stated]:
     """Give the larger of the peaks in reals 30 and 32."""
     printed = [reals.cell(place) for place in _PEAKS]
-    stated = [abs(float(with_e(text))) for text in printed if _REAL.fullmatch(text)]
+    stated = [abs(float(with_e(text))) for text in printed if ONE_NUMBER.fullmatch(text)]
     known = [value for value in stated if value < _UNKNOWN_REAL / 10.0]
     if len(known) < len(_PEAKS):
         return []

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.records.checks import (
     LENGTH,
@@ -30,13 +30,10 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import first_match
+from rockframe.records.headers import first_match, needed_match
 from rockframe.records.numbers import Fields, FixedWidth, one_number, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from rockframe.errors import RecordError
 
 _MOST_COMPONENTS: Final = 12
 
@@ -263,16 +260,14 @@ def _read_bhrc(source: Source, request: Request) -> Record:
 
 def _bhrc_component(source: Source, request: Request, first: int) -> FileComponent:
     text = source.top(_BHRC_TEXT, first)
-    found = first_match(_BHRC_NAME, text, first + 1)
-    if found is None:
-        raise _missing(source, first, "'COMP L1'")
-    name = found[0][1]
+    found, line = needed_match(source, _BHRC_NAME, text, "COMP L1", first + 1)
+    name = found[1]
     return FileComponent(
         name,
         lambda: _bhrc_samples(source, request, first, text),
         _bhrc_orientation(name, text),
         aliases=(name.rstrip("0123456789"),),
-        line=found[1],
+        line=line,
     )
 
 
@@ -291,9 +286,10 @@ def _bhrc_samples(source: Source, request: Request, first: int, text: list[str])
     if volume is None or volume[1] != "1":
         expected = "uncorrected accelerations (volume 1)"
         raise source.refuse(found=quoted_first_line(text[0]), expected=expected, line=first + 1)
-    such_as = "'NO. OF POINTS =   9472  DURATION = 47.36'"
-    points, line = _bhrc_line(source, first, text, _POINTS, such_as)
-    units, unit_line = _bhrc_line(source, first, text, _UNITS, "'UNITS ARE SECONDS AND G/10'")
+    such_as = "NO. OF POINTS =   9472  DURATION = 47.36"
+    points, line = needed_match(source, _POINTS, text, such_as, first + 1)
+    such_as = "UNITS ARE SECONDS AND G/10"
+    units, unit_line = needed_match(source, _UNITS, text, such_as, first + 1)
     chosen = choose_unit(source, request, units[1], unit_line)
     time_step = _bhrc_time_step(source, request, first)
     count, data = int(points[1]), first + _BHRC_DATA_AT
@@ -320,20 +316,6 @@ def _bhrc_time_step(source: Source, request: Request, first: int) -> float:
         raise source.refuse(found=found, expected="one above zero", line=line)
     settle_time_step(source, request, 1.0 / rate, line)
     return 1.0 / rate
-
-
-def _bhrc_line(
-    source: Source, first: int, text: list[str], pattern: re.Pattern[str], such_as: str
-) -> tuple[re.Match[str], int]:
-    found = first_match(pattern, text, first + 1)
-    if found is None:
-        raise _missing(source, first, such_as)
-    return found
-
-
-def _missing(source: Source, first: int, such_as: str) -> RecordError:
-    found = f"no such line among the {_BHRC_TEXT} below"
-    return source.refuse(found=found, expected=f"a line such as {such_as}", line=first + 1)
 
 
 BHRC: Final = Format(
