@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from functools import partial
 from typing import Final
 
 from rockframe.arguments import one_of_words, whole_number
-from rockframe.errors import ComponentError, ModelWarning
+from rockframe.errors import ComponentError, ModelWarning, warn
 from rockframe.motion.stochastic import (
     LARGEST_DISTANCE,
     Corners,
@@ -176,7 +175,7 @@ def stochastic(
         ratio = number(vertical, name="vertical", condition=POSITIVE)
     step = amount(time_step, _STEP, name="time_step", condition=_STEPS)
     for message in _extrapolations(earthquake, owner):
-        warnings.warn(message, ModelWarning, stacklevel=2)
+        warn(message, ModelWarning)
     across = accelerogram(earthquake, step, first)
     upwards = None if ratio is None else ratio * accelerogram(earthquake, step, first, stream=1)
     given = _arguments(earthquake, first, ratio, step)

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from rockframe.errors import RecordWarning, warn
-from rockframe.signals.arrays import Array
-from rockframe.signals.motion import Signal
+from rockframe.signals.motion import divided
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rockframe.signals import Signal
-from rockframe.signals.motion import divided
+    from rockframe.signals.arrays import Array
 
 _INTEGER_RATIO: Final = 1e-9
 _ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slowest motion
@@ -84,11 +83,17 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
     if whole is not None:
         fine[::times] = samples
         return fine
-    from scipy import interpolate as splines
-
-    spline: Any = splines
     instants = instants_of((samples.size - 1) * dt, time_step)
-    return spline.make_interp_spline(np.arange(fine.size) * (dt / times), fine, k=5)(instants)
+    return _spline(fine, dt / times, instants, 5)
+
+
+def _spline(samples: Array, time_step: float, instants: Array, degree: int) -> Array:
+    """Read off the spline of a degree through samples."""
+    from scipy import interpolate as module
+
+    splines: Any = module
+    times = np.arange(samples.size) * time_step
+    return splines.make_interp_spline(times, samples, k=degree)(instants)
 
 
 def coarsened(dt: float, samples: Array, time_step: float) -> Array:
@@ -108,12 +113,8 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
     times = whole_ratio(time_step / dt)
     if times is not None:
         return smooth[::times]
-    from scipy import interpolate as splines
-
-    spline: Any = splines
     instants = instants_of((samples.size - 1) * dt, time_step)
-    degree = min(3, samples.size - 1)
-    return spline.make_interp_spline(np.arange(samples.size) * dt, smooth, k=degree)(instants)
+    return _spline(smooth, dt, instants, min(3, samples.size - 1))
 
 
 def padded(signal: Signal, count: int) -> Signal:
