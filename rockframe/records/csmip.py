@@ -50,7 +50,7 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.headers import first_match
-from rockframe.records.numbers import FixedWidth, uniform_step, whole
+from rockframe.records.numbers import FixedWidth, number_or_none, uniform_step, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -429,11 +429,11 @@ def _time_step(source: Source, block: _Block) -> float:
 
 
 def _seconds(source: Source, text: str, line: int) -> float:
-    try:
-        return float(text)
-    except ValueError:
+    seconds = number_or_none(text)
+    if seconds is None:
         found = f"an interval of {quoted_first_line(text)} s"
-        raise source.refuse(found=found, expected="a time step", line=line) from None
+        raise source.refuse(found=found, expected="a time step", line=line)
+    return seconds
 
 
 def _layout(source: Source, block: _Block, text: str) -> FixedWidth:

@@ -30,7 +30,7 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.headers import Keys, filled, needed, needed_rate, renamed, text_of
-from rockframe.records.numbers import FixedWidth, one_number, rows_below
+from rockframe.records.numbers import FixedWidth, number_or_none, one_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -155,15 +155,9 @@ def _stated_peak(source: Source, name: str, unit: str) -> list[Stated]:
     for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
         match = _PEAKS.match(text)
         if match is not None and match.group(1).casefold() == name.lstrip("-").casefold():
-            return [Stated(max(match.groups()[1:], key=_size), unit, line)]
+            printed = max(match.groups()[1:], key=lambda text: abs(number_or_none(text) or 0.0))
+            return [Stated(printed, unit, line)]
     return []
-
-
-def _size(printed: str) -> float:
-    try:
-        return abs(float(printed))
-    except ValueError:
-        return 0.0
 
 
 def _description(header: Keys) -> Metadata:

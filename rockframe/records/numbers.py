@@ -70,7 +70,16 @@ def all_numbers(source: Source, first: int, end: int | None = None, *, of: objec
 
 def check_end(source: Source, fields: Sequence[str], held: str, line: int | None = None) -> None:
     """Refuse a file that stops in the middle of its last number."""
-    if ends_inside_number(source, fields):
+    last_line = source.lines[-1]
+    if not last_line or last_line[-1].isspace():
+        return
+    if len(source.lines) > 1 and len(last_line) == len(source.lines[-2]) and " 0" in last_line[-2:]:
+        return
+    shapes = {shape_of(field) for field in fields[-_SAME_SHAPE - 1 : -1]}
+    if len(shapes) != 1 or len(fields) < _FEWEST:
+        return
+    usual, last = shapes.pop(), shape_of(fields[-1])
+    if usual is not None and (last is None or last < usual):
         raise cut_short(source, held, line)
 
 
@@ -88,11 +97,18 @@ def too_many(source: Source, count: int, line: int | None = None) -> RecordError
 
 def floats(fields: Sequence[str]) -> Array | None:
     """Convert fields at once; None if one of them is not a plain finite number."""
-    try:
-        values = np.fromiter(map(float, fields), dtype=np.float64, count=len(fields))
-    except ValueError:
-        return None
-    return values if np.isfinite(values).all() else None
+    for attempt in (fields, map(with_e, fields)):
+        try:
+            values = np.fromiter(map(float, attempt), dtype=np.float64, count=len(fields))
+        except ValueError:
+            continue
+        return values if np.isfinite(values).all() else None
+    return None
+
+
+def number_or_none(text: str) -> float | None:
+    """Read a number; None if it is none."""
+    return None if ONE_NUMBER.fullmatch(text) is None else float(with_e(text))
 
 
 def is_plain(text: str) -> bool:
@@ -112,20 +128,6 @@ def one_number(text: str, source: Source, line: int) -> float:
             line=line,
         )
     return value
-
-
-def ends_inside_number(source: Source, fields: Sequence[str]) -> bool:
-    """Tell whether a file stops in the middle of its last number."""
-    last_line = source.lines[-1]
-    if not last_line or last_line[-1].isspace():
-        return False
-    if len(source.lines) > 1 and len(last_line) == len(source.lines[-2]) and " 0" in last_line[-2:]:
-        return False
-    shapes = {shape_of(field) for field in fields[-_SAME_SHAPE - 1 : -1]}
-    if len(shapes) != 1 or len(fields) < _FEWEST:
-        return False
-    usual, last = shapes.pop(), shape_of(fields[-1])
-    return usual is not None and (last is None or last < usual)
 
 
 def last_fields(source: Source, first: int, count: int = _SAME_SHAPE + 1) -> list[str]:
@@ -161,10 +163,7 @@ def _fields(source: Source, first: int, end: int) -> Array:
     collected: list[Array] = []
     for index in range(first, end):
         fields = source.lines[index].split()
-        # D is how Fortran writes the exponent of a double
-        values = (
-            floats([with_e(field) for field in fields]) if is_plain(source.lines[index]) else None
-        )
+        values = floats(fields) if is_plain(source.lines[index]) else None
         if values is None:
             pieces = [piece for field in fields for piece in _careful(field, source, index + 1)]
             values = np.array(pieces, dtype=np.float64)
@@ -173,7 +172,7 @@ def _fields(source: Source, first: int, end: int) -> Array:
 
 
 def with_e(field: str) -> str:
-    """Write the exponent of a number as Python does."""
+    """Write the exponent of a number as Python does: Fortran's double has a D."""
     return field.replace("D", "E").replace("d", "e")
 
 
@@ -250,11 +249,9 @@ class FixedWidth:
                 )
         body = "".join(lines)
         printed = [body[place : place + width] for place in range(0, len(body), width)]
-        if is_plain(body):
-            for attempt in (printed, map(with_e, printed)):
-                values = floats(list(attempt))
-                if values is not None:
-                    return values
+        values = floats(printed) if is_plain(body) else None
+        if values is not None:
+            return values
         checked = [
             one_number(field.strip(), source, first + index // per_line + 1)
             for index, field in enumerate(printed)

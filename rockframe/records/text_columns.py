@@ -94,8 +94,6 @@ def read_table(source: Source, most_columns: int) -> Table:
         rest = []
     fields = _fields(source, rows, lines, separator, columns)
     values = floats(fields) if plain else None
-    if values is None and plain:
-        values = floats([with_e(field) for field in fields])
     if values is None:
         checked = [
             one_number(field.strip(), source, lines[place // columns])

@@ -31,7 +31,7 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.headers import first_match, needed_match
-from rockframe.records.numbers import Fields, FixedWidth, one_number, whole
+from rockframe.records.numbers import Fields, FixedWidth, number_or_none, one_number, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -163,7 +163,7 @@ def _geonet_samples(request: Request, block: _Block, count: int) -> Record:
     check_time_step(source, time_step, line)
     said = _INTERVAL.search("\n".join(text))
     if said is not None:
-        printed = _number_or_none(said[1])
+        printed = number_or_none(said[1])
         if printed is None or not math.isclose(printed, time_step, rel_tol=1e-6, abs_tol=_DIGIT):
             stated_step = quoted_first_line(said[0])
             found = f"a time step of {time_step!r} s, and {stated_step} in the text"
@@ -179,13 +179,6 @@ def _geonet_samples(request: Request, block: _Block, count: int) -> Record:
         if length is not None:
             stated.append(Stated(length[1], LENGTH, number))
     return record_of(source, values, time_step, chosen, _geonet_description(block), stated=stated)
-
-
-def _number_or_none(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None
 
 
 def _geonet_description(block: _Block) -> Metadata:
