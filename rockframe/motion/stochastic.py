@@ -294,10 +294,7 @@ SHORTEST_FADE: Final = 1.0
 
 
 def accelerogram(source: PointSource, time_step: float, seed: int, stream: int = 0) -> Array:
-    """Draw an accelerogram: windowed noise with the spectrum of `source`.
-
-    :eq:`eq-noise-spectrum` and :eq:`eq-faded`.
-    """
+    """Draw windowed noise of the source's spectrum, :eq:`eq-noise-spectrum`, :eq:`eq-faded`."""
     from scipy import fft
 
     window = exponential_window(WINDOW_LENGTH * source.duration, time_step)

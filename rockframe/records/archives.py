@@ -194,10 +194,10 @@ def _check_directory(file: IO[bytes], name: str) -> None:
         place = tail.rfind(_DIRECTORY_END)
     if place < 0:
         return  # the library says what is wrong
-    sizes = [int.from_bytes(tail[place + 12 : place + 16], "little")]
+    size = tail[place + 12 : place + 16]
     if tail[place - 20 : place - 16] == _LOCATOR:  # the long form, which stands before
-        sizes = [int.from_bytes(tail[place - 36 : place - 28], "little")]
-    if max(sizes) > _LONGEST_DIRECTORY:
+        size = tail[place - 36 : place - 28]
+    if int.from_bytes(size, "little") > _LONGEST_DIRECTORY:
         raise _too_many(name)
 
 

@@ -146,23 +146,17 @@ def _rate(factor: int, multiplier: int) -> float:
 
 @contextmanager
 def _quietly() -> Generator[None]:
-    """Keep what ObsPy says of damaged files from the terminal.
-
-    It raises errors in callbacks of the C library under it, which Python cannot pass on
-    and prints; what is wrong shows in what comes back.
-    """
+    """Keep what ObsPy says of damaged files from the terminal."""
+    # it raises errors in callbacks of the C library under it, which Python cannot pass on and
+    # prints; what is wrong shows in what comes back
     hook = sys.unraisablehook
-    sys.unraisablehook = _unsaid
+    sys.unraisablehook = lambda _: None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
     finally:
         sys.unraisablehook = hook
-
-
-def _unsaid(problem: object) -> None:
-    """Take note of nothing."""
 
 
 def _channels(source: Source) -> dict[str, list[Any]]:

@@ -170,9 +170,7 @@ def stochastic(
         else one_of_words(Corners, source, owner=owner, name="source"),
     )
     first = whole_number(seed, owner=owner, name="seed", lowest=0)
-    ratio = None
-    if vertical is not None:
-        ratio = number(vertical, name="vertical", condition=POSITIVE)
+    ratio = None if vertical is None else number(vertical, name="vertical", condition=POSITIVE)
     step = amount(time_step, _STEP, name="time_step", condition=_STEPS)
     for message in _extrapolations(earthquake, owner):
         warn(message, ModelWarning)

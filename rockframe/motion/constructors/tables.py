@@ -373,9 +373,7 @@ def from_trace(
 
 
 def _listed(stream: Any, owner: str) -> list[Any]:
-    traces: list[Any] = []
-    if hasattr(stream, "traces"):
-        traces = list(cast("list[Any]", stream.traces))
+    traces: list[Any] = list(getattr(stream, "traces", ()))
     if not traces or not all(hasattr(one, part) for one in traces for part in _NEEDED):
         msg = (
             f"{owner}: trace needs an ObsPy Trace, or a Stream that holds one, got {shown(stream)}"
