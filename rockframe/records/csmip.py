@@ -49,7 +49,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import filled, first_match
+from rockframe.records.headers import first_match, without_blanks
 from rockframe.records.numbers import FixedWidth, number_or_none, uniform_step, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -181,7 +181,7 @@ def _event(lines: list[str], place: int) -> Metadata:
         origin = _ORIGIN.search(text)
         if origin is not None and not time and _DATE.search(origin.group(1)):
             time = origin.group(1).strip()
-    return filled({"event": " ".join(name.split()), "event_time": " ".join(time.split())})
+    return without_blanks({"event": " ".join(name.split()), "event_time": " ".join(time.split())})
 
 
 _POINTS: Final = re.compile(r"\bNO\. OF POINTS\s*=\s*(\d{1,9})", re.IGNORECASE)

@@ -29,7 +29,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import Keys, filled, needed, needed_rate, renamed, text_of
+from rockframe.records.headers import Keys, needed, needed_rate, renamed, text_of, without_blanks
 from rockframe.records.numbers import FixedWidth, number_or_none, one_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -167,7 +167,7 @@ def _description(header: Keys) -> Metadata:
         "event_time": origin and f"{origin} (GMT+08)",
         "record_time": start and f"{start} (GMT+08)",
     }
-    return renamed(header, _KEPT) | filled(times)
+    return renamed(header, _KEPT) | without_blanks(times)
 
 
 CWA: Final = Format(

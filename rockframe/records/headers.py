@@ -81,7 +81,7 @@ def text_of(keys: Keys, key: str) -> str:
     return keys.get(key, NOTHING)[0]
 
 
-def filled(described: Mapping[str, str]) -> Metadata:
+def without_blanks(described: Mapping[str, str]) -> Metadata:
     """Leave out what is empty."""
     return {name: text for name, text in described.items() if text}
 
@@ -99,4 +99,4 @@ def needed_match(
 
 def renamed(keys: Keys, names: Mapping[str, str]) -> Metadata:
     """Give those values that go into the metadata, under their new names."""
-    return filled({name: text_of(keys, key) for key, name in names.items()})
+    return without_blanks({name: text_of(keys, key) for key, name in names.items()})

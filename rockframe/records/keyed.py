@@ -15,7 +15,6 @@ from rockframe.records.components import UNKNOWN, FileComponent, choose_componen
 from rockframe.records.headers import (
     NOTHING,
     Keys,
-    filled,
     first_match,
     needed_count,
     needed_match,
@@ -23,6 +22,7 @@ from rockframe.records.headers import (
     read_keys,
     renamed,
     text_of,
+    without_blanks,
 )
 from rockframe.records.numbers import (
     NUMBER,
@@ -159,7 +159,7 @@ def _read_resorce(source: Source, request: Request) -> Record:
     chosen = choose_unit(source, request, unit_match[1], line)
     metadata: Metadata = {**renamed(header, _RESORCE_KEPT), "unit_as_read": chosen[1]}
     code, _, place = text_of(header, "Station Code / Name").partition("/")
-    metadata |= filled({"station": code.strip(), "station_name": place.strip()})
+    metadata |= without_blanks({"station": code.strip(), "station_name": place.strip()})
     if "event_time" in metadata:
         metadata["event"] = f"earthquake of {metadata['event_time']}"
     name, name_line = header.get("Orientation", NOTHING)

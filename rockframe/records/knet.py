@@ -21,7 +21,7 @@ import numpy as np
 
 from rockframe.records.checks import settle_count
 from rockframe.records.components import FileComponent, choose_component, orientation_of
-from rockframe.records.headers import Keys, filled, needed, needed_rate, text_of
+from rockframe.records.headers import Keys, needed, needed_rate, text_of, without_blanks
 from rockframe.records.numbers import NUMBER, cut_short, free_format, last_fields, one_number
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -175,7 +175,7 @@ def _description(header: Keys) -> Metadata:
         "event_time": origin and (_iso(origin) or f"{origin} JST"),
         "record_time": recorded and (_iso(recorded, _DELAY) or f"{recorded} JST, less 15 s"),
     }
-    return filled(described)
+    return without_blanks(described)
 
 
 def _iso(printed: str, delay: timedelta = timedelta(0)) -> str | None:

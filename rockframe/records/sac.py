@@ -30,7 +30,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import filled
+from rockframe.records.headers import without_blanks
 from rockframe.records.instruments import (
     InstrumentResponses,
     check_finite,
@@ -205,7 +205,7 @@ def _description(header: _Header) -> tuple[Metadata, datetime | None]:
         "sensor_location": location_code(header.word(_LOCATION)),
         "event": header.word(_EVENT, 2),
     }
-    metadata = filled(words)
+    metadata = without_blanks(words)
     year, day, hour, minute, second, thousandth = (int(n) for n in header.integers[:6])
     try:
         reference = datetime(year, 1, 1, tzinfo=UTC).replace(tzinfo=None)

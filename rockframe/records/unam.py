@@ -28,7 +28,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import Keys, filled, needed, read_keys, renamed, text_of
+from rockframe.records.headers import Keys, needed, read_keys, renamed, text_of, without_blanks
 from rockframe.records.numbers import FixedWidth, one_number, rows_below, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -173,7 +173,7 @@ def _description(header: Keys) -> Metadata:
         "event": time and f"earthquake of {time}",
         "record_time": start and f"{start} GMT",
     }
-    return renamed(header, _KEPT) | filled(times)
+    return renamed(header, _KEPT) | without_blanks(times)
 
 
 UNAM: Final = Format(
