@@ -25,6 +25,8 @@ _ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slow
 _ANTI_ALIAS_RIPPLE: Final = 0.05
 _ANTI_ALIAS_EDGE: Final = 0.8
 _SINC_REACH: Final = 64
+MOST_DIVISIONS: Final = 200_000
+"""Parts of a time step beyond which the filter alone would take gigabytes."""
 _SINC_WINDOW: Final = 12.0
 _OVERSAMPLING: Final = 8
 
@@ -72,9 +74,8 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
     from scipy import signal as module
 
     signal: Any = module
-    ratio = dt / time_step
-    whole = whole_ratio(ratio)
-    times = math.ceil(_OVERSAMPLING * ratio) if whole is None else whole
+    whole = whole_ratio(dt / time_step)
+    times = divisions(dt / time_step)
     sinc = np.sinc(np.arange(-_SINC_REACH * times, _SINC_REACH * times + 1) / times)
     taps = sinc * signal.windows.kaiser(sinc.size, _SINC_WINDOW)
     # without division by the sum, so that the old samples stay as they are
@@ -94,6 +95,11 @@ def _spline(samples: Array, time_step: float, instants: Array, degree: int) -> A
     splines: Any = module
     times = np.arange(samples.size) * time_step
     return splines.make_interp_spline(times, samples, k=degree)(instants)
+
+
+def divisions(ratio: float) -> int:
+    """Count the parts into which band-limited samples are divided for a ratio of time steps."""
+    return whole_ratio(ratio) or math.ceil(_OVERSAMPLING * ratio)
 
 
 def coarsened(dt: float, samples: Array, time_step: float) -> Array:
