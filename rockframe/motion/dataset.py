@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -10,7 +11,7 @@ import xarray as xr
 
 from rockframe.arguments import checked_dataset
 from rockframe.constants import CONVENTIONS
-from rockframe.motion.value import Made, MotionValue
+from rockframe.motion.value import UNNAMED, Made, MotionValue
 from rockframe.records import LONG_NAMES, stored_motion
 from rockframe.units import Unit
 
@@ -92,4 +93,5 @@ def from_dataset(kind: type[Made], dataset: xr.Dataset) -> Made:
     >>> rf.GroundMotion.from_dataset(pulse.to_dataset()) == pulse
     True
     """
-    return kind(**stored_motion(checked_dataset(dataset, owner=f"{kind.__name__}.from_dataset")))
+    stored = stored_motion(checked_dataset(dataset, owner=f"{kind.__name__}.from_dataset"))
+    return kind(**vars(replace(stored, name=stored.name or UNNAMED)))

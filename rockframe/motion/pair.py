@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.errors import ComponentError, RecordError, RecordWarning, shown
+from rockframe.errors import ComponentError, RecordError, RecordWarning, shown, warn
 from rockframe.motion.ground_motion import GroundMotion
 from rockframe.motion.operations.following import SAME_STEP
 from rockframe.motion.operations.pulses import LONGEST, SHORTEST, searched, velocity_of
@@ -131,7 +130,7 @@ class HorizontalPair(metaclass=Proposing):
             raise RecordError(source.path, found=found, expected=expected)
         for reading in readings:
             for message in reading.warnings:
-                warnings.warn(message, RecordWarning, stacklevel=2)
+                warn(message, RecordWarning)
         motions = [
             GroundMotion(
                 one.si,

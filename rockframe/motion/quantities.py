@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeGuard, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -32,31 +32,27 @@ def with_quantity(value: float | Array, measure: Measure) -> Quantity:
 
 def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
     """Convert an array argument to accelerations in SI units, or refuse it."""
-    if _is_data_array(value):
-        array = cast("xr.DataArray", value)
-        if _is_quantity(array.data):
-            return accelerations_to_si(array.data, owner=owner, name=name)
-        unit: object = array.attrs.get("units")
+    if isinstance(value, xr.DataArray):
+        if _is_quantity(value.data):
+            return accelerations_to_si(value.data, owner=owner, name=name)
+        unit: object = value.attrs.get("units")
         if not isinstance(unit, str):
             msg = (
                 f"{owner}: {name} needs accelerations with a unit, got a DataArray without "
                 f"a 'units' attribute; set for example {name}.attrs['units'] = 'm s-2'"
             )
             raise UnitsError(msg)
-        return _scaled(array.values, _unit_factor(unit, owner, name, udunits=True), owner, name)
+        return _scaled(value.values, _unit_factor(unit, owner, name, udunits=True), owner, name)
     if _is_quantity(value):
         given = cast("Any", value)
         factor = to_si(type(given)(1.0, given.units), ACCELERATION, owner=owner, name=name)
         return _scaled(given.magnitude, factor, owner, name)
-    if isinstance(value, tuple):
-        pair = cast("tuple[object, ...]", value)
-        if len(pair) == 2 and isinstance(pair[1], str):
-            return _scaled(pair[0], _unit_factor(pair[1], owner, name), owner, name)
+    if _has_unit(value):
+        return _scaled(value[0], _unit_factor(value[1], owner, name), owner, name)
     if isinstance(value, str):
         found = f"{shown(value)}, which is one value"
     else:
-        bare = f"a {type(cast('object', value)).__name__} without a unit"
-        found = foreign_quantity(value) or bare
+        found = foreign_quantity(value) or f"a {type(value).__name__} without a unit"
     msg = (
         f"{owner}: {name} needs an array of accelerations with a unit such as "
         f"{ACCELERATION.unit}, got {found}; write for example {name}={_EXAMPLE}"
@@ -66,30 +62,23 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
 
 def times_to_si(value: object, *, owner: str, name: str) -> Array:
     """Convert an array argument to times in seconds, or refuse it."""
-    values: object = value
+    values: object
     factor = 1.0
-    dates = getattr(value, "dtype", None)
-    if getattr(dates, "kind", "") in {"m", "M"}:
-        found = relative_seconds(value, "s")
-        if found is None:
+    if getattr(getattr(value, "dtype", None), "kind", "") in {"m", "M"}:
+        values = relative_seconds(value, "s")
+        if values is None:
             msg = f"{owner}: {name} needs two or more dates, and none missing"
             raise ComponentError(msg)
-        values = found
-    elif _is_data_array(value):
-        array = cast("xr.DataArray", value)
-        factor = to_si(f"1 {array.attrs.get('units', '')}", TIME, owner=owner, name=name)
-        values = array.values
+    elif isinstance(value, xr.DataArray):
+        factor = to_si(f"1 {value.attrs.get('units', '')}", TIME, owner=owner, name=name)
+        values = value.values
     elif _is_quantity(value):
         given = cast("Any", value)
         factor = to_si(type(given)(1.0, given.units), TIME, owner=owner, name=name)
         values = given.magnitude
-    elif (
-        isinstance(value, tuple)
-        and len(pair := cast("tuple[object, ...]", value)) == 2
-        and isinstance(pair[1], str)
-    ):
-        factor = to_si(f"1 {pair[1]}", TIME, owner=owner, name=name)
-        values = pair[0]
+    elif _has_unit(value):
+        factor = to_si(f"1 {value[1]}", TIME, owner=owner, name=name)
+        values = value[0]
     else:
         msg = (
             f"{owner}: {name} needs an array of times with a unit such as {TIME.unit}, got "
@@ -142,17 +131,17 @@ def _is_quantity(value: object) -> bool:
     return isinstance(value, module.Quantity)
 
 
-def _is_data_array(value: object) -> bool:
-    return isinstance(value, xr.DataArray)
+def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
+    """Tell whether something is a pair of values and a unit."""
+    return isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], str)  # pyright: ignore[reportUnknownArgumentType]
 
 
 def declared_times(value: object) -> Array | None:
     """Give the times that an array carries itself: a time axis, or the index of a Series."""
-    if _is_data_array(value):
-        array = cast("Any", value)
-        if array.ndim != 1 or array.dims[0] not in array.coords or array.dims[0] != "time":
+    if isinstance(value, xr.DataArray):
+        if value.dims != ("time",) or "time" not in value.coords:
             return None
-        axis = array[array.dims[0]]
+        axis = value["time"]
         return relative_seconds(axis.values, axis.attrs.get("units", "s"))
     held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
     if _is_quantity(held):

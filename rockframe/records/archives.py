@@ -175,7 +175,8 @@ def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMemb
                 with archive.open(info) as stream:
                     data = stream.read(MAXIMUM_BYTES + 1)
             except Exception as problem:  # as above; the others may be sound
-                yield ArchiveMember(info.filename, None, _damaged(problem))
+                reason = f"a file that cannot be unpacked ({type(problem).__name__})"
+                yield ArchiveMember(info.filename, None, reason)
                 continue
             budget.take(len(data))
             yield _member(info.filename, data)
@@ -193,10 +194,10 @@ def _check_directory(file: IO[bytes], name: str) -> None:
         place = tail.rfind(_DIRECTORY_END)
     if place < 0:
         return  # the library says what is wrong
-    sizes = [int.from_bytes(tail[place + 12 : place + 16], "little")]
+    size = tail[place + 12 : place + 16]
     if tail[place - 20 : place - 16] == _LOCATOR:  # the long form, which stands before
-        sizes = [int.from_bytes(tail[place - 36 : place - 28], "little")]
-    if max(sizes) > _LONGEST_DIRECTORY:
+        size = tail[place - 36 : place - 28]
+    if int.from_bytes(size, "little") > _LONGEST_DIRECTORY:
         raise _too_many(name)
 
 
@@ -241,20 +242,18 @@ class _Bounded:
             found = "an archive that announces more than a record has"
             raise RecordError(self._budget.name, found=found, expected="an archive of records")
         data = self._file.read(count)
-        self._spend()
+        self._reach(self._file.tell())
         return data
 
     def seek(self, place: int, whence: int = 0) -> int:
         if whence == 0:  # what is passed over has to be unpacked too
-            self._budget.take(max(0, place - self._furthest))
-            self._furthest = max(self._furthest, place)
+            self._reach(place)
         return self._file.seek(place, whence)
 
     def tell(self) -> int:
         return self._file.tell()
 
-    def _spend(self) -> None:
-        place = self._file.tell()
+    def _reach(self, place: int) -> None:
         self._budget.take(max(0, place - self._furthest))
         self._furthest = max(self._furthest, place)
 
@@ -283,10 +282,6 @@ def _misnamed(name: str) -> str:
 
 def _printable(name: str) -> str:
     return "".join(letter if letter.isprintable() else "?" for letter in name)[:200]
-
-
-def _damaged(problem: Exception) -> str:
-    return f"a file that cannot be unpacked ({type(problem).__name__})"
 
 
 def _too_many(name: str) -> RecordError:

@@ -171,14 +171,12 @@ def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Rec
         metadata["unit_as_read"] = as_read
         return Record(time_step, values, unit, metadata)
     response = None if request.unit is not None else _response(source, request, file, one, start)
-    if request.unit is None and response is None:
-        found = f"no unit of {one.name}, and no response of the instrument"
-        expected = (
-            "the argument unit, which is 'cm/s^2' for what gmprocess has processed, or "
-            "StationXML, for counts"
-        )
-        raise source.refuse(found=found, expected=expected)
-    return record_of_counts(source, request, values, time_step, metadata, response)
+    missing = (
+        f"no unit of {one.name}, and no response of the instrument",
+        "the argument unit, which is 'cm/s^2' for what gmprocess has processed, or StationXML, "
+        "for counts",
+    )
+    return record_of_counts(source, request, values, time_step, metadata, response, missing)
 
 
 def _values(source: Source, one: _Waveform, variable: Any) -> Array:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from rockframe.constants import STANDARD_GRAVITY
-from rockframe.records.numbers import NUMBER
+from rockframe.records.numbers import ONE_NUMBER
 from rockframe.records.reader import Metadata, Record, Request, Source
 from rockframe.records.unit_names import RecordUnit, acceleration_unit
 
@@ -44,7 +44,6 @@ PEAK_SHARE: Final = 0.015
 LENGTH_SHARE: Final = 0.01
 """Stated lengths are those of the samples to this share, or to two time steps."""
 
-_ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
 _NUMBERS_ONLY: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
 _LONGEST: Final = 30
 _MOST_LINES: Final = 200
@@ -222,7 +221,7 @@ def surplus(source: Source, index: int, what: str) -> list[str]:
 def _printed(text: str) -> tuple[float | None, float]:
     """Give a number and half of its last printed digit."""
     text = text.strip()
-    if len(text) > _LONGEST or _ONE_NUMBER.fullmatch(text) is None:
+    if len(text) > _LONGEST or ONE_NUMBER.fullmatch(text) is None:
         return None, 0.0
     mantissa, _, exponent = text.upper().replace("D", "E").partition("E")
     value = float(f"{mantissa}E{exponent or 0}")

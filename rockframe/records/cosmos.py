@@ -31,7 +31,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import FixedWidth, one_number, whole
+from rockframe.records.numbers import Fields, FixedWidth, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import acceleration_unit, choose_unit
 
@@ -94,83 +94,56 @@ _MOST_COMMENTS: Final = 200
 
 
 @dataclass(frozen=True)
-class Header:
-    """Header of one block of a COSMOS file."""
+class _Header:
+    """Header of one channel and quantity."""
 
-    source: Source  # file
-    start: int  # index of the block's first line, from 0
-    text_lines: int  # how many lines of text it begins with
-    integers_at: int  # index of the first line of the integers and of the reals
-    reals_at: int
-    integers: FixedWidth  # their layout
-    reals: FixedWidth
-    integer_count: int  # how many there are
+    text: list[str]  # its first lines
+    integers: Fields
+    reals: Fields
+    integer_count: int
     real_count: int
-    comments: tuple[str, ...]  # comment lines
+    comments: str  # comment lines
     data_at: int  # index of the line that announces the data
     unknown: tuple[int, float]  # what stands for an integer and for a real that is not known
 
     def line(self, place: int) -> str:
         """Give a text line, from 1; empty if there is none."""
-        inside = 1 <= place <= self.text_lines
-        return self.source.top(1, self.start + place - 1)[0] if inside else ""
+        return self.text[place - 1] if place <= len(self.text) else ""
 
     def integer(self, place: int) -> int | None:
         """Give an integer header value, from 1; None if it is unknown."""
-        if not 1 <= place <= self.integer_count:
+        if place > self.integer_count or not self.integers.cell(place):
             return None
-        text = self.integers.cell(self.source, self.integers_at, place)
-        value = whole(text)
-        if value is None and text:
-            raise self.source.refuse(
-                found=f"{quoted_first_line(text)} for integer header {place}",
-                expected="a whole number",
-                line=self.integers.line(self.integers_at, place),
-            )
+        value = self.integers.count(place, f"integer header {place}")
         return None if value == self.unknown[0] else value
 
     def real(self, place: int) -> float | None:
         """Give a real header value, from 1; None if it is unknown."""
-        if not 1 <= place <= self.real_count:
+        if place > self.real_count or not self.reals.cell(place):
             return None
-        text = self.reals.cell(self.source, self.reals_at, place)
-        if not text:
-            return None
-        value = one_number(text, self.source, self.reals.line(self.reals_at, place))
+        value = self.reals.number(place, f"real header {place}")
         return None if math.isclose(value, self.unknown[1]) else value
 
 
-def read_header(source: Source, start: int, end: int, text_lines: int) -> Header:
-    """Read the header of a block."""
+def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Header:
     at = start + text_lines
-    integers, integers_at, reals_line = _section(source, at, end, _INTEGERS, "integer header")
-    reals, reals_at, comments_line = _section(source, reals_line, end, _REALS, "real header")
-    comments: tuple[str, ...] = ()
-    data_at = comments_line
+    integers, integer_count, at = _section(source, at, end, _INTEGERS, "integer header")
+    reals, real_count, comments_line = _section(source, at, end, _REALS, "real header")
+    comments, data_at = "", comments_line
     said = _COMMENTS.search(source.top(1, comments_line)[0]) if comments_line < end else None
     if said is not None:
         first = comments_line + 1
         data_at = min(first + int(said.group(1)), end)
-        comments = tuple(source.top(min(data_at - first, _MOST_COMMENTS), first))
-    return Header(
-        source=source,
-        start=start,
-        text_lines=min(text_lines, end - start),
-        integers_at=integers_at,
-        reals_at=reals_at,
-        integers=integers[1],
-        reals=reals[1],
-        integer_count=integers[0],
-        real_count=reals[0],
-        comments=comments,
-        data_at=data_at,
-        unknown=_unknown(source.top(text_lines, start)),
-    )
+        comments = "\n".join(source.top(min(data_at - first, _MOST_COMMENTS), first))
+    text = source.top(min(text_lines, end - start), start)
+    unknown = _unknown(source.top(text_lines, start))
+    return _Header(text, integers, reals, integer_count, real_count, comments, data_at, unknown)
 
 
 def _section(
     source: Source, at: int, end: int, announcement: re.Pattern[str], what: str
-) -> tuple[tuple[int, FixedWidth], int, int]:
+) -> tuple[Fields, int, int]:
+    """Give the fields of a section, how many there are, and the index of the line below them."""
     # one line of slack: some files have a text line more than they announce
     for index in (at, at + 1, at - 1):
         if not 0 <= index < end:
@@ -184,15 +157,16 @@ def _section(
             found = f"{count} values on {lines} lines of {columns} ({what})"
             expected = "as many lines as these values need, and as many as follow"
             raise source.refuse(found=found, expected=expected, line=index + 1)
-        return (count, FixedWidth(width, columns)), first, first + lines
+        return FixedWidth(width, columns).at(source, first), count, first + lines
     index = min(max(at, 0), end - 1)
     raise source.refuse(
         found=quoted_first_line(source.lines[index]),
-        expected=f"the line that announces the {what}, such as '100 Integer-header values "
-        "follow on 10 lines, Format= (10I8)'"
-        if announcement is _INTEGERS
-        else f"the line that announces the {what}, such as '100 Real-header values follow on "
-        "20 lines, Format= (5F15.6)'",
+        expected=f"the line that announces the {what}, such as '100 "
+        + (
+            "Integer-header values follow on 10 lines, Format= (10I8)'"
+            if announcement is _INTEGERS
+            else "Real-header values follow on 20 lines, Format= (5F15.6)'"
+        ),
         line=index + 1,
     )
 
@@ -275,20 +249,16 @@ def _blocks(source: Source) -> list[_Block]:
 
 
 def _component(source: Source, request: Request, block: _Block) -> FileComponent:
-    header = read_header(source, block.index, block.end, block.text_lines)
+    header = _read_header(source, block.index, block.end, block.text_lines)
     channel, direction = _channel(header)
-    code = _SCNL.search("\n".join(header.comments))
+    code = _SCNL.search(header.comments)
     name = code.group(2) if code else direction or f"channel {channel or '?'}"
     aliases = [direction] if direction else []
     if code:
         aliases.append(".".join((code.group(3), code.group(1), code.group(4), code.group(2))))
-
-    def samples() -> Record:
-        return _samples(source, request, header)
-
     return FileComponent(
         name,
-        samples,
+        lambda: _samples(source, request, header),
         _orientation(header, direction, code.group(2) if code else ""),
         channel=channel,
         aliases=tuple(aliases),
@@ -296,7 +266,7 @@ def _component(source: Source, request: Request, block: _Block) -> FileComponent
     )
 
 
-def _channel(header: Header) -> tuple[int | None, str]:
+def _channel(header: _Header) -> tuple[int | None, str]:
     match = _CHANNEL.search(header.line(9))
     if match is None:
         return None, ""
@@ -304,7 +274,7 @@ def _channel(header: Header) -> tuple[int | None, str]:
     return whole(match.group(1)), "" if direction.casefold() == "other" else direction
 
 
-def _orientation(header: Header, direction: str, code: str) -> Orientation:
+def _orientation(header: _Header, direction: str, code: str) -> Orientation:
     seed = orientation_of(code)
     if seed.vertical is not None:  # files that give a vertical channel an azimuth exist
         return seed
@@ -317,30 +287,30 @@ def _orientation(header: Header, direction: str, code: str) -> Orientation:
     return said if said != Orientation() else seed
 
 
-def _samples(source: Source, request: Request, header: Header) -> Record:
+def _samples(source: Source, request: Request, header: _Header) -> Record:
     line, match = _data_line(source, header)
     quantity = header.integer(2)
     if quantity is not None and quantity != ACCELERATION and quantity in QUANTITIES:
         found = f"{QUANTITIES[quantity]} (code {quantity})"
-        raise source.refuse(found=found, expected="an acceleration", line=header.integers_at + 1)
+        raise source.refuse(found=found, expected="an acceleration", line=header.integers.line(2))
     name = _unit_name(source, request, header, match.group(3), line)
     chosen = choose_unit(source, request, name, line)
     count = int(match.group(1))
     time_step = _time_step(source, header, count)
-    check_asked_time_step(source, request, time_step, header.reals.line(header.reals_at, 62))
+    check_asked_time_step(source, request, time_step, header.reals.line(62))
     layout = FixedWidth(int(match.group(5)), int(match.group(4) or 1))
     values = layout.read(source, line, count)
     peak = header.real(64)
     stated: list[Stated] = []
     if peak is not None and quantity == ACCELERATION:
         peak_unit = chosen[1] if request.unit is None else name
-        stated.append(Stated(f"{peak:.12g}", peak_unit, header.reals.line(header.reals_at, 64)))
+        stated.append(Stated(f"{peak:.12g}", peak_unit, header.reals.line(64)))
     behind = surplus(source, line + layout.rows(count), f"line {line}")
     metadata = _description(header)
     return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
 
 
-def _data_line(source: Source, header: Header) -> tuple[int, re.Match[str]]:
+def _data_line(source: Source, header: _Header) -> tuple[int, re.Match[str]]:
     for index, text in enumerate(source.top(3, header.data_at), start=header.data_at):
         match = _DATA_LINE.match(text)
         if match is not None:
@@ -352,7 +322,7 @@ def _data_line(source: Source, header: Header) -> tuple[int, re.Match[str]]:
     )
 
 
-def _unit_name(source: Source, request: Request, header: Header, text: str, line: int) -> str:
+def _unit_name(source: Source, request: Request, header: _Header, text: str, line: int) -> str:
     match = _UNIT_CODE.match(text)
     name = (match.group(1) if match else text).strip().rstrip(".")
     code = whole(match.group(2)) if match else header.integer(3)
@@ -364,8 +334,8 @@ def _unit_name(source: Source, request: Request, header: Header, text: str, line
     return name or UNITS.get(code or 0, "")
 
 
-def _time_step(source: Source, header: Header, count: int) -> float:
-    line = header.reals.line(header.reals_at, 62)
+def _time_step(source: Source, header: _Header, count: int) -> float:
+    line = header.reals.line(62)
     milliseconds = header.real(62)
     if milliseconds is None:
         found = "no sample interval (real header 62)"
@@ -386,7 +356,7 @@ def _time_step(source: Source, header: Header, count: int) -> float:
     return time_step
 
 
-def _description(header: Header) -> Metadata:
+def _description(header: _Header) -> Metadata:
     metadata: Metadata = {"description": header.line(1).split("(")[0].strip()}
     event = re.sub(r"^(?:Record|Rcrd) of\s+", "", header.line(2).strip(), flags=re.IGNORECASE)
     if _DAY.match(event):  # no event was found yet: the day of the record stands in its place

@@ -31,6 +31,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from rockframe.records.checks import (
@@ -48,8 +49,8 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import first_match
-from rockframe.records.numbers import FixedWidth, uniform_step, whole
+from rockframe.records.headers import first_match, without_blanks
+from rockframe.records.numbers import FixedWidth, number_or_none, uniform_step, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -108,11 +109,8 @@ def channel_of(header: list[str], first: int) -> tuple[int | None, str, int]:
         found = (whole(match.group(1)), degrees.group(1) if degrees else name, line)
         if name:
             return found
-    for line, text in enumerate(header, start=first + 1):
-        match = _COMPONENT.search(text)
-        if match is not None:
-            return found[0], match.group(1), line
-    return found
+    component = first_match(_COMPONENT, header, first + 1)
+    return found if component is None else (found[0], component[0][1], component[1])
 
 
 def _peak_in_header(header: list[str], first: int) -> Stated | None:
@@ -160,9 +158,9 @@ def description(header: list[str]) -> Metadata:
             if _PROCESSING.search(name) is None:
                 metadata["station_name"] = name
         break
-    location = next((match for text in lines if (match := _LOCATION.search(text))), None)
+    location = first_match(_LOCATION, lines)
     if location is not None:
-        metadata["sensor_location"] = " ".join(location.group(1).split())
+        metadata["sensor_location"] = " ".join(location[0][1].split())
     return metadata
 
 
@@ -183,8 +181,7 @@ def _event(lines: list[str], place: int) -> Metadata:
         origin = _ORIGIN.search(text)
         if origin is not None and not time and _DATE.search(origin.group(1)):
             time = origin.group(1).strip()
-    found = {"event": " ".join(name.split()), "event_time": " ".join(time.split())}
-    return {key: value for key, value in found.items() if value}
+    return without_blanks({"event": " ".join(name.split()), "event_time": " ".join(time.split())})
 
 
 _POINTS: Final = re.compile(r"\bNO\. OF POINTS\s*=\s*(\d{1,9})", re.IGNORECASE)
@@ -217,11 +214,10 @@ class Pairs:
 def find_pairs(source: Source, first: int) -> Pairs | None:
     """Look for pairs below a channel's first line."""
     top = [line.rstrip() for line in source.top(_LONGEST_PAIR_HEADER, first)]
-    points = next((m for line in top if (m := _POINTS.search(line))), None)
-    units = next(((k, m) for k, line in enumerate(top) if (m := _UNITS.search(line))), None)
+    points, units = first_match(_POINTS, top), first_match(_UNITS, top, 0)
     if points is None or units is None:
         return None
-    place = units[0]
+    place = units[1]
     while place < len(top) and _WHOLE_NUMBERS.fullmatch(top[place]) is None:
         place += 1
     while place < len(top) and _WHOLE_NUMBERS.fullmatch(top[place]):
@@ -232,8 +228,8 @@ def find_pairs(source: Source, first: int) -> Pairs | None:
         place += 1
     if reals < _REALS or place >= len(top):
         return None
-    unit = units[1].group(1).rstrip(".")
-    return Pairs(int(points.group(1)), unit, first + units[0] + 1, first + place)
+    unit = units[0][1].rstrip(".")
+    return Pairs(int(points[0][1]), unit, first + units[1] + 1, first + place)
 
 
 def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
@@ -304,7 +300,10 @@ def _read(source: Source, request: Request) -> Record:
     if _SPECTRA.match(source.top(1)[0]):
         found = "response spectra (volume 3)"
         raise source.refuse(found=found, expected="an acceleration (volume 1 or 2)", line=1)
-    components = [_component(source, request, block) for block in _blocks(source)]
+    components = [
+        _named(block.header, block.first, partial(_samples, source, request, block))
+        for block in _blocks(source)
+    ]
     components = components or _components_of_pairs(source, request)
     if not components:
         found = f"no evenly sampled accelerations below {quoted_first_line(source.start)}"
@@ -337,13 +336,6 @@ def _blocks(source: Source) -> list[_Block]:
 def _too_many(source: Source, line: int) -> RecordError:
     expected = f"at most {_MOST_CHANNELS} channels"
     return source.refuse(found="more channels", expected=expected, line=line)
-
-
-def _component(source: Source, request: Request, block: _Block) -> FileComponent:
-    def samples() -> Record:
-        return _samples(source, request, block)
-
-    return _named(block.header, block.first, samples)
 
 
 def _named(header: list[str], first: int, samples: Callable[[], Record]) -> FileComponent:
@@ -436,11 +428,11 @@ def _time_step(source: Source, block: _Block) -> float:
 
 
 def _seconds(source: Source, text: str, line: int) -> float:
-    try:
-        return float(text)
-    except ValueError:
+    seconds = number_or_none(text)
+    if seconds is None:
         found = f"an interval of {quoted_first_line(text)} s"
-        raise source.refuse(found=found, expected="a time step", line=line) from None
+        raise source.refuse(found=found, expected="a time step", line=line)
+    return seconds
 
 
 def _layout(source: Source, block: _Block, text: str) -> FixedWidth:

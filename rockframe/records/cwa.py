@@ -29,8 +29,8 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import NOTHING, Keys, needed, needed_rate, renamed
-from rockframe.records.numbers import FixedWidth, one_number, rows_below
+from rockframe.records.headers import Keys, needed, needed_rate, renamed, text_of, without_blanks
+from rockframe.records.numbers import FixedWidth, number_or_none, one_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -155,27 +155,19 @@ def _stated_peak(source: Source, name: str, unit: str) -> list[Stated]:
     for line, text in enumerate(source.top(_LONGEST_HEADER), start=1):
         match = _PEAKS.match(text)
         if match is not None and match.group(1).casefold() == name.lstrip("-").casefold():
-            return [Stated(max(match.groups()[1:], key=_size), unit, line)]
+            printed = max(match.groups()[1:], key=lambda text: abs(number_or_none(text) or 0.0))
+            return [Stated(printed, unit, line)]
     return []
 
 
-def _size(printed: str) -> float:
-    try:
-        return abs(float(printed))
-    except ValueError:
-        return 0.0
-
-
 def _description(header: Keys) -> Metadata:
-    metadata = renamed(header, _KEPT)
-    origin = header.get("origintime", NOTHING)[0]
-    if origin:
-        metadata["event"] = f"earthquake of {origin} (GMT+08)"
-        metadata["event_time"] = f"{origin} (GMT+08)"
-    start = header.get("starttime", NOTHING)[0]
-    if start:
-        metadata["record_time"] = f"{start} (GMT+08)"
-    return metadata
+    origin, start = text_of(header, "origintime"), text_of(header, "starttime")
+    times = {
+        "event": origin and f"earthquake of {origin} (GMT+08)",
+        "event_time": origin and f"{origin} (GMT+08)",
+        "record_time": start and f"{start} (GMT+08)",
+    }
+    return renamed(header, _KEPT) | without_blanks(times)
 
 
 CWA: Final = Format(

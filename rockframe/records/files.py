@@ -19,7 +19,7 @@ from rockframe.records.archives import (
     members,
     packs_tar,
 )
-from rockframe.records.reader import Source, source_of
+from rockframe.records.reader import Source, base_name, check_size, source_of
 
 PathLike: TypeAlias = str | os.PathLike[str]
 RecordLike: TypeAlias = PathLike | bytes | IO[bytes] | IO[str]
@@ -31,26 +31,21 @@ _OPEN: Final = "open file"
 
 
 def read_source(given: RecordLike) -> Source:
-    """Read the bytes of a file, or refuse it."""
-    return source_of(*received(given))
-
-
-def received(given: RecordLike) -> tuple[str, bytes]:
-    """Give the bytes of one record file, unpacked where they are packed."""
+    """Read the bytes of one record file, unpacked where they are packed, or refuse it."""
     name, data = as_given(given)
     check_unpackable(name, data)
     if is_archive(data) or packs_tar(io.BytesIO(data)):
-        return _only_member(name, data)
-    if is_gzip(data):
-        return f"{name}/{_unpacked_name(name)}", unzipped(name, data)
-    return name, data
+        name, data = _only_member(name, data)
+    elif is_gzip(data):
+        name, data = f"{name}/{_unpacked_name(name)}", unzipped(name, data)
+    return source_of(name, data)
 
 
 def as_given(given: object) -> tuple[str, bytes]:
     """Give name and bytes of what was given, packed or not."""
     if isinstance(given, bytes | bytearray | memoryview):
         data = bytes(given)
-        check_size(IN_MEMORY, len(data))
+        check_size(IN_MEMORY, len(data), MAXIMUM_BYTES)
         return IN_MEMORY, data
     if hasattr(given, "read"):
         return _from_open(cast("IO[bytes]", given))
@@ -66,14 +61,6 @@ def path_of(given: object) -> Path:
         raise _no_name(given) from problem
 
 
-def check_size(name: str, size: int) -> None:
-    """Refuse a file that is larger than any record."""
-    if size > MAXIMUM_BYTES:
-        found = f"{size / 2**20:.3g} MiB"
-        expected = f"a record of at most {MAXIMUM_BYTES // 2**20} MiB"
-        raise RecordError(name, found=found, expected=expected)
-
-
 def unzipped(name: str, data: bytes) -> bytes:
     """Unpack what gzip packed."""
     try:
@@ -82,7 +69,7 @@ def unzipped(name: str, data: bytes) -> bytes:
     except Exception as problem:  # the libraries do not document all that damaged files raise
         found = f"a gzip file that cannot be unpacked ({type(problem).__name__})"
         raise RecordError(name, found=found, expected="a record file") from problem
-    check_size(name, len(unpacked))
+    check_size(name, len(unpacked), MAXIMUM_BYTES)
     if is_archive(unpacked) or is_gzip(unpacked):
         found = "a file that is packed twice"
         raise RecordError(name, found=found, expected="a record file")
@@ -110,7 +97,7 @@ def _only_member(name: str, data: bytes) -> tuple[str, bytes]:
 
 
 def _unpacked_name(name: str) -> str:
-    base = name.replace("\\", "/").rsplit("/", 1)[-1]
+    base = base_name(name)
     return base[:-3] if base.casefold().endswith(".gz") and len(base) > 3 else base
 
 
@@ -127,7 +114,7 @@ def _from_open(file: IO[bytes]) -> tuple[str, bytes]:
     if not isinstance(data, bytes):
         found = f"a file object that gives {type(data).__name__}"
         raise RecordError(name, found=found, expected="bytes")
-    check_size(name, len(data))
+    check_size(name, len(data), MAXIMUM_BYTES)
     return name, data
 
 
@@ -139,7 +126,7 @@ def _from_path(path: Path) -> bytes:
             raise RecordError(name, found="a directory", expected=expected)
         if path.exists() and not path.is_file():
             raise RecordError(name, found="no ordinary file", expected="a record file")
-        check_size(name, path.stat().st_size)
+        check_size(name, path.stat().st_size, MAXIMUM_BYTES)
         return path.read_bytes()
     except FileNotFoundError as problem:
         raise RecordError(name, found="no such file", expected="a record file") from problem

@@ -76,6 +76,27 @@ def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float
     return time_step
 
 
+def text_of(keys: Keys, key: str) -> str:
+    """Give the value of a key, empty if it is not there."""
+    return keys.get(key, NOTHING)[0]
+
+
+def without_blanks(described: Mapping[str, str]) -> Metadata:
+    """Leave out what is empty."""
+    return {name: text for name, text in described.items() if text}
+
+
+def needed_match(
+    source: Source, pattern: re.Pattern[str], lines: list[str], such_as: str, first: int = 1
+) -> tuple[re.Match[str], int]:
+    """Find the first line in which a pattern is found, which must be there, and its number."""
+    found = first_match(pattern, lines, first)
+    if found is None:
+        words = f"no such line below {quoted_first_line(chr(10).join(lines))}"
+        raise source.refuse(found=words, expected=f"a line such as {such_as!r}", line=first)
+    return found
+
+
 def renamed(keys: Keys, names: Mapping[str, str]) -> Metadata:
     """Give those values that go into the metadata, under their new names."""
-    return {name: keys[key][0] for key, name in names.items() if keys.get(key, NOTHING)[0]}
+    return without_blanks({name: text_of(keys, key) for key, name in names.items()})

@@ -40,6 +40,11 @@ _SENSITIVITY: Final = "{*}Response/{*}InstrumentSensitivity"
 _UNSAID: Final = ("", "none")
 _LEVEL: Final = 5.0
 _UPRIGHT: Final = 85.0
+_MISSING: Final = (
+    "counts, and no response of the instrument",
+    "StationXML beside the file or as the argument response, or the argument unit if the samples "
+    "are accelerations",
+)
 
 
 @dataclass(frozen=True)
@@ -261,22 +266,20 @@ def record_of_counts(
     time_step: float,
     metadata: Metadata,
     response: InstrumentResponse | None,
+    missing: tuple[str, str] = _MISSING,
 ) -> Record:
     """Build the record of one channel of a file that states no unit.
 
     The counts less their mean are divided by the sensitivity: the response is taken as
-    flat, which that of an accelerometer is from zero to near its corner.
+    flat, which that of an accelerometer is from zero to near its corner. `missing` says what was
+    found and expected where there is neither a response nor a unit that was asked for.
     """
     if request.unit is not None and request.unit_name is not None:
         described: Metadata = {**metadata, "unit_as_read": request.unit_name}
         history = (f"the samples taken as accelerations in {request.unit_name}, as asked for",)
         return Record(time_step, values, request.unit, described, history)
     if response is None:
-        found = "counts, and no response of the instrument"
-        expected = (
-            "StationXML beside the file or as the argument response, or the argument unit if "
-            "the samples are accelerations"
-        )
+        found, expected = missing
         raise source.refuse(found=found, expected=expected)
     offset = float(math.fsum(values) / values.size)
     described = {

@@ -17,9 +17,12 @@ from rockframe.records.headers import (
     Keys,
     first_match,
     needed_count,
+    needed_match,
     needed_step,
     read_keys,
     renamed,
+    text_of,
+    without_blanks,
 )
 from rockframe.records.numbers import (
     NUMBER,
@@ -77,8 +80,7 @@ def _read_esm(source: Source, request: Request) -> Record:
     chosen = choose_unit(source, request, unit_name or None, unit_line or None)
     declared, count_line = needed_count(source, header, "NDATA")
     metadata = renamed(header, _ESM_KEPT)
-    day = header.get("EVENT_DATE_YYYYMMDD", NOTHING)[0]
-    clock = header.get("EVENT_TIME_HHMMSS", NOTHING)[0]
+    day, clock = (text_of(header, f"EVENT_{key}") for key in ("DATE_YYYYMMDD", "TIME_HHMMSS"))
     if day:
         metadata["event_time"] = f"{day}_{clock}" if clock else day
     name, name_line = header.get("STREAM", header.get("COMPONENT", NOTHING))
@@ -156,11 +158,8 @@ def _read_resorce(source: Source, request: Request) -> Record:
     unit_match, line = series
     chosen = choose_unit(source, request, unit_match[1], line)
     metadata: Metadata = {**renamed(header, _RESORCE_KEPT), "unit_as_read": chosen[1]}
-    code, _, place = header.get("Station Code / Name", NOTHING)[0].partition("/")
-    if code.strip():
-        metadata["station"] = code.strip()
-    if place.strip():
-        metadata["station_name"] = place.strip()
+    code, _, place = text_of(header, "Station Code / Name").partition("/")
+    metadata |= without_blanks({"station": code.strip(), "station_name": place.strip()})
     if "event_time" in metadata:
         metadata["event"] = f"earthquake of {metadata['event_time']}"
     name, name_line = header.get("Orientation", NOTHING)
@@ -318,9 +317,10 @@ def _is_csmnc(source: Source) -> bool:
 
 def _read_csmnc(source: Source, request: Request) -> Record:
     top = source.top(_LONGEST_HEADER)
-    kind, kind_line = _csmnc_line(source, _KIND, "UNCORRECTED ACCELERATION   UNIT: CM/SEC/SEC")
+    such_as = "UNCORRECTED ACCELERATION   UNIT: CM/SEC/SEC"
+    kind, kind_line = needed_match(source, _KIND, top, such_as)
     such_as = "NO. OF POINTS: 12800 EQUALLY SPACED INTERVALS OF: ..."
-    points, line = _csmnc_line(source, _POINTS, such_as)
+    points, line = needed_match(source, _POINTS, top, such_as)
     if kind[1].upper() != "ACCELERATION":
         found = f"a {kind[1].lower()}"
         raise source.refuse(found=found, expected="an acceleration", line=kind_line)
@@ -346,16 +346,6 @@ def _read_csmnc(source: Source, request: Request) -> Record:
     name, name_line = (None, None) if named is None else (named[0][1], named[1])
     component = FileComponent(name, samples, orientation_of(name or ""), line=name_line)
     return choose_component(source, request, [component])
-
-
-def _csmnc_line(
-    source: Source, pattern: re.Pattern[str], such_as: str
-) -> tuple[re.Match[str], int]:
-    found = first_match(pattern, source.top(_LONGEST_HEADER))
-    if found is None:
-        words = f"no such line below {quoted_first_line(source.start)}"
-        raise source.refuse(found=words, expected=f"a line such as {such_as!r}", line=1)
-    return found
 
 
 def _csmnc_description(top: list[str]) -> Metadata:

@@ -21,7 +21,7 @@ import numpy as np
 
 from rockframe.records.checks import settle_count
 from rockframe.records.components import FileComponent, choose_component, orientation_of
-from rockframe.records.headers import NOTHING, Keys, needed, needed_rate
+from rockframe.records.headers import Keys, needed, needed_rate, text_of, without_blanks
 from rockframe.records.numbers import NUMBER, cut_short, free_format, last_fields, one_number
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -145,13 +145,13 @@ def _counts(
     fields = last_fields(source, first)
     open_end = bool(source.lines[-1]) and not source.lines[-1][-1].isspace()
     # of whole numbers nothing but their length shows that the last one was cut
-    if open_end and counts.size <= declared and len(fields[-1]) < _shortest(fields[:-1]):
+    if (
+        open_end
+        and counts.size <= declared
+        and len(fields[-1]) < min(map(len, fields[:-1]), default=0)
+    ):
         raise cut_short(source, f"{counts.size} of {declared} samples")
     return counts, said, differing
-
-
-def _shortest(fields: list[str]) -> int:
-    return min(map(len, fields), default=0)
 
 
 def _compare_peak(source: Source, header: Keys, values: Array) -> list[str]:
@@ -168,18 +168,14 @@ def _compare_peak(source: Source, header: Keys, values: Array) -> list[str]:
 
 
 def _description(header: Keys) -> Metadata:
-    metadata: Metadata = {}
-    station = header.get("Station Code", NOTHING)[0]
-    if station:
-        metadata["station"] = station
-    origin = header.get("Origin Time", NOTHING)[0]
-    if origin:
-        metadata["event"] = f"earthquake of {origin} JST"
-        metadata["event_time"] = _iso(origin) or f"{origin} JST"
-    recorded = header.get("Record Time", NOTHING)[0]
-    if recorded:
-        metadata["record_time"] = _iso(recorded, _DELAY) or f"{recorded} JST, less 15 s"
-    return metadata
+    origin, recorded = text_of(header, "Origin Time"), text_of(header, "Record Time")
+    described = {
+        "station": text_of(header, "Station Code"),
+        "event": origin and f"earthquake of {origin} JST",
+        "event_time": origin and (_iso(origin) or f"{origin} JST"),
+        "record_time": recorded and (_iso(recorded, _DELAY) or f"{recorded} JST, less 15 s"),
+    }
+    return without_blanks(described)
 
 
 def _iso(printed: str, delay: timedelta = timedelta(0)) -> str | None:

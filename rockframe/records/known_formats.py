@@ -111,15 +111,11 @@ def register(reader: Reader) -> None:
             f"{_OWNER}: the format {reader.NAME!r} is there already; unregister it or rename yours"
         )
         raise ComponentError(msg)
-    added = Format(
-        reader.NAME,
-        reader.TITLE,
-        tuple(reader.SUFFIXES),
-        reader.recognises,
-        reader.read,
-        binary=bool(getattr(reader, "BINARY", False)),
+    binary = bool(getattr(reader, "BINARY", False))
+    suffixes = tuple(reader.SUFFIXES)
+    _registered.append(
+        Format(reader.NAME, reader.TITLE, suffixes, reader.recognises, reader.read, binary=binary)
     )
-    _registered.append(added)
 
 
 def unregister(name: str) -> None:

@@ -20,6 +20,7 @@ import struct
 import sys
 import warnings
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
@@ -29,7 +30,6 @@ from rockframe.records.checks import check_time_step, settle_time_step
 from rockframe.records.components import (
     UNKNOWN,
     FileComponent,
-    Orientation,
     choose_component,
     orientation_of,
 )
@@ -83,12 +83,17 @@ def _read(source: Source, request: Request) -> Record:
     check_unit_or_response(source, request)
     channels = _channels(source)
     responses = None if request.unit is not None else InstrumentResponses(source, request)
-    stations = {name.rsplit(".", 2)[0] for name in channels}
     components = [
-        _component(source, request, name, traces, responses, several=len(stations) > 1)
-        for name, traces in channels.items()
+        _component(source, request, name, label, channels[name], responses)
+        for name, label in _labels(channels).items()
     ]
     return choose_component(source, request, components)
+
+
+def _labels(channels: Iterable[str]) -> dict[str, str]:
+    """Call channels by all their codes, or by their own alone where there is one station."""
+    several = len({name.rsplit(".", 2)[0] for name in channels}) > 1
+    return {name: name if several else codes_of(name)[3] for name in channels}
 
 
 def _obspy(source: Source) -> Any:
@@ -141,23 +146,17 @@ def _rate(factor: int, multiplier: int) -> float:
 
 @contextmanager
 def _quietly() -> Generator[None]:
-    """Keep what ObsPy says of damaged files from the terminal.
-
-    It raises errors in callbacks of the C library under it, which Python cannot pass on
-    and prints; what is wrong shows in what comes back.
-    """
+    """Keep what ObsPy says of damaged files from the terminal."""
+    # it raises errors in callbacks of the C library under it, which Python cannot pass on and
+    # prints; what is wrong shows in what comes back
     hook = sys.unraisablehook
-    sys.unraisablehook = _unsaid
+    sys.unraisablehook = lambda _: None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
     finally:
         sys.unraisablehook = hook
-
-
-def _unsaid(problem: object) -> None:
-    """Take note of nothing."""
 
 
 def _channels(source: Source) -> dict[str, list[Any]]:
@@ -189,10 +188,9 @@ def _component(
     source: Source,
     request: Request,
     name: str,
+    label: str,
     traces: list[Any],
     responses: InstrumentResponses | None,
-    *,
-    several: bool,
 ) -> FileComponent:
     channel = codes_of(name)[3]
     first = min(traces, key=lambda trace: trace.stats.starttime)
@@ -204,7 +202,7 @@ def _component(
             problem = refusal
     direction = UNKNOWN if response is None else response.orientation
     if direction == UNKNOWN:
-        direction = orientation_of(channel) if len(channel) == 3 else Orientation()
+        direction = orientation_of(channel) if len(channel) == 3 else UNKNOWN
 
     def samples() -> Record:
         if problem is not None:
@@ -214,7 +212,7 @@ def _component(
         metadata: Metadata = {**about_codes(name), "record_time": start}
         return record_of_counts(source, request, counts, time_step, metadata, response)
 
-    return FileComponent(name if several else channel, samples, direction, aliases=(name, channel))
+    return FileComponent(label, samples, direction, aliases=(name, channel))
 
 
 def by_channel(traces: Iterable[Any]) -> dict[str, list[Any]]:
@@ -263,33 +261,22 @@ def components_of_traces(
 ) -> list[FileComponent]:
     """Tell the channels of traces that are in memory."""
     channels = by_channel(traces)
-    stations = {code.rsplit(".", 2)[0] for code in channels}
-    return [
-        _component_of_traces(source, request, code, held, several=len(stations) > 1)
-        for code, held in channels.items()
-    ]
 
-
-def _component_of_traces(
-    source: Source, request: Request, code: str, traces: list[Any], *, several: bool
-) -> FileComponent:
-    channel = codes_of(code)[3]
-
-    def samples() -> Record:
-        values, time_step, start = joined_traces(source, traces)
+    def samples(name: str) -> Record:
+        held = channels[name]
+        values, time_step, start = joined_traces(source, held)
         check_time_step(source, time_step, None)
-        unit, as_read, said = choose_unit(source, request, _stated_unit(traces[0].stats), None)
-        metadata: Metadata = {
-            **about_codes(code),
-            "record_time": start,
-            "unit_as_read": as_read,
-        }
+        unit, as_read, said = choose_unit(source, request, _stated_unit(held[0].stats), None)
+        metadata = {**about_codes(name), "record_time": start, "unit_as_read": as_read}
         return Record(time_step, values, unit, metadata, warnings=tuple(said))
 
-    aliases = (code, channel)
-    return FileComponent(
-        code if several else channel, samples, orientation_of(channel), aliases=aliases
-    )
+    return [
+        FileComponent(
+            label, partial(samples, name), orientation_of(channel), aliases=(name, channel)
+        )
+        for name, label in _labels(channels).items()
+        for channel in codes_of(name)[3:]
+    ]
 
 
 def _stated_unit(stats: Mapping[str, Any]) -> str | None:

@@ -18,7 +18,7 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, RecordError, SchemaError
 from rockframe.records.checks import check_asked_time_step
-from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
+from rockframe.records.components import FileComponent, choose_component, orientation_of
 from rockframe.records.reader import Format, Record, Request, Source, StoredMotion, begins_otherwise
 from rockframe.records.unit_names import RecordUnit
 from rockframe.signals import Motion, Signal
@@ -100,7 +100,8 @@ def _stored(source: Source) -> StoredMotion:
                 _check_declared(source, file.variables)
                 # undecoded: the numbers as they were written
                 dataset = xr.open_dataset(NetCDF4DataStore(file), decode_cf=False)
-                arguments = stored_motion(_only_motion(dataset).load())
+                held = [name for name in _VARIABLES if name in file.variables]
+                stored = stored_motion(dataset[held].load())
     except RecordError:
         raise
     except NoMotionError as problem:
@@ -109,24 +110,12 @@ def _stored(source: Source) -> StoredMotion:
         # the libraries fail on damaged files in ways that they do not document
         found = f"a netCDF file that cannot be read ({type(problem).__name__})"
         raise source.refuse(found=found, expected=_EXPECTED) from problem
-    si = cast("Motion", arguments["si"])
-    metadata = cast("dict[str, Any]", arguments["metadata"])
-    for key, value in metadata.items():
+    for key, value in cast("dict[str, Any]", stored.metadata).items():
         finite = not isinstance(value, float) or math.isfinite(value)
         if isinstance(value, bool) or not isinstance(value, str | int | float) or not finite:
             found = f"the metadata {key!r} of the motion, {value!r}"
             raise source.refuse(found=found, expected="strings and numbers")
-    return StoredMotion(
-        si,
-        arguments.get("name"),
-        metadata,
-        tuple(arguments["history"]),
-        arguments["recipe"],
-    )
-
-
-def _only_motion(dataset: Any) -> Any:
-    return dataset[[name for name in _VARIABLES if name in dataset.variables]]
+    return stored
 
 
 def _check_declared(source: Source, variables: Mapping[str, Any]) -> None:
@@ -153,26 +142,17 @@ def _compare(source: Source, request: Request, stored: StoredMotion) -> None:
         raise source.refuse(found=found, expected=expected)
     if request.component is None:
         return
+    keys = ("component",) if stored.si.vertical is None else ("component", "vertical_component")
+    given = [stored.metadata.get(key) for key in keys]
+    names = [None if name is None else str(name) for name in given]
+    nothing = Record(stored.si.time_step, np.zeros(2), _SI, {})
     components = [
-        _placeholder(stored, key)
-        for key, signal in (
-            ("component", stored.si.horizontal),
-            ("vertical_component", stored.si.vertical),
-        )
-        if signal is not None
+        FileComponent(name, lambda: nothing, orientation_of(name or "")) for name in names
     ]
     choose_component(source, request, components)
 
 
-def _placeholder(stored: StoredMotion, key: str) -> FileComponent:
-    given = stored.metadata.get(key)
-    name = None if given is None else str(given)
-    record = Record(stored.si.time_step, np.zeros(2), _SI, {})
-    direction = UNKNOWN if name is None else orientation_of(name)
-    return FileComponent(name, lambda: record, direction)
-
-
-def stored_motion(dataset: xr.Dataset) -> dict[str, Any]:
+def stored_motion(dataset: xr.Dataset) -> StoredMotion:
     """Read what :func:`to_dataset` wrote, part by part."""
     check_no_result(dataset.attrs)
     for name in ("acceleration", "time"):
@@ -193,16 +173,14 @@ def stored_motion(dataset: xr.Dataset) -> dict[str, Any]:
         expected = "the same; delete the attribute if they were changed on purpose"
         raise NoMotionError(found, expected)
     history = str(attributes.get("history", ""))
-    arguments: dict[str, Any] = {
-        "si": si,
-        "metadata": _mapping(attributes, "metadata") or {},
-        "history": tuple(history.split("\n")) if history else (),
+    return StoredMotion(
+        si,
+        str(attributes["motion_name"]) if "motion_name" in attributes else None,
+        _mapping(attributes, "metadata") or {},
+        tuple(history.split("\n")) if history else (),
         # without the digest nothing says that the recipe still gives these samples
-        "recipe": None if written is None else _mapping(attributes, "recipe"),
-    }
-    if "motion_name" in attributes:
-        arguments["name"] = str(attributes["motion_name"])
-    return arguments
+        None if written is None else _mapping(attributes, "recipe"),
+    )
 
 
 def _motion(dataset: xr.Dataset, time_step: float) -> Motion:

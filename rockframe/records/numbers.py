@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 # written so that no digit can be matched in two ways: a failed match stays linear
 NUMBER: Final = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
-_ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
+ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
 _SHAPE: Final = re.compile(r"[-+]?\d*(\.\d*)?(?:[EeDd][-+]?(\d+))?", re.ASCII)
 _SAME_SHAPE: Final = 20
 _FEWEST: Final = 4
@@ -70,7 +70,16 @@ def all_numbers(source: Source, first: int, end: int | None = None, *, of: objec
 
 def check_end(source: Source, fields: Sequence[str], held: str, line: int | None = None) -> None:
     """Refuse a file that stops in the middle of its last number."""
-    if ends_inside_number(source, fields):
+    last_line = source.lines[-1]
+    if not last_line or last_line[-1].isspace():
+        return
+    if len(source.lines) > 1 and len(last_line) == len(source.lines[-2]) and " 0" in last_line[-2:]:
+        return
+    shapes = {shape_of(field) for field in fields[-_SAME_SHAPE - 1 : -1]}
+    if len(shapes) != 1 or len(fields) < _FEWEST:
+        return
+    usual, last = shapes.pop(), shape_of(fields[-1])
+    if usual is not None and (last is None or last < usual):
         raise cut_short(source, held, line)
 
 
@@ -88,11 +97,18 @@ def too_many(source: Source, count: int, line: int | None = None) -> RecordError
 
 def floats(fields: Sequence[str]) -> Array | None:
     """Convert fields at once; None if one of them is not a plain finite number."""
-    try:
-        values = np.fromiter(map(float, fields), dtype=np.float64, count=len(fields))
-    except ValueError:
-        return None
-    return values if np.isfinite(values).all() else None
+    for attempt in (fields, map(with_e, fields)):
+        try:
+            values = np.fromiter(map(float, attempt), dtype=np.float64, count=len(fields))
+        except ValueError:
+            continue
+        return values if np.isfinite(values).all() else None
+    return None
+
+
+def number_or_none(text: str) -> float | None:
+    """Read a number; None if it is none."""
+    return None if ONE_NUMBER.fullmatch(text) is None else float(with_e(text))
 
 
 def is_plain(text: str) -> bool:
@@ -102,9 +118,9 @@ def is_plain(text: str) -> bool:
 
 def one_number(text: str, source: Source, line: int) -> float:
     """Read one field that must be one finite number."""
-    if _ONE_NUMBER.fullmatch(text) is None:
+    if ONE_NUMBER.fullmatch(text) is None:
         raise source.refuse(found=quoted_first_line(text), expected="a number", line=line)
-    value = float(text.upper().replace("D", "E"))
+    value = float(with_e(text))
     if not math.isfinite(value):
         raise source.refuse(
             found=f"{quoted_first_line(text)}, which overflows",
@@ -112,20 +128,6 @@ def one_number(text: str, source: Source, line: int) -> float:
             line=line,
         )
     return value
-
-
-def ends_inside_number(source: Source, fields: Sequence[str]) -> bool:
-    """Tell whether a file stops in the middle of its last number."""
-    last_line = source.lines[-1]
-    if not last_line or last_line[-1].isspace():
-        return False
-    if len(source.lines) > 1 and len(last_line) == len(source.lines[-2]) and " 0" in last_line[-2:]:
-        return False
-    shapes = {shape_of(field) for field in fields[-_SAME_SHAPE - 1 : -1]}
-    if len(shapes) != 1 or len(fields) < _FEWEST:
-        return False
-    usual, last = shapes.pop(), shape_of(fields[-1])
-    return usual is not None and (last is None or last < usual)
 
 
 def last_fields(source: Source, first: int, count: int = _SAME_SHAPE + 1) -> list[str]:
@@ -161,10 +163,7 @@ def _fields(source: Source, first: int, end: int) -> Array:
     collected: list[Array] = []
     for index in range(first, end):
         fields = source.lines[index].split()
-        # D is how Fortran writes the exponent of a double
-        values = (
-            floats([with_e(field) for field in fields]) if is_plain(source.lines[index]) else None
-        )
+        values = floats(fields) if is_plain(source.lines[index]) else None
         if values is None:
             pieces = [piece for field in fields for piece in _careful(field, source, index + 1)]
             values = np.array(pieces, dtype=np.float64)
@@ -173,7 +172,7 @@ def _fields(source: Source, first: int, end: int) -> Array:
 
 
 def with_e(field: str) -> str:
-    """Write the exponent of a number as Python does."""
+    """Write the exponent of a number as Python does: Fortran's double has a D."""
     return field.replace("D", "E").replace("d", "e")
 
 
@@ -192,7 +191,7 @@ def _careful(field: str, source: Source, line: int) -> list[float]:
     # sign, or without a decimal point, that place is a guess.
     pieces: list[str] = []
     position = 0
-    for match in _ONE_NUMBER.finditer(field):
+    for match in ONE_NUMBER.finditer(field):
         if match.start() != position:
             break
         pieces.append(match.group())
@@ -250,43 +249,54 @@ class FixedWidth:
                 )
         body = "".join(lines)
         printed = [body[place : place + width] for place in range(0, len(body), width)]
-        if is_plain(body):
-            for attempt in (printed, map(with_e, printed)):
-                values = floats(list(attempt))
-                if values is not None:
-                    return values
+        values = floats(printed) if is_plain(body) else None
+        if values is not None:
+            return values
         checked = [
             one_number(field.strip(), source, first + index // per_line + 1)
             for index, field in enumerate(printed)
         ]
         return np.array(checked, dtype=np.float64)
 
-    def line(self, first: int, place: int) -> int:
-        """Give the line of a field of a header, from 1."""
-        return first + (place - 1) // self.per_line + 1
+    def at(self, source: Source, first: int) -> Fields:
+        """Give the fields of a header that begin in a line."""
+        return Fields(source, self, first)
 
-    def cell(self, source: Source, first: int, place: int) -> str:
-        """Give one field of a header, without blanks around it."""
-        row, column = divmod(place - 1, self.per_line)
-        if first + row >= len(source.lines):
+
+@dataclass(frozen=True)
+class Fields:
+    """Numbers of a header, each by its place, from 1."""
+
+    source: Source
+    layout: FixedWidth
+    first: int  # index of their first line, from 0
+
+    def line(self, place: int) -> int:
+        """Give the line of a field, from 1."""
+        return self.first + (place - 1) // self.layout.per_line + 1
+
+    def cell(self, place: int) -> str:
+        """Give a field without blanks around it; empty if the file ends before it."""
+        row, column = divmod(place - 1, self.layout.per_line)
+        if self.first + row >= len(self.source.lines):
             return ""
-        return source.lines[first + row][column * self.width : (column + 1) * self.width].strip()
+        width, text = self.layout.width, self.source.lines[self.first + row]
+        return text[column * width : (column + 1) * width].strip()
 
-    def number(self, source: Source, first: int, place: int, what: str) -> float:
-        """Read one number of a header."""
-        text, line = self.cell(source, first, place), self.line(first, place)
+    def number(self, place: int, what: str) -> float:
+        """Read one number."""
+        text, line = self.cell(place), self.line(place)
         if not text:
-            raise source.refuse(found=f"no {what}", expected=f"a number ({what})", line=line)
-        return one_number(text, source, line)
+            raise self.source.refuse(found=f"no {what}", expected=f"a number ({what})", line=line)
+        return one_number(text, self.source, line)
 
-    def count(self, source: Source, first: int, place: int, what: str) -> int:
-        """Read one whole number of a header."""
-        text = self.cell(source, first, place)
+    def count(self, place: int, what: str) -> int:
+        """Read one whole number."""
+        text = self.cell(place)
         value = whole(text)
         if value is None:
             found = f"{quoted_first_line(text)} for the {what}"
-            line = self.line(first, place)
-            raise source.refuse(found=found, expected="a whole number", line=line)
+            raise self.source.refuse(found=found, expected="a whole number", line=self.line(place))
         return value
 
 

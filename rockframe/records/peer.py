@@ -20,7 +20,6 @@ import re
 from pathlib import PurePath
 from typing import Final, TypeAlias
 
-from rockframe.errors import RecordError
 from rockframe.records.checks import record_of, settle_time_step
 from rockframe.records.components import (
     UNKNOWN,
@@ -29,7 +28,8 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import NUMBER, all_numbers
+from rockframe.records.headers import first_match
+from rockframe.records.numbers import NUMBER, all_numbers, whole, with_e
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
 
@@ -61,7 +61,8 @@ def _read(source: Source, request: Request) -> Record:
     declared, time_step = _points_and_step(source, index)
     settle_time_step(source, request, time_step, index + 1)
     _check_kind(source, index)
-    unit_name, unit_line = _unit(source, index)
+    stated = first_match(_UNIT, source.top(index))
+    unit_name, unit_line = (None, None) if stated is None else (stated[0][1].rstrip("."), stated[1])
     chosen = choose_unit(source, request, unit_name, unit_line)
     metadata = _description(source, index)
     given = metadata.get("component")
@@ -114,16 +115,13 @@ def _points_and_step(source: Source, index: int) -> tuple[int, float]:
     else:
         expected = "'NPTS= <count>, DT= <seconds> SEC' or '<count> <seconds> NPTS, DT'"
         raise source.refuse(found=quoted_first_line(line), expected=expected, line=index + 1)
-    try:
-        count = int(count_text.rstrip("."))
-    except ValueError:  # a fraction, or thousands of digits
-        count = 0
-    if count < 1:
+    count = whole(count_text.rstrip("."))
+    if count is None or count < 1:
         found = f"a number of points of {count_text[:_SHOWN_DIGITS]}"
         raise source.refuse(
             found=found, expected="a whole number of points above zero", line=index + 1
         )
-    return count, float(step_text.upper().replace("D", "E"))
+    return count, float(with_e(step_text))
 
 
 def _check_kind(source: Source, index: int) -> None:
@@ -134,14 +132,6 @@ def _check_kind(source: Source, index: int) -> None:
             raise source.refuse(
                 found=found, expected="an acceleration (the .AT2 file of the set)", line=number
             )
-
-
-def _unit(source: Source, index: int) -> tuple[str | None, int | None]:
-    for number, line in enumerate(source.top(index), start=1):
-        match = _UNIT.search(line)
-        if match is not None:
-            return match.group(1).rstrip("."), number
-    return None, None
 
 
 def _description(source: Source, index: int) -> Metadata:
@@ -267,8 +257,6 @@ def _number(text: str, source: Source, line: int, head: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        problem: RecordError = source.refuse(
-            found=f"{text[:40]!r} in the column {head!r}", expected="a number", line=line
-        )
-        raise problem
+        found = f"{text[:40]!r} in the column {head!r}"
+        raise source.refuse(found=found, expected="a number", line=line)
     return value

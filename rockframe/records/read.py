@@ -131,14 +131,7 @@ def _one_of(entry: Format, source: Source, component: FileComponent) -> Reading 
 def _reading(entry: Format, source: Source, record: Record | StoredMotion) -> Reading:
     base = base_name(source.path)
     if isinstance(record, StoredMotion):
-        return Reading(
-            record.si,
-            record.metadata,
-            record.history,
-            name=record.name,
-            recipe=record.recipe,
-            file=base,
-        )
+        return Reading(**vars(record), file=base)
     si, doubts = to_motion(source, record)
     metadata = {
         **record.metadata,

@@ -329,7 +329,8 @@ def quoted_first_line(text: str) -> str:
     return repr(line if len(line) <= _SHOWN else line[:_SHOWN] + "...")
 
 
-def _check_size(size: int, limit: int, name: str) -> None:
+def check_size(name: str, size: int, limit: int) -> None:
+    """Refuse a file that is larger than any record."""
     if size > limit:
         found = f"{size / 2**20:.3g} MiB"
         raise RecordError(name, found=found, expected=f"a record of at most {limit // 2**20} MiB")
@@ -340,7 +341,7 @@ def _lines(source: Source) -> tuple[str, ...]:
     if b"\x00" in data:
         kind = "UTF-16 text" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "binary data"
         raise RecordError(name, found=kind, expected=f"{_RECORD} (ASCII or UTF-8)")
-    _check_size(len(data), MAXIMUM_TEXT, name)
+    check_size(name, len(data), MAXIMUM_TEXT)
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     count = data.count(b"\n")

@@ -14,7 +14,7 @@ Data File Format, header versions 6 and 7.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Final
 
@@ -30,6 +30,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
+from rockframe.records.headers import without_blanks
 from rockframe.records.instruments import (
     InstrumentResponses,
     check_finite,
@@ -64,6 +65,10 @@ _KINDS: Final = {6: "a displacement", 7: "a velocity", 50: "volts"}
 _LEVEL: Final = 5.0
 _AGREEMENT: Final = 1e-3
 _EXPECTED: Final = "a SAC file of evenly spaced samples"
+_MISSING: Final = (
+    "samples without a unit, of which SAC has none",
+    "the argument unit, for example unit='m/s^2', or, of counts, StationXML",
+)
 
 # places in the header, from 0: floats, integers, and words of 8 characters
 _DELTA, _SMALLEST, _LARGEST, _BEGIN, _END = 0, 1, 2, 5, 6
@@ -152,16 +157,8 @@ def _samples(source: Source, request: Request, header: _Header, name: str) -> Re
     if request.unit is None and start is not None:
         codes = (header.word(_NETWORK), header.word(_STATION), header.word(_LOCATION), name)
         response = InstrumentResponses(source, request).of(".".join(codes), start)
-    if request.unit is None and response is None:
-        raise source.refuse(
-            found="samples without a unit, of which SAC has none",
-            expected="the argument unit, for example unit='m/s^2', or, of counts, StationXML",
-        )
-    record = record_of_counts(source, request, values, time_step, metadata, response)
-    doubts = tuple(_doubts(source, header, values, time_step))
-    return Record(
-        record.time_step, record.samples, record.unit, record.metadata, record.history, doubts
-    )
+    record = record_of_counts(source, request, values, time_step, metadata, response, _MISSING)
+    return replace(record, warnings=tuple(_doubts(source, header, values, time_step)))
 
 
 def _doubts(source: Source, header: _Header, values: Array, time_step: float) -> list[str]:
@@ -208,9 +205,8 @@ def _description(header: _Header) -> tuple[Metadata, datetime | None]:
         "sensor_location": location_code(header.word(_LOCATION)),
         "event": header.word(_EVENT, 2),
     }
-    metadata: Metadata = {key: word for key, word in words.items() if word}
+    metadata = without_blanks(words)
     year, day, hour, minute, second, thousandth = (int(n) for n in header.integers[:6])
-    start = None
     try:
         reference = datetime(year, 1, 1, tzinfo=UTC).replace(tzinfo=None)
         start = reference + timedelta(

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.records.checks import Stated, record_of, settle_time_step, surplus
 from rockframe.records.components import (
@@ -26,12 +26,9 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.numbers import NUMBER, FixedWidth, whole, with_e
+from rockframe.records.numbers import ONE_NUMBER, Fields, FixedWidth, whole, with_e
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    pass
 
 UNIT: Final = "cm/sec/sec"
 """Of the data, by the specification."""
@@ -57,7 +54,6 @@ _UNKNOWN_INTEGER: Final = -32768
 _UNKNOWN_REAL: Final = 1.7e38
 _FASTEST: Final = 1e5
 _PEAKS: Final = (30, 32)
-_REAL: Final = re.compile(NUMBER, re.ASCII)
 _HORIZONTAL: Final = 90
 _DOWN: Final = 180
 
@@ -67,39 +63,39 @@ def _recognises(source: Source) -> bool:
 
 
 def _read(source: Source, request: Request) -> Record:
-    _check_kind(source)
-    name, direction = _component(source)
-
-    def samples() -> Record:
-        return _samples(source, request)
-
-    component = FileComponent(name, samples, direction, aliases=_aliases(direction), line=6)
+    kind = _kind(source)
+    integers = _INTEGER_LAYOUT.at(source, _INTEGERS)
+    name, direction = _component(source, integers)
+    component = FileComponent(
+        name,
+        lambda: _samples(source, request, kind, integers),
+        direction,
+        aliases=() if direction.azimuth is None else (f"{direction.azimuth:g}",),
+        line=6,
+    )
     return choose_component(source, request, [component])
 
 
-def _check_kind(source: Source) -> None:
+def _kind(source: Source) -> str:
     match = _KIND.match(source.top(1)[0])
     if match is None:
         expected = "a first line such as '2 CORRECTED ACCELEROGRAM'"
         raise source.refuse(found=quoted_first_line(source.start), expected=expected, line=1)
-    if not _is_accelerogram(match):
+    kind = match.group(2)
+    if "ACCELEROGRAM" not in kind.upper() and kind.upper() != UNKNOWN_KIND:
         found = f"{quoted_first_line(match.group(0))}, which is no accelerogram"
         raise source.refuse(found=found, expected="an acceleration", line=1)
+    return kind
 
 
-def _is_accelerogram(match: re.Match[str]) -> bool:
-    return "ACCELEROGRAM" in match.group(2).upper() or match.group(2).upper() == UNKNOWN_KIND
-
-
-def _component(source: Source) -> tuple[str | None, Orientation]:
+def _component(source: Source, integers: Fields) -> tuple[str | None, Orientation]:
     said = _NAMED.search("\n".join(source.top(_INTEGERS)))
     name = said.group(1) if said else None
     direction = orientation_of(name or "")
     if direction != UNKNOWN:
         return name, direction
     # where the text does not tell: integer 13 is the angle from the vertical, 14 the azimuth
-    slope = whole(_INTEGER_LAYOUT.cell(source, _INTEGERS, 13))
-    azimuth = whole(_INTEGER_LAYOUT.cell(source, _INTEGERS, 14))
+    slope, azimuth = (whole(integers.cell(place)) for place in (13, 14))
     if slope == 0:
         return name or "UP", Orientation(vertical=UPWARDS)
     if slope == _DOWN:
@@ -109,13 +105,9 @@ def _component(source: Source) -> tuple[str | None, Orientation]:
     return name, UNKNOWN
 
 
-def _aliases(direction: Orientation) -> tuple[str, ...]:
-    return () if direction.azimuth is None else (f"{direction.azimuth:g}",)
-
-
-def _samples(source: Source, request: Request) -> Record:
-    comments = _INTEGER_LAYOUT.count(source, _INTEGERS, 16, "number of comment lines (integer 16)")
-    count = _INTEGER_LAYOUT.count(source, _INTEGERS, 17, "number of samples (integer 17)")
+def _samples(source: Source, request: Request, kind: str, integers: Fields) -> Record:
+    comments = integers.count(16, "number of comment lines (integer 16)")
+    count = integers.count(17, "number of samples (integer 17)")
     if comments == _UNKNOWN_INTEGER:
         comments = 0
     first = _COMMENTS + comments
@@ -127,37 +119,35 @@ def _samples(source: Source, request: Request) -> Record:
         if not line.startswith("|"):
             found = f"{quoted_first_line(line)} among {comments} comment lines"
             raise source.refuse(found=found, expected="a line that begins with '|'", line=index)
-    time_step = _time_step(source, request)
+    reals = _REAL_LAYOUT.at(source, _REALS)
+    time_step = _time_step(source, request, reals)
     chosen = choose_unit(source, request, UNIT, None)
     values = _DATA_LAYOUT.read(source, first, count)
-    kind = _KIND.match(source.top(1)[0])
     said, behind = [], surplus(source, first + _DATA_LAYOUT.rows(count), "integer 17 (line 14)")
-    if kind is not None and kind.group(2).upper() == UNKNOWN_KIND:
+    if kind.upper() == UNKNOWN_KIND:
         words = f"{source.path}, line 1: the file does not say what it holds; an accelerogram "
         said = [f"{words}in {chosen[1]} is assumed"]
-    if whole(_INTEGER_LAYOUT.cell(source, _INTEGERS, 18)) == 1:
+    if whole(integers.cell(18)) == 1:
         words = f"{source.path}, line 14: the file marks a problem (integer 18); see its comments"
         behind.append(words)
-    stated = _stated_peak(source)
-    metadata = _description(source)
+    stated, metadata = _stated_peak(reals), _description(source, kind)
     return record_of(
         source, values, time_step, chosen, metadata, said=said, stated=stated, behind=behind
     )
 
 
-def _stated_peak(source: Source) -> list[Stated]:
+def _stated_peak(reals: Fields) -> list[Stated]:
     """Give the larger of the peaks in reals 30 and 32."""
-    printed = [_REAL_LAYOUT.cell(source, _REALS, place) for place in _PEAKS]
-    stated = [abs(float(with_e(text))) for text in printed if _REAL.fullmatch(text)]
+    printed = [reals.cell(place) for place in _PEAKS]
+    stated = [abs(float(with_e(text))) for text in printed if ONE_NUMBER.fullmatch(text)]
     known = [value for value in stated if value < _UNKNOWN_REAL / 10.0]
     if len(known) < len(_PEAKS):
         return []
-    return [Stated(f"{max(known):.9g}", UNIT, _REAL_LAYOUT.line(_REALS, _PEAKS[0]))]
+    return [Stated(f"{max(known):.9g}", UNIT, reals.line(_PEAKS[0]))]
 
 
-def _time_step(source: Source, request: Request) -> float:
-    line = _REALS + 1
-    rate = _REAL_LAYOUT.number(source, _REALS, 2, "sampling rate (real 2)")
+def _time_step(source: Source, request: Request, reals: Fields) -> float:
+    line, rate = reals.line(2), reals.number(2, "sampling rate (real 2)")
     if math.isclose(rate, _UNKNOWN_REAL):
         found = "no sampling rate (real 2): pairs of time and acceleration, unevenly sampled"
         expected = "an evenly sampled record, such as the corrected one of the set"
@@ -170,10 +160,9 @@ def _time_step(source: Source, request: Request) -> float:
     return 1.0 / rate
 
 
-def _description(source: Source) -> Metadata:
+def _description(source: Source, kind: str) -> Metadata:
     lines = source.top(_INTEGERS)
-    match = _KIND.match(lines[0])
-    metadata: Metadata = {"description": match.group(2).casefold() if match else ""}
+    metadata: Metadata = {"description": kind.casefold()}
     code = lines[2].strip().rstrip("*").strip() if len(lines) > 2 else ""
     if code:
         metadata["station"] = code

@@ -25,6 +25,7 @@ import numpy as np
 from rockframe.records.checks import USUAL_TIME_STEPS
 from rockframe.records.numbers import (
     NUMBER,
+    ONE_NUMBER,
     floats,
     is_plain,
     one_number,
@@ -46,7 +47,6 @@ _LAST: Final = 50
 _MOST_NUMBERS: Final = 900_000
 COMMENT_MARKS: Final = ("#", "%")
 
-_NUMBER: Final = re.compile(NUMBER, re.ASCII)
 _ANY_NUMBER: Final = re.compile(rf"{NUMBER}|[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?", re.ASCII)
 _WHOLE_OR_COMMA: Final = r"[-+]?\d+(?:,\d+)?(?:[EeDd][-+]?\d+)?"
 _SPREAD: Final = re.compile(rf"{_WHOLE_OR_COMMA}(?:\s+{_WHOLE_OR_COMMA})+", re.ASCII)
@@ -94,8 +94,6 @@ def read_table(source: Source, most_columns: int) -> Table:
         rest = []
     fields = _fields(source, rows, lines, separator, columns)
     values = floats(fields) if plain else None
-    if values is None and plain:
-        values = floats([with_e(field) for field in fields])
     if values is None:
         checked = [
             one_number(field.strip(), source, lines[place // columns])
@@ -164,7 +162,7 @@ def _looks_numeric(text: str) -> bool:
     parts = [part for part in re.split(r"[;\s]+", text) if part]
     return bool(parts) and all(
         _ANY_NUMBER.fullmatch(part)
-        or all(not piece or _NUMBER.fullmatch(piece) for piece in part.split(","))
+        or all(not piece or ONE_NUMBER.fullmatch(piece) for piece in part.split(","))
         for part in parts
     )
 
@@ -233,7 +231,7 @@ def _check_header(
         if text.startswith(COMMENT_MARKS):
             continue
         parts = _split(text, separator)
-        odd = [part for part in parts if not _NUMBER.fullmatch(part)]
+        odd = [part for part in parts if not ONE_NUMBER.fullmatch(part)]
         mixed = len(parts) == columns and len(odd) < columns
         single = len(text.split()) == 1 and separator is None
         if mixed or (single and _NOT_A_WORD.match(text)):
@@ -309,7 +307,6 @@ def _mean(values: Array) -> tuple[Array, Array]:
 
 
 _WHOLE: Final = re.compile(r"\d{1,7}", re.ASCII)
-_ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
 _FEWEST: Final = 4
 _LOOKED_AT: Final = 20
 _TIDY: Final = re.compile(r"0?\.0{0,4}[1-9]\d?(?:5|25|75)?0*", re.ASCII)
@@ -332,7 +329,7 @@ def find_first_lines(source: Source) -> FirstLines | None:
         fields = line.split()
         if not fields or line.lstrip().startswith(COMMENT_MARKS):
             continue
-        if all(_ONE_NUMBER.fullmatch(field) for field in fields):
+        if all(ONE_NUMBER.fullmatch(field) for field in fields):
             rows.append((index, fields))
         elif rows:
             break
@@ -347,7 +344,7 @@ def find_first_lines(source: Source) -> FirstLines | None:
     head = rows[0][1] if one_line else [rows[0][1][0], rows[1][1][0]]
     below = rows[1 if one_line else 2]
     for first, second in (head, head[::-1]):
-        step = float(second.upper().replace("D", "E"))
+        step = float(with_e(second))
         low, high = USUAL_TIME_STEPS
         if _WHOLE.fullmatch(first) is None or int(first) < 2 or not low <= step <= high:
             continue

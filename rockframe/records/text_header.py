@@ -158,18 +158,14 @@ def _unit_row(table: Table, columns: int) -> list[str]:
 
 def time_scale(source: Source, table: Table, names: list[str]) -> float:
     """Give the unit of the times in seconds."""
-    for name in names[:1]:
-        for unit in in_brackets(name):
-            known = TIME_UNITS.get(unit.casefold())
-            if known is None:
-                line = table.header[-1][0]
-                found = f"the unit {unit!r} of the times"
-                raise source.refuse(
-                    found=found, expected="seconds (s) or milliseconds (ms)", line=line
-                )
-            return known
-        if name.casefold() in TIME_UNITS:
-            return TIME_UNITS[name.casefold()]
+    name = names[0] if names else ""
+    for unit in in_brackets(name)[:1]:
+        if unit.casefold() not in TIME_UNITS:
+            found, expected = f"the unit {unit!r} of the times", "seconds (s) or milliseconds (ms)"
+            raise source.refuse(found=found, expected=expected, line=table.header[-1][0])
+        return TIME_UNITS[unit.casefold()]
+    if name.casefold() in TIME_UNITS:
+        return TIME_UNITS[name.casefold()]
     units = {
         TIME_UNITS[unit.casefold()]
         for _, text in table.header

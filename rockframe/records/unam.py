@@ -16,7 +16,6 @@ Reference: Instituto de Ingenieria, UNAM, "Archivo estandar de aceleracion", ver
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
@@ -29,7 +28,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import NOTHING, Keys, needed, read_keys, renamed
+from rockframe.records.headers import Keys, needed, read_keys, renamed, text_of, without_blanks
 from rockframe.records.numbers import FixedWidth, one_number, rows_below, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
@@ -42,13 +41,12 @@ _DATA: Final = re.compile(r"^\s*DATOS DE ACELERACION", re.IGNORECASE)
 _UNITS: Final = "UNIDADES DE LOS DATOS"
 _LAYOUT_KEY: Final = "FORMATO DATOS (FORTRAN,10 campos/dato)"
 _LAYOUT: Final = re.compile(r"(\d{1,2})F(\d{1,2})\.\d", re.IGNORECASE)
-_LISTS: Final = {
-    "directions": "ORIENTACION",
-    "steps": "INTERVALO DE MUESTREO",
-    "counts": "NUM. TOTAL DE MUESTRAS",
-    "peaks": "ACEL. MAX.(Gal)",
-    "lengths": "DURACION DEL REGISTRO",
-}
+# keys of what the header says of each channel
+_DIRECTIONS: Final = "ORIENTACION"
+_STEPS: Final = "INTERVALO DE MUESTREO"
+_COUNTS: Final = "NUM. TOTAL DE MUESTRAS"
+_PEAKS: Final = "ACEL. MAX.(Gal)"
+_LENGTHS: Final = "DURACION DEL REGISTRO"
 _PEAK_UNIT: Final = "gal"
 _KEPT: Final = {
     "CLAVE DE LA ESTACION": "station",
@@ -59,17 +57,6 @@ _LONGEST_HEADER: Final = 160
 _MOST_CHANNELS: Final = 12
 
 
-@dataclass(frozen=True)
-class _Lists:
-    """What the header says of each channel, with the line of each, from 1."""
-
-    directions: list[tuple[str, int]]
-    steps: list[tuple[str, int]]
-    counts: list[tuple[str, int]]
-    peaks: list[tuple[str, int]]
-    lengths: list[tuple[str, int]]
-
-
 def _recognises(source: Source) -> bool:
     return any(map(_TITLE.search, source.top(20)))
 
@@ -77,14 +64,13 @@ def _recognises(source: Source) -> bool:
 def _read(source: Source, request: Request) -> Record:
     top = source.top(_LONGEST_HEADER)
     header = read_keys(top)
-    lists = _Lists(**{name: _list(header, start) for name, start in _LISTS.items()})
+    directions = _list(header, _DIRECTIONS)
     layout = _layout(source, header)
     first = _first_row(source, top)
-    channels = min(len(lists.directions), layout.per_line)
+    channels = min(len(directions), layout.per_line)
     if not 1 <= channels <= _MOST_CHANNELS:
         found = f"the orientations of {channels} channels"
         raise source.refuse(found=found, expected="one to twelve, such as '/V/N90E/N00E'", line=1)
-    metadata = _description(header)
 
     @cache
     def table() -> Array:
@@ -94,10 +80,10 @@ def _read(source: Source, request: Request) -> Record:
 
     def samples(place: int) -> Record:
         values = table()[:, place].copy()
-        return _samples(source, request, header, lists, place, values, metadata)
+        return _samples(source, request, header, place, values)
 
     components: list[FileComponent] = []
-    for place, (said, line) in enumerate(lists.directions[:channels]):
+    for place, (said, line) in enumerate(directions[:channels]):
         name, direction = _direction(said)
         name = name or f"channel {place + 1}"
         read = lambda place=place: samples(place)  # noqa: E731
@@ -105,21 +91,13 @@ def _read(source: Source, request: Request) -> Record:
     return choose_component(source, request, components)
 
 
-def _samples(
-    source: Source,
-    request: Request,
-    header: Keys,
-    lists: _Lists,
-    place: int,
-    values: Array,
-    metadata: Metadata,
-) -> Record:
+def _samples(source: Source, request: Request, header: Keys, place: int, values: Array) -> Record:
     text, unit_line = needed(source, header, _UNITS)
     chosen = choose_unit(source, request, text.split()[0], unit_line)
-    printed, line = _entry(source, lists.steps, place, "sampling interval")
+    printed, line = _entry(source, header, _STEPS, place, "sampling interval")
     time_step = one_number(printed, source, line)
     settle_time_step(source, request, time_step, line)
-    announced, count_line = _entry(source, lists.counts, place, "number of samples")
+    announced, count_line = _entry(source, header, _COUNTS, place, "number of samples")
     declared = whole(announced)
     if declared is None or declared < 1:
         found, expected = f"{quoted_first_line(announced)} samples", "a whole number above zero"
@@ -128,13 +106,14 @@ def _samples(
         source,
         declared=declared,
         counted=values.size,
-        what="NUM. TOTAL DE MUESTRAS",
+        what=_COUNTS,
         line=count_line,
     )
-    described: Metadata = {**metadata, **counts}
+    described: Metadata = {**_description(header), **counts}
     stated = [
-        *(Stated(text, _PEAK_UNIT, line) for text, line in lists.peaks[place : place + 1]),
-        *(Stated(text, LENGTH, line) for text, line in lists.lengths[place : place + 1]),
+        Stated(text, unit, line)
+        for key, unit in ((_PEAKS, _PEAK_UNIT), (_LENGTHS, LENGTH))
+        for text, line in _list(header, key)[place : place + 1]
     ]
     return record_of(source, values, time_step, chosen, described, said=said, stated=stated)
 
@@ -148,9 +127,8 @@ def _list(header: Keys, start: str) -> list[tuple[str, int]]:
     return entries
 
 
-def _entry(
-    source: Source, entries: list[tuple[str, int]], place: int, what: str
-) -> tuple[str, int]:
+def _entry(source: Source, header: Keys, key: str, place: int, what: str) -> tuple[str, int]:
+    entries = _list(header, key)
     if place >= len(entries):
         found = f"no {what} of channel {place + 1}"
         raise source.refuse(found=found, expected=f"the {what} of each channel", line=1)
@@ -187,16 +165,15 @@ def _direction(said: str) -> tuple[str, Orientation]:
 
 
 def _description(header: Keys) -> Metadata:
-    metadata = renamed(header, _KEPT)
-    day = header.get("FECHA DEL SISMO [GMT]", NOTHING)[0]
-    clock = header.get("HORA EPICENTRO (GMT)", NOTHING)[0]
-    if day:
-        metadata["event_time"] = f"{day} {clock} GMT" if clock else day
-        metadata["event"] = f"earthquake of {metadata['event_time']}"
-    start = header.get("HORA DE LA PRIMERA MUESTRA (GMT)", NOTHING)[0]
-    if start:
-        metadata["record_time"] = f"{start} GMT"
-    return metadata
+    day, clock = text_of(header, "FECHA DEL SISMO [GMT]"), text_of(header, "HORA EPICENTRO (GMT)")
+    time = f"{day} {clock} GMT" if day and clock else day
+    start = text_of(header, "HORA DE LA PRIMERA MUESTRA (GMT)")
+    times = {
+        "event_time": time,
+        "event": time and f"earthquake of {time}",
+        "record_time": start and f"{start} GMT",
+    }
+    return renamed(header, _KEPT) | without_blanks(times)
 
 
 UNAM: Final = Format(

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.records.checks import (
     LENGTH,
@@ -30,13 +30,10 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
-from rockframe.records.headers import first_match
-from rockframe.records.numbers import FixedWidth, one_number, whole
+from rockframe.records.headers import first_match, needed_match
+from rockframe.records.numbers import Fields, FixedWidth, number_or_none, one_number, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from rockframe.errors import RecordError
 
 _MOST_COMPONENTS: Final = 12
 
@@ -62,26 +59,34 @@ _DIGIT: Final = 5.1e-4
 
 @dataclass(frozen=True)
 class _Block:
-    """One component: where it starts, and how many accelerations it has."""
+    """One component."""
 
-    index: int
-    count: int
+    source: Source
+    index: int  # of its first line
     corrected: bool
 
     @property
-    def integers(self) -> int:
-        """Index of the first line of the integers."""
-        return self.index + _GEONET_TEXT
+    def text(self) -> list[str]:
+        """The lines of text."""
+        return self.source.top(_GEONET_TEXT, self.index)
 
     @property
-    def reals(self) -> int:
-        """Index of the first line of the reals."""
-        return self.index + 20
+    def integers(self) -> Fields:
+        """The integers of the header."""
+        return _GEONET_LAYOUT.at(self.source, self.index + _GEONET_TEXT)
 
     @property
     def data(self) -> int:
         """Index of the first line of the accelerations."""
         return self.index + 26
+
+    def quantity(self, place: int, what: str) -> int:
+        """Read a number of samples, none or more."""
+        count = self.integers.count(place, f"number of {what} (integer {place})")
+        if count < 0:
+            line = self.integers.line(place)
+            raise self.source.refuse(found=f"{count} {what}", expected="none or more", line=line)
+        return count
 
 
 def _is_geonet(source: Source) -> bool:
@@ -89,12 +94,13 @@ def _is_geonet(source: Source) -> bool:
 
 
 def _read_geonet(source: Source, request: Request) -> Record:
-    components = [_geonet_component(source, request, block) for block in _geonet_blocks(source)]
+    components = [_geonet_component(request, *block) for block in _geonet_blocks(source)]
     return choose_component(source, request, components)
 
 
-def _geonet_blocks(source: Source) -> list[_Block]:
-    blocks: list[_Block] = []
+def _geonet_blocks(source: Source) -> list[tuple[_Block, int]]:
+    """Find the components, and count their accelerations."""
+    blocks: list[tuple[_Block, int]] = []
     index = next((k for k, line in enumerate(source.top(4)) if _GEONET_FIRST.match(line)), 0)
     while index < len(source.lines):
         text = source.top(1, index)[0]
@@ -109,47 +115,34 @@ def _geonet_blocks(source: Source) -> list[_Block]:
                     f", the next component, or the end of the file (component {len(blocks)})"
                 )
             raise source.refuse(found=quoted_first_line(text), expected=expected, line=index + 1)
-        corrected = first[1] is None
-        block = _Block(index, _geonet_count(source, index, corrected=corrected), corrected)
-        blocks.append(block)
-        counts = [block.count]
-        if corrected:
-            counts += [
-                _quantity(source, block, 35, "velocities"),
-                _quantity(source, block, 36, "displacements"),
-            ]
+        block = _Block(source, index, corrected=first[1] is None)
+        counts = [_geonet_count(block)]
+        blocks.append((block, counts[0]))
+        if block.corrected:
+            counts += [block.quantity(35, "velocities"), block.quantity(36, "displacements")]
         index = block.data + sum(map(_GEONET_LAYOUT.rows, counts))
     return blocks
 
 
-def _geonet_count(source: Source, index: int, *, corrected: bool) -> int:
-    block = _Block(index, 0, corrected)
-    count = _quantity(source, block, 34, "accelerations")
-    said = _COUNT.search("\n".join(source.top(_GEONET_TEXT, index)))
+def _geonet_count(block: _Block) -> int:
+    count = block.quantity(34, "accelerations")
+    said = _COUNT.search("\n".join(block.text))
     announced = None if said is None else int(said[1])
-    if not corrected and count != announced:
+    if not block.corrected and count != announced:
         # an uncorrected file holds what was digitised
-        digitised = _quantity(source, block, 31, "digitised samples")
+        digitised = block.quantity(31, "digitised samples")
         if count == 0 or digitised == announced:
             count = digitised
     if announced is not None and announced != count:
         found = f"{count} accelerations in the integers, {announced} points in the text"
         expected = "one number of samples"
-        raise source.refuse(found=found, expected=expected, line=block.integers + 4)
+        line = block.integers.line(34)
+        raise block.source.refuse(found=found, expected=expected, line=line)
     return count
 
 
-def _quantity(source: Source, block: _Block, place: int, what: str) -> int:
-    name = f"number of {what} (integer {place})"
-    count = _GEONET_LAYOUT.count(source, block.integers, place, name)
-    if count < 0:
-        line = block.integers + 4
-        raise source.refuse(found=f"{count} {what}", expected="none or more", line=line)
-    return count
-
-
-def _geonet_component(source: Source, request: Request, block: _Block) -> FileComponent:
-    found = first_match(_GEONET_NAME, source.top(_GEONET_TEXT, block.index), block.index + 1)
+def _geonet_component(request: Request, block: _Block, count: int) -> FileComponent:
+    found = first_match(_GEONET_NAME, block.text, block.index + 1)
     name, direction, line = "", UNKNOWN, block.index + 13
     if found is not None:
         match, line = found
@@ -157,29 +150,27 @@ def _geonet_component(source: Source, request: Request, block: _Block) -> FileCo
         if direction == UNKNOWN and "vertical" in match.string.casefold():
             direction = Orientation(vertical=VERTICAL)
     if direction == UNKNOWN:
-        azimuth = whole(_GEONET_LAYOUT.cell(source, block.integers, 28))
+        azimuth = whole(block.integers.cell(28))
         direction = UNKNOWN if azimuth is None else azimuth_of(float(azimuth))
         name = name or f"{azimuth}"
-    return FileComponent(
-        name, lambda: _geonet_samples(source, request, block), direction, line=line
-    )
+    return FileComponent(name, lambda: _geonet_samples(request, block, count), direction, line=line)
 
 
-def _geonet_samples(source: Source, request: Request, block: _Block) -> Record:
-    line = block.reals + 3
-    text = source.top(_GEONET_TEXT, block.index)
-    time_step = _GEONET_LAYOUT.number(source, block.reals, 26, "time step (real 26)")
+def _geonet_samples(request: Request, block: _Block, count: int) -> Record:
+    source, text = block.source, block.text
+    reals = _GEONET_LAYOUT.at(source, block.index + 20)
+    line, time_step = reals.line(26), reals.number(26, "time step (real 26)")
     check_time_step(source, time_step, line)
     said = _INTERVAL.search("\n".join(text))
     if said is not None:
-        printed = _number_or_none(said[1])
+        printed = number_or_none(said[1])
         if printed is None or not math.isclose(printed, time_step, rel_tol=1e-6, abs_tol=_DIGIT):
             stated_step = quoted_first_line(said[0])
             found = f"a time step of {time_step!r} s, and {stated_step} in the text"
             raise source.refuse(found=found, expected="one time step", line=line)
     check_asked_time_step(source, request, time_step, line)
     chosen = choose_unit(source, request, _GEONET_UNIT, None)
-    values = _GEONET_LAYOUT.read(source, block.data, block.count)
+    values = _GEONET_LAYOUT.read(source, block.data, count)
     stated: list[Stated] = []
     for number, row in enumerate(text, start=block.index + 1):
         peak, length = _PEAK.match(row), _DURATION.search(row)
@@ -187,19 +178,11 @@ def _geonet_samples(source: Source, request: Request, block: _Block) -> Record:
             stated.append(Stated(peak[1], peak[2], number))
         if length is not None:
             stated.append(Stated(length[1], LENGTH, number))
-    metadata = _geonet_description(source, block)
-    return record_of(source, values, time_step, chosen, metadata, stated=stated)
+    return record_of(source, values, time_step, chosen, _geonet_description(block), stated=stated)
 
 
-def _number_or_none(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None
-
-
-def _geonet_description(source: Source, block: _Block) -> Metadata:
-    text = [line.strip() for line in source.top(_GEONET_TEXT, block.index)]
+def _geonet_description(block: _Block) -> Metadata:
+    text = [line.strip() for line in block.text]
     metadata: Metadata = {"description": "corrected" if block.corrected else "uncorrected"}
     site = _SITE.match(text[1]) if len(text) > 1 else None
     if site is not None:
@@ -208,8 +191,7 @@ def _geonet_description(source: Source, block: _Block) -> Metadata:
         if len(text) >= place and text[place - 1]:
             metadata[key] = " ".join(text[place - 1].split())
     year, month, day, hour, minute, thousandths = (
-        _GEONET_LAYOUT.count(source, block.integers, place, "start of the record")
-        for place in (9, 10, 19, 20, 39, 40)
+        block.integers.count(place, "start of the record") for place in (9, 10, 19, 20, 39, 40)
     )
     metadata["record_time"] = (
         f"{year:04d}-{month:02d}-{day:02d}T{hour:02d}:{minute:02d}:{thousandths / 1000:06.3f}Z"
@@ -271,16 +253,14 @@ def _read_bhrc(source: Source, request: Request) -> Record:
 
 def _bhrc_component(source: Source, request: Request, first: int) -> FileComponent:
     text = source.top(_BHRC_TEXT, first)
-    found = first_match(_BHRC_NAME, text, first + 1)
-    if found is None:
-        raise _missing(source, first, "'COMP L1'")
-    name = found[0][1]
+    found, line = needed_match(source, _BHRC_NAME, text, "COMP L1", first + 1)
+    name = found[1]
     return FileComponent(
         name,
         lambda: _bhrc_samples(source, request, first, text),
         _bhrc_orientation(name, text),
         aliases=(name.rstrip("0123456789"),),
-        line=found[1],
+        line=line,
     )
 
 
@@ -299,9 +279,10 @@ def _bhrc_samples(source: Source, request: Request, first: int, text: list[str])
     if volume is None or volume[1] != "1":
         expected = "uncorrected accelerations (volume 1)"
         raise source.refuse(found=quoted_first_line(text[0]), expected=expected, line=first + 1)
-    such_as = "'NO. OF POINTS =   9472  DURATION = 47.36'"
-    points, line = _bhrc_line(source, first, text, _POINTS, such_as)
-    units, unit_line = _bhrc_line(source, first, text, _UNITS, "'UNITS ARE SECONDS AND G/10'")
+    such_as = "NO. OF POINTS =   9472  DURATION = 47.36"
+    points, line = needed_match(source, _POINTS, text, such_as, first + 1)
+    such_as = "UNITS ARE SECONDS AND G/10"
+    units, unit_line = needed_match(source, _UNITS, text, such_as, first + 1)
     chosen = choose_unit(source, request, units[1], unit_line)
     time_step = _bhrc_time_step(source, request, first)
     count, data = int(points[1]), first + _BHRC_DATA_AT
@@ -320,28 +301,14 @@ def _bhrc_samples(source: Source, request: Request, first: int, text: list[str])
 
 
 def _bhrc_time_step(source: Source, request: Request, first: int) -> float:
-    line = first + _BHRC_REALS_AT + 2
-    printed = _BHRC_REALS.cell(source, first + _BHRC_REALS_AT, _RATE)
-    rate = one_number(printed or "no sampling rate (real 7)", source, line)
+    reals = _BHRC_REALS.at(source, first + _BHRC_REALS_AT)
+    line = reals.line(_RATE)
+    rate = one_number(reals.cell(_RATE) or "no sampling rate (real 7)", source, line)
     if not rate > 0.0:
         found = f"a sampling rate of {rate!r} Hz (real 7)"
         raise source.refuse(found=found, expected="one above zero", line=line)
     settle_time_step(source, request, 1.0 / rate, line)
     return 1.0 / rate
-
-
-def _bhrc_line(
-    source: Source, first: int, text: list[str], pattern: re.Pattern[str], such_as: str
-) -> tuple[re.Match[str], int]:
-    found = first_match(pattern, text, first + 1)
-    if found is None:
-        raise _missing(source, first, such_as)
-    return found
-
-
-def _missing(source: Source, first: int, such_as: str) -> RecordError:
-    found = f"no such line among the {_BHRC_TEXT} below"
-    return source.refuse(found=found, expected=f"a line such as {such_as}", line=first + 1)
 
 
 BHRC: Final = Format(

@@ -15,9 +15,8 @@ from scipy.integrate import quad
 
 import rockframe as rf
 from rockframe.errors import ComponentError
-from rockframe.motion.stochastic import PointSource, Site, accelerogram, path, site, source
-from rockframe.motion.stochastic.source import Corners
-from rockframe.motion.stochastic.synthesis import WINDOW_LENGTH, exponential_window
+from rockframe.motion import stochastic
+from rockframe.motion.stochastic import WINDOW_LENGTH, Corners, PointSource, Site, accelerogram
 
 pytestmark = pytest.mark.analytical
 
@@ -125,9 +124,9 @@ def test_a_source_of_two_corners_is_told_and_built_again():
 def test_source_and_distance_are_those_of_smsim():
     assert SMSIM.moment == pytest.approx(1.122e18, rel=5e-4)
     assert SMSIM.corner_frequency == pytest.approx(0.3560, rel=2e-4)
-    assert path.saturation_length(6.0) == pytest.approx(7191.0, rel=1e-4)
+    assert stochastic.saturation_length(6.0) == pytest.approx(7191.0, rel=1e-4)
     assert SMSIM.effective_distance == pytest.approx(21.25e3, rel=5e-4)
-    assert path.path_duration(SMSIM.effective_distance) == pytest.approx(4.651, rel=2e-4)
+    assert stochastic.path_duration(SMSIM.effective_distance) == pytest.approx(4.651, rel=2e-4)
     assert SMSIM.duration == pytest.approx(7.459, rel=1e-4)
 
 
@@ -152,12 +151,12 @@ def test_energy_is_that_of_smsim():
     ],
 )
 def test_saturation_follows_its_two_lines_outside_the_transition(magnitude, kilometres):
-    assert path.saturation_length(magnitude) == pytest.approx(1e3 * kilometres, rel=1e-12)
+    assert stochastic.saturation_length(magnitude) == pytest.approx(1e3 * kilometres, rel=1e-12)
 
 
 def test_saturation_bends_smoothly():
     magnitudes = np.arange(4.0, 8.5, 0.001)
-    lengths = np.log10([path.saturation_length(m) for m in magnitudes])
+    lengths = np.log10([stochastic.saturation_length(m) for m in magnitudes])
     slopes = np.diff(lengths) / 0.001
     assert slopes[0] == pytest.approx(0.43)
     assert slopes[-1] == pytest.approx(0.235)
@@ -180,11 +179,11 @@ def test_long_waves_have_the_level_of_the_moment():
 def test_corner_frequency_in_the_units_of_its_source():
     moment = 10.0 ** (1.5 * 6.7 + 16.05)
     expected = 4.906e6 * 3.5 * (100.0 / moment) ** (1.0 / 3.0)
-    found = source.corner_frequency(source.seismic_moment(6.7), 10e6, 3500.0)
+    found = PointSource(6.7, 20e3, stress_drop=10e6, shear_wave_velocity=3500.0).corner_frequency
     assert found == pytest.approx(expected, rel=1e-12)
     circle = 2.34 / (2.0 * math.pi) * (16.0 / 7.0) ** (1.0 / 3.0)
-    assert pytest.approx(circle, rel=1e-4) == source.CORNER
-    assert source.source_shape(np.array([0.0, found]), found).tolist() == [1.0, 0.5]
+    assert pytest.approx(circle, rel=1e-4) == stochastic.CORNER
+    assert stochastic.source_shape(np.array([0.0, found]), found).tolist() == [1.0, 0.5]
 
 
 def test_high_frequencies_decay_with_kappa():
@@ -198,7 +197,7 @@ def test_high_frequencies_scale_with_stress_drop_and_moment():
     frequency = np.array([40.0])
 
     def level(model):
-        shape = source.source_shape(frequency, model.corner_frequency)
+        shape = stochastic.source_shape(frequency, model.corner_frequency)
         return model.moment * shape * frequency**2
 
     stressed = level(replace(SMSIM, stress_drop=20e6)) / level(SMSIM)
@@ -208,24 +207,24 @@ def test_high_frequencies_scale_with_stress_drop_and_moment():
 
 
 def test_spreading_and_attenuation():
-    assert path.geometric_spreading(1e3) == 1.0
-    assert path.geometric_spreading(20e3) == pytest.approx(1.0 / 20.0)
-    assert path.geometric_spreading(160e3) == pytest.approx(1.0 / 80.0)
-    decay = path.crustal_attenuation(np.array([0.0, 1.0, 4.0]), 100e3, 180.0, 0.45)
+    assert stochastic.geometric_spreading(1e3) == 1.0
+    assert stochastic.geometric_spreading(20e3) == pytest.approx(1.0 / 20.0)
+    assert stochastic.geometric_spreading(160e3) == pytest.approx(1.0 / 80.0)
+    decay = stochastic.crustal_attenuation(np.array([0.0, 1.0, 4.0]), 100e3, 180.0, 0.45)
     exponents = np.array([0.0, 1.0, 4.0**0.55]) * math.pi * 100.0 / (180.0 * 3.5)
     np.testing.assert_allclose(decay, np.exp(-exponents), rtol=1e-12)
 
 
 def test_path_duration_goes_on_beyond_its_table():
-    assert path.path_duration(26e3) == pytest.approx(2.4 + 0.5 * 6.0)
-    assert path.path_duration(370e3) == pytest.approx(34.2 + 15.6)
+    assert stochastic.path_duration(26e3) == pytest.approx(2.4 + 0.5 * 6.0)
+    assert stochastic.path_duration(370e3) == pytest.approx(34.2 + 15.6)
 
 
 @pytest.mark.parametrize("ground", list(Site))
 def test_amplification_meets_its_table(ground):
-    knots, values = np.transpose(site.AMPLIFICATIONS[ground])
-    np.testing.assert_allclose(site.amplification(knots, ground), values, rtol=1e-12)
-    ends = site.amplification(np.array([0.0, 200.0]), ground)
+    knots, values = np.transpose(stochastic.AMPLIFICATIONS[ground])
+    np.testing.assert_allclose(stochastic.amplification(knots, ground), values, rtol=1e-12)
+    ends = stochastic.amplification(np.array([0.0, 200.0]), ground)
     assert ends.tolist() == pytest.approx([values[0], values[-1]])
     assert np.all(np.diff(values) >= 0.0)
 
@@ -243,7 +242,7 @@ def test_mean_power_spectrum_is_the_target(magnitude, kilometres):
     frequency = np.fft.rfftfreq(count, STEP)[1:]
     ratio = total[1:] / seeds / model.acceleration_spectrum(frequency) ** 2
     # |A|^2 is distributed exponentially; values one 1/length apart are independent
-    window = exponential_window(WINDOW_LENGTH * model.duration, STEP)
+    window = stochastic.exponential_window(WINDOW_LENGTH * model.duration, STEP)
     length = STEP * np.sum(window**2) ** 2 / np.sum(window**4)
     edges = np.geomspace(0.5 * model.corner_frequency, 50.0, 13)
     for low, high in pairwise(edges):
@@ -341,7 +340,7 @@ def test_peaks_grow_with_stress_drop_and_magnitude_and_fall_with_distance():
 
 def test_window_spends_its_energy_within_the_duration():
     """Boore and Thompson (2014) define the duration as twice the time from 20 % to 80 %."""
-    window = exponential_window(WINDOW_LENGTH, 1e-4)
+    window = stochastic.exponential_window(WINDOW_LENGTH, 1e-4)
     energy = np.cumsum(window**2) / np.sum(window**2)
     time = 1e-4 * np.arange(window.size)
     at = {share: np.interp(share / 100.0, energy, time) for share in (5, 20, 80, 95)}

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.arguments import one_of_words, whole_number
-from rockframe.errors import ComponentError, ModelWarning
-from rockframe.motion.stochastic import Corners, Site
+from rockframe.errors import ComponentError, ModelWarning, warn
+from rockframe.motion.stochastic import (
+    LARGEST_DISTANCE,
+    Corners,
+    PointSource,
+    Site,
+    accelerogram,
+)
 from rockframe.motion.value import Made
 from rockframe.proposals import hinted
 from rockframe.signals import Motion
@@ -25,9 +30,6 @@ from rockframe.units import (
     to_ratio,
     to_si,
 )
-
-if TYPE_CHECKING:
-    from rockframe.motion.stochastic import PointSource
 
 MODEL: Final = (
     "stochastic point source: Boore (2003), doi:10.1007/PL00012553, with the parameters of "
@@ -145,8 +147,6 @@ def stochastic(
     >>> motion.metadata["seed"]
     1
     """
-    from rockframe.motion.stochastic import Corners, PointSource, Site, accelerogram
-
     owner = f"{kind.__name__}.stochastic"
     number, amount = partial(to_ratio, owner=owner), partial(to_si, owner=owner)
     size = number(magnitude, name="magnitude", condition=_MAGNITUDES, example="6.5")
@@ -170,12 +170,10 @@ def stochastic(
         else one_of_words(Corners, source, owner=owner, name="source"),
     )
     first = whole_number(seed, owner=owner, name="seed", lowest=0)
-    ratio = None
-    if vertical is not None:
-        ratio = number(vertical, name="vertical", condition=POSITIVE)
+    ratio = None if vertical is None else number(vertical, name="vertical", condition=POSITIVE)
     step = amount(time_step, _STEP, name="time_step", condition=_STEPS)
     for message in _extrapolations(earthquake, owner):
-        warnings.warn(message, ModelWarning, stacklevel=2)
+        warn(message, ModelWarning)
     across = accelerogram(earthquake, step, first)
     upwards = None if ratio is None else ratio * accelerogram(earthquake, step, first, stream=1)
     given = _arguments(earthquake, first, ratio, step)
@@ -194,8 +192,6 @@ def stochastic(
 
 def _extrapolations(source: PointSource, owner: str) -> list[str]:
     """Tell what is beyond the model's calibration; refuse what cannot be meant."""
-    from rockframe.motion.stochastic.path import LARGEST_DISTANCE
-
     try:
         duration = source.duration
     except ArithmeticError as problem:

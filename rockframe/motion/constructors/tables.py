@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Hashable
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from rockframe.arguments import one_of_words
-from rockframe.errors import ComponentError, RecordWarning, nearest, shown
+from rockframe.errors import ComponentError, RecordWarning, nearest, shown, warn
 from rockframe.motion.processing.samples import instants_of
 from rockframe.motion.quantities import (
     ArrayLike,
@@ -141,7 +140,7 @@ def from_times(
             f"{owner}: time_step = {step:.6g} s is longer than the times are apart (mostly "
             f"{np.median(gaps):.6g} s); use a shorter one, then resampled, which filters"
         )
-        warnings.warn(words, RecordWarning, stacklevel=2)
+        warn(words, RecordWarning)
     said = (
         f"built from {instants.size} samples {gaps.min():.6g} s to {gaps.max():.6g} s apart, "
         f"{_HOW[between]}, read off every {step!r} s"
@@ -363,7 +362,7 @@ def from_trace(
     traces = [trace] if all(hasattr(trace, part) for part in _NEEDED) else _listed(trace, owner)
     reading = read_traces(traces, requested, owner=owner)
     for message in reading.warnings:
-        warnings.warn(message, RecordWarning, stacklevel=2)
+        warn(message, RecordWarning)
     codes = [reading.metadata.get(key, "") for key in ("network", "station", "component")]
     return kind(
         reading.si,
@@ -374,9 +373,7 @@ def from_trace(
 
 
 def _listed(stream: Any, owner: str) -> list[Any]:
-    traces: list[Any] = []
-    if hasattr(stream, "traces"):
-        traces = list(cast("list[Any]", stream.traces))
+    traces: list[Any] = list(getattr(stream, "traces", ()))
     if not traces or not all(hasattr(one, part) for one in traces for part in _NEEDED):
         msg = (
             f"{owner}: trace needs an ObsPy Trace, or a Stream that holds one, got {shown(stream)}"

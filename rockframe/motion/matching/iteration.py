@@ -178,7 +178,8 @@ class _Run:
     def improve(self, chosen: NDArray[np.bool_], most: int) -> bool:
         """Make adjustments for some oscillators; tell whether more of them would not help."""
         for _ in range(most):
-            if self._ratios(self._peaks, chosen).max() <= self._aim:
+            misfits = np.abs(self._peaks.spectrum[chosen] / self._targets[chosen] - 1.0)
+            if misfits.max() <= self._aim:
                 return True
             if not self._step(chosen):
                 return True
@@ -206,9 +207,6 @@ class _Run:
                     return True
             self._regularisation *= _STRONGER
         return False
-
-    def _ratios(self, peaks: OscillatorPeaks, chosen: NDArray[np.bool_]) -> Array:
-        return np.abs(peaks.spectrum[chosen] / self._targets[chosen] - 1.0)
 
     def _size(self, peaks: OscillatorPeaks, chosen: NDArray[np.bool_]) -> float:
         """Give the mean fourth power of the logarithms of the spectrum over the target."""

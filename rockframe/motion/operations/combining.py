@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from rockframe.errors import ComponentError, RecordWarning
+from rockframe.errors import ComponentError, RecordWarning, warn
 from rockframe.motion.operations.following import following, other_motion
+from rockframe.motion.operations.scaling import times
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.value import Made, MotionValue
 from rockframe.proposals import hinted
@@ -78,7 +78,7 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     steps = [f"{verb} {other.name} (sha256 {other.sha256[:12]})"]
     sense = other.metadata.get(SENSE)
     if sense == DOWNWARDS:
-        upwards = _turned_over(upwards)
+        upwards = times(upwards, -1.0)
         named = other.metadata.get("component", other.name)
         steps.append(f"component {named} turned over: positive upwards")
     elif sense == EITHER:
@@ -86,7 +86,7 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
             f"{owner}: the file of {other.name} does not say whether it is positive upwards or "
             "downwards; upwards is assumed"
         )
-        warnings.warn(words, RecordWarning, stacklevel=2)
+        warn(words, RecordWarning)
     for label, one in (("horizontal", motion), ("vertical", other)):
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
@@ -182,11 +182,6 @@ def rotated(
     )
     metadata["component"] += f" rotated by {math.degrees(turn):.6g} degrees"
     return following(motion, result, *steps, operation=operation, metadata=metadata)
-
-
-def _turned_over(signal: Signal) -> Signal:
-    pieces = None if signal.polynomials is None else -signal.polynomials
-    return replace(signal, samples=-signal.samples, polynomials=pieces)
 
 
 def _turn_to(motion: MotionValue, target: float, other: MotionValue, owner: str) -> float:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Final, cast
+from typing import Final
 
-from rockframe.arguments import one_of_words, whole_number
-from rockframe.errors import ComponentError, shown
+from rockframe.arguments import one_of_words, truth, whole_number
+from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following, lost_pieces, with_samples
 from rockframe.motion.processing.samples import (
     butterworth,
@@ -110,10 +110,8 @@ def filtered(
             )
             raise ComponentError(msg)
     order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
-    for name, given in (("causal", causal), ("keep_padding", keep_padding)):
-        if not isinstance(cast("object", given), bool):
-            msg = f"{owner}: {name} must be True or False, got {shown(given)}"
-            raise ComponentError(msg)
+    causal = truth(causal, owner=owner, name="causal")
+    keep_padding = truth(keep_padding, owner=owner, name="keep_padding")
     padding = padding_samples(si.time_step, min(corners.values()), order)
     if padding > MAXIMUM_SAMPLES:
         msg = f"{owner}: a corner of {min(corners.values()):.6g} Hz is too low for this motion"

@@ -92,12 +92,13 @@ def velocity_pulse(
     pulse = np.gradient(whole, dt)
     rest = _padded(si.horizontal.samples, before, after)
     upwards = None if si.vertical is None else _padded(si.vertical.samples, before, after)
-    words = (
+    steps = (
+        *lost_pieces(si),
         f"{before} samples of still ground put before and {after} after it",
         f"velocity pulse of {place.period:.6g} s about {place.sample * dt:.6g} s: "
         f"{len(wavelets)} Daubechies wavelets (Baker 2007)",
     )
-    dropped = lost_pieces(si)
+    residual = Motion.of_samples(dt, rest - pulse, upwards)
     return VelocityPulse(
         period=with_quantity(place.period, TIME),
         time=with_quantity(place.sample * dt, TIME),
@@ -107,16 +108,8 @@ def velocity_pulse(
         indicator=found.indicator,
         pulse_start=with_quantity(found.pulse_start, TIME),
         motion_start=with_quantity(found.motion_start, TIME),
-        extracted=following(
-            motion, Motion.of_samples(dt, pulse), *dropped, *words, "the pulse alone"
-        ),
-        residual=following(
-            motion,
-            Motion.of_samples(dt, rest - pulse, upwards),
-            *dropped,
-            *words,
-            "the pulse taken out",
-        ),
+        extracted=following(motion, Motion.of_samples(dt, pulse), *steps, "the pulse alone"),
+        residual=following(motion, residual, *steps, "the pulse taken out"),
         lead=with_quantity(before * dt, TIME),
     )
 

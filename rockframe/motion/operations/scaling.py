@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -38,6 +38,11 @@ if TYPE_CHECKING:
 
 _OPPOSITE: Final = {UPWARDS: DOWNWARDS, DOWNWARDS: UPWARDS}
 _USUAL_DAMPING: Final = 0.05
+_TARGETS: Final = {
+    "peak": ("a peak", ACCELERATION),
+    "peak_velocity": ("a peak velocity", VELOCITY),
+    "spectral_acceleration": ("a pseudo-spectral acceleration", ACCELERATION),
+}
 
 
 @hinted()
@@ -115,29 +120,42 @@ def scaled(
     if factor is not None:
         ratio = to_ratio(factor, owner=owner, name="factor", example="2")
         return _times(motion, ratio, f"scaled by {ratio!r}", {"factor": ratio})
+    ((name, value),) = given.items()
+    what, measure = _TARGETS[name]
+    wanted = to_si(value, measure, owner=owner, name=name, condition=POSITIVE)
+    words = f"{what} of {wanted:.9g} {measure.unit}"
+    arguments: dict[str, float | str] = {name: f"{wanted!r} {measure.unit}"}
     across = motion.si.horizontal
     if peak is not None:
-        target = _peak(across, peak, owner)
+        present = greatest(across.pieces)
     elif peak_velocity is not None:
-        target = _peak_velocity(across, peak_velocity, owner)
+        present = greatest(ground_path(across)[0])
     else:
-        target = _spectral(across, spectral_acceleration, period, damping_ratio, owner)
-    if target.present <= 0.0:
+        seconds = to_si(period, PERIOD, owner=owner, name="period", condition=POSITIVE)
+        given_damping = _USUAL_DAMPING if damping_ratio is None else damping_ratio
+        damping = to_ratio(
+            given_damping, owner=owner, name="damping_ratio", condition=DAMPING_RATIO
+        )
+        present = _pseudo_acceleration(across, seconds, damping, owner)
+        words += f" at {seconds:.9g} s, damping ratio {damping:.9g}"
+        arguments |= {"period": f"{seconds!r} {TIME.unit}", "damping_ratio": damping}
+    if present <= 0.0:
         msg = f"{owner}: the motion has no horizontal acceleration, so nothing to scale"
         raise ComponentError(msg)
-    ratio = target.wanted / target.present
-    return _times(motion, ratio, f"scaled by {ratio!r} to {target.words}", target.arguments)
+    ratio = wanted / present
+    return _times(motion, ratio, f"scaled by {ratio!r} to {words}", arguments)
 
 
 def multiplied(motion: Motion, ratio: float) -> Motion:
     """Multiply the accelerations of both components."""
+    return motion.each(lambda signal: times(signal, ratio))
 
-    def times(signal: Signal) -> Signal:
-        with np.errstate(over="ignore"):
-            pieces = None if signal.polynomials is None else signal.polynomials * ratio
-            return replace(signal, samples=signal.samples * ratio, polynomials=pieces)
 
-    return motion.each(times)
+def times(signal: Signal, ratio: float) -> Signal:
+    """Multiply the accelerations of one component."""
+    with np.errstate(over="ignore"):
+        pieces = None if signal.polynomials is None else signal.polynomials * ratio
+        return replace(signal, samples=signal.samples * ratio, polynomials=pieces)
 
 
 def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
@@ -145,62 +163,13 @@ def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str])
     sense = motion.metadata.get(SENSE)
     if ratio < 0.0 and sense in _OPPOSITE:  # mirrored: what was positive upwards is so downwards
         added[SENSE] = _OPPOSITE[str(sense)]
-    operation = {"scaled": given}
-    return following(
-        motion, multiplied(motion.si, ratio), step, operation=operation, metadata=added
-    )
+    result = multiplied(motion.si, ratio)
+    return following(motion, result, step, operation={"scaled": given}, metadata=added)
 
 
-class _Target(NamedTuple):
-    wanted: float
-    present: float
-    words: str
-    arguments: dict[str, float | str]
-
-
-def _peak(across: Signal, given: QuantityLike, owner: str) -> _Target:
-    wanted = to_si(given, ACCELERATION, owner=owner, name="peak", condition=POSITIVE)
-    words = f"a peak of {wanted:.9g} {ACCELERATION.unit}"
-    arguments: dict[str, float | str] = {"peak": f"{wanted!r} {ACCELERATION.unit}"}
-    return _Target(wanted, greatest(across.pieces), words, arguments)
-
-
-def _peak_velocity(across: Signal, given: QuantityLike, owner: str) -> _Target:
-    wanted = to_si(given, VELOCITY, owner=owner, name="peak_velocity", condition=POSITIVE)
-    words = f"a peak velocity of {wanted:.9g} {VELOCITY.unit}"
-    arguments: dict[str, float | str] = {"peak_velocity": f"{wanted!r} {VELOCITY.unit}"}
-    return _Target(wanted, greatest(ground_path(across)[0]), words, arguments)
-
-
-def _spectral(
-    across: Signal,
-    given: QuantityLike | None,
-    period: QuantityLike | None,
-    damping_ratio: RatioLike | None,
-    owner: str,
-) -> _Target:
-    name = "spectral_acceleration"
-    wanted = to_si(given, ACCELERATION, owner=owner, name=name, condition=POSITIVE)
-    seconds = to_si(period, PERIOD, owner=owner, name="period", condition=POSITIVE)
-    damping = to_ratio(
-        _USUAL_DAMPING if damping_ratio is None else damping_ratio,
-        owner=owner,
-        name="damping_ratio",
-        condition=DAMPING_RATIO,
-    )
+def _pseudo_acceleration(across: Signal, seconds: float, damping: float, owner: str) -> float:
     periods = np.array([seconds])
     check_cost(across, periods, owner=owner)
     say_coarse([across], seconds, owner=owner)
     displacement = spectral_peaks(across, periods, damping)[:, 0]
-    words = (
-        f"a pseudo-spectral acceleration of {wanted:.9g} {ACCELERATION.unit} at "
-        f"{seconds:.9g} s, damping ratio {damping:.9g}"
-    )
-    arguments: dict[str, float | str] = {
-        name: f"{wanted!r} {ACCELERATION.unit}",
-        "period": f"{seconds!r} {TIME.unit}",
-        "damping_ratio": damping,
-    }
-    return _Target(
-        wanted, float(pseudo_spectra(across, periods, displacement)[1][0]), words, arguments
-    )
+    return float(pseudo_spectra(across, periods, displacement)[1][0])

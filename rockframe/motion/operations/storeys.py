@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
@@ -47,12 +47,11 @@ from rockframe.units import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rockframe.signals import Signal
     from rockframe.signals.arrays import Array
 
     _Read: TypeAlias = tuple[Array, Array, str, dict[str, Any]]
     """Periods and participations of the modes, the building in words, and its arguments."""
-    from rockframe.signals import Signal
-
 
 _MOST_STOREYS: Final = 1000
 _WAYS: Final = (
@@ -63,16 +62,10 @@ _WAYS: Final = (
 )
 
 
-class BuildingModes(NamedTuple):
-    """A building's modes, what it is in words, and the arguments that describe it."""
-
-    modes: FloorModes
-    words: str
-    arguments: dict[str, Any]
-
-
-def read_building(given: Mapping[str, Any], damping_ratio: object, *, owner: str) -> BuildingModes:
-    """Read one of the three ways in which a building is described."""
+def _read_building(
+    given: Mapping[str, Any], damping_ratio: object, owner: str
+) -> tuple[FloorModes, str, dict[str, Any]]:
+    """Give a building's modes, what it is in words, and the arguments that describe it."""
     values = {name: value for name, value in given.items() if value is not None}
     ways = [set(needed) <= set(values) <= {*needed, *more} for needed, more in _WAYS]
     if True not in ways:
@@ -91,7 +84,7 @@ def read_building(given: Mapping[str, Any], damping_ratio: object, *, owner: str
         arguments["modes"] = kept
     ratios = _damping_ratios(damping_ratio, periods.size, owner)
     arguments["damping_ratio"] = ratios if len(set(ratios)) > 1 else ratios[0]
-    return BuildingModes(FloorModes(periods, np.array(ratios), participations), words, arguments)
+    return FloorModes(periods, np.array(ratios), participations), words, arguments
 
 
 def _listed(names: tuple[str, ...]) -> str:
@@ -295,7 +288,7 @@ def through_storeys(
     2.712
     """
     owner, si = f"{type(motion).__name__}.through_storeys", motion.si
-    building = read_building(
+    building, what, arguments = _read_building(
         {
             "periods": periods,
             "floor_participations": floor_participations,
@@ -307,44 +300,43 @@ def through_storeys(
             "modes": modes,
         },
         damping_ratio,
-        owner=owner,
+        owner,
     )
     upwards = one_of_words(VerticalComponent, vertical, owner=owner, name="vertical")
-    moving = building.modes.moving
-    still = _still_time(free_vibration, moving, owner)
+    still = _still_time(free_vibration, building.moving, owner)
     parts = _parts(time_step, si.time_step, owner)
-    _check_size(si, moving, still, parts, owner)
+    _check_size(si, building.moving, still, parts, owner)
     zeros = math.ceil(still / si.time_step * (1.0 - _SNAP))
     count = len(motion) + zeros
-    across = _floor(padded(si.horizontal, count), building.modes, parts)
+    across, deviation = _floor(padded(si.horizontal, count), building, parts)
     above = None
     if si.vertical is not None and upwards is VerticalComponent.UNCHANGED:
         above = divided_signal(padded(si.vertical, count), parts)
-    result = Motion(across.signal, above)
-    if across.deviation > _COARSE:
+    result = Motion(across, above)
+    if deviation > _COARSE:
         # the deviation falls with the square of the time step, :eq:`eq-floor-chords`
-        finer = parts * math.ceil(math.sqrt(across.deviation / _COARSE))
+        finer = parts * math.ceil(math.sqrt(deviation / _COARSE))
         msg = (
             f"{owner}: between samples {result.time_step:.4g} s apart the floor's acceleration "
-            f"departs from straight lines by up to {100.0 * across.deviation:.2g} % of its peak; "
+            f"departs from straight lines by up to {100.0 * deviation:.2g} % of its peak; "
             f"give a shorter time_step, for example time_step='{si.time_step / finer:.4g} s'"
         )
         warn(msg, RecordWarning)
     steps = [
-        f"absolute acceleration of a floor, {building.words}: {_modes_words(building.modes)}",
+        f"absolute acceleration of a floor, {what}: {_modes_words(building)}",
         f"followed for {zeros * si.time_step:.9g} s after the ground's motion",
     ]
     if parts > 1:
         steps.append(f"time step divided by {parts}, to {result.time_step!r} s")
     steps.append(
         "straight between samples, where the floor's acceleration departs from that by up to "
-        f"{100.0 * across.deviation:.2g} % of its peak"
+        f"{100.0 * deviation:.2g} % of its peak"
     )
     if si.vertical is not None:
         steps.append(f"vertical component {upwards}")
     operation = {
         "through_storeys": {
-            **building.arguments,
+            **arguments,
             "free_vibration": f"{still!r} {TIME.unit}",
             "time_step": f"{result.time_step!r} {TIME.unit}",
             "vertical": str(upwards),
@@ -354,13 +346,8 @@ def through_storeys(
     return following(motion, result, *steps, *dropped, operation=operation)
 
 
-class _Floor(NamedTuple):
-    signal: Signal
-    deviation: float
-    """From straight lines, amid the samples, as a share of the peak."""
-
-
-def _floor(ground: Signal, modes: FloorModes, parts: int) -> _Floor:
+def _floor(ground: Signal, modes: FloorModes, parts: int) -> tuple[Signal, float]:
+    """Give the floor's acceleration, and how far it departs from straight lines, over its peak."""
     halves = divided_signal(ground, 2 * parts)
     rigid = modes.rigid_share * divided_signal(ground, parts).samples
     added = passed_on(halves.pieces, halves.time_step, modes.moving)
@@ -369,7 +356,7 @@ def _floor(ground: Signal, modes: FloorModes, parts: int) -> _Floor:
     amid = np.abs(added[1::2] - 0.5 * (added[:-1:2] + added[2::2]))
     deviation = float(np.max(amid)) / peak if peak > 0.0 else 0.0
     step = ground.time_step / parts
-    return _Floor(replace(ground, time_step=step, samples=samples, polynomials=None), deviation)
+    return replace(ground, time_step=step, samples=samples, polynomials=None), deviation
 
 
 def _still_time(given: QuantityLike | None, moving: FloorModes, owner: str) -> float:

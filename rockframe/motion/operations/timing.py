@@ -15,7 +15,14 @@ from rockframe.motion.operations.following import (
     lost_pieces,
     with_samples,
 )
-from rockframe.motion.processing.samples import band_limited, coarsened, refined, tapered
+from rockframe.motion.processing.samples import (
+    MOST_DIVISIONS,
+    band_limited,
+    coarsened,
+    divisions,
+    refined,
+    tapered,
+)
 from rockframe.motion.value import Made
 from rockframe.proposals import hinted
 from rockframe.signals.motion import MAXIMUM_SAMPLES
@@ -185,6 +192,12 @@ def resampled(
         if not finer:
             return coarsened(si.time_step, signal.samples, step)
         if not signal.analytic and between is Interpolation.BAND_LIMITED:
+            if divisions(si.time_step / step) > MOST_DIVISIONS:
+                msg = (
+                    f"{owner}: time_step = {step:.6g} s is too short beside the record's own, "
+                    f"{si.time_step:.6g} s; interpolation='linear' needs no filter"
+                )
+                raise ComponentError(msg)
             return band_limited(si.time_step, signal.samples, step)
         return refined(signal, step)
 

@@ -56,10 +56,7 @@ def interval_matrix(time_step: float, period: float, damping: float, powers: int
 
 
 def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
-    """Compute what the modes add to a floor's absolute acceleration, from rest.
-
-    By :eq:`eq-floor-acceleration`.
-    """
+    """Compute what the modes add to a floor's acceleration, :eq:`eq-floor-acceleration`."""
     total = np.zeros(len(pieces) + 1)
     for period, damping, participation in np.column_stack(modes).tolist():
         total += participation * _oscillator(pieces, time_step, period, damping)

@@ -12,20 +12,21 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from rockframe.errors import RecordWarning, warn
-from rockframe.signals.arrays import Array
-from rockframe.signals.motion import Signal
+from rockframe.signals.motion import divided
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rockframe.signals import Signal
-from rockframe.signals.motion import divided
+    from rockframe.signals.arrays import Array
 
 _INTEGER_RATIO: Final = 1e-9
 _ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slowest motion
 _ANTI_ALIAS_RIPPLE: Final = 0.05
 _ANTI_ALIAS_EDGE: Final = 0.8
 _SINC_REACH: Final = 64
+MOST_DIVISIONS: Final = 200_000
+"""Parts of a time step beyond which the filter alone would take gigabytes."""
 _SINC_WINDOW: Final = 12.0
 _OVERSAMPLING: Final = 8
 
@@ -73,9 +74,8 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
     from scipy import signal as module
 
     signal: Any = module
-    ratio = dt / time_step
-    whole = whole_ratio(ratio)
-    times = math.ceil(_OVERSAMPLING * ratio) if whole is None else whole
+    whole = whole_ratio(dt / time_step)
+    times = divisions(dt / time_step)
     sinc = np.sinc(np.arange(-_SINC_REACH * times, _SINC_REACH * times + 1) / times)
     taps = sinc * signal.windows.kaiser(sinc.size, _SINC_WINDOW)
     # without division by the sum, so that the old samples stay as they are
@@ -84,11 +84,22 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
     if whole is not None:
         fine[::times] = samples
         return fine
-    from scipy import interpolate as splines
-
-    spline: Any = splines
     instants = instants_of((samples.size - 1) * dt, time_step)
-    return spline.make_interp_spline(np.arange(fine.size) * (dt / times), fine, k=5)(instants)
+    return _spline(fine, dt / times, instants, 5)
+
+
+def _spline(samples: Array, time_step: float, instants: Array, degree: int) -> Array:
+    """Read off the spline of a degree through samples."""
+    from scipy import interpolate as module
+
+    splines: Any = module
+    times = np.arange(samples.size) * time_step
+    return splines.make_interp_spline(times, samples, k=degree)(instants)
+
+
+def divisions(ratio: float) -> int:
+    """Count the parts into which band-limited samples are divided for a ratio of time steps."""
+    return whole_ratio(ratio) or math.ceil(_OVERSAMPLING * ratio)
 
 
 def coarsened(dt: float, samples: Array, time_step: float) -> Array:
@@ -108,12 +119,8 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
     times = whole_ratio(time_step / dt)
     if times is not None:
         return smooth[::times]
-    from scipy import interpolate as splines
-
-    spline: Any = splines
     instants = instants_of((samples.size - 1) * dt, time_step)
-    degree = min(3, samples.size - 1)
-    return spline.make_interp_spline(np.arange(samples.size) * dt, smooth, k=degree)(instants)
+    return _spline(smooth, dt, instants, min(3, samples.size - 1))
 
 
 def padded(signal: Signal, count: int) -> Signal:

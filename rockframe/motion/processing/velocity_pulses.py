@@ -129,10 +129,7 @@ def periods_between(shortest: float, longest: float) -> Array:
 
 
 def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
-    """Find where the wavelet transform is greatest, :eq:`eq-wavelet-coefficient`.
-
-    By :eq:`eq-pulse-direction`.
-    """
+    """Find where :eq:`eq-wavelet-coefficient` is greatest, by :eq:`eq-pulse-direction`."""
     from scipy import fft
 
     count = velocities.shape[1]
@@ -159,10 +156,7 @@ def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
 
 
 def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int, float]]:
-    """Take the strongest wavelets about a place, one after the other, out of a velocity.
-
-    By :eq:`eq-extracted-pulse`.
-    """
+    """Take the strongest wavelets about a place out of a velocity, :eq:`eq-extracted-pulse`."""
     wavelet = wavelet_of(place.period, dt)
     reach = math.ceil(REACH * place.period * CENTRE_FREQUENCY / dt)
     around = range(max(0, place.sample - reach), min(velocity.size - 1, place.sample + reach) + 1)
@@ -203,10 +197,7 @@ def measures(velocity: Array, pulse: Array, dt: float) -> Measures:
 
 
 def wavelet_of(period: float, dt: float) -> Array:
-    """Sample the wavelet of a period about its middle.
-
-    By :eq:`eq-pseudo-period`.
-    """
+    """Sample the wavelet of a period, :eq:`eq-pseudo-period`, about its middle."""
     scale = period * CENTRE_FREQUENCY / dt
     half = math.ceil(0.5 * SUPPORT * scale)
     wavelet = mother_wavelet(np.arange(-half, half + 1) / scale + 0.5 * SUPPORT)

@@ -192,3 +192,10 @@ def test_refining_never_changes_the_function(values, times):
     time = np.linspace(0.0, coarse.si.duration, 97)
     assert fine.si.at(time) == pytest.approx(coarse.si.at(time), abs=1e-9)
     assert fine.si.peak == pytest.approx(coarse.si.peak, rel=1e-14, abs=1e-300)
+
+
+def test_a_step_for_which_the_filter_alone_would_fill_the_memory_is_refused():
+    record = GroundMotion.from_arrays(([0.0, 1.0, -1.0], "m/s^2"), time_step="0.01 s")
+    with pytest.raises(ComponentError, match=r"too short beside the record's own, 0\.01 s"):
+        record.resampled("1e-9 s")
+    assert len(record.resampled("1e-6 s", interpolation="linear")) == 20_001

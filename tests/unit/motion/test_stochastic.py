@@ -8,8 +8,7 @@ import pytest
 
 from rockframe.errors import ComponentError, ModelWarning, UnitsError
 from rockframe.motion import GroundMotion
-from rockframe.motion.stochastic import Site
-from rockframe.motion.stochastic.synthesis import exponential_window, faded, normal_numbers
+from rockframe.motion.stochastic import Site, exponential_window, faded, normal_numbers
 
 ALL = {
     "stress_drop": "150 bar",
