@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.tied import force_at
+from rockframe.dynamics.tied import force_at, is_broken
 from rockframe.many import sqrt
 
 if TYPE_CHECKING:
@@ -100,12 +100,18 @@ def followed(held: Callable[[float], HeldBodies], path: Path, to: float = 1.0) -
         ahead = to if abs(to - path.at) <= abs(step) else path.at + step
         guess = path.foreseen(ahead)
         found = balanced(held(ahead), guess)
-        if found is not None and _greatest(found.rotations - guess.rotations) <= NEAR:
-            path = Path(ahead, found, (path.at, path.place))
-        elif abs(step) < least:
-            return None
-        else:
+        if found is not None and _greatest(found.rotations - guess.rotations) > NEAR:
+            found = None
+        # without a link that would have held the bodies may be in balance, too
+        breaks = found is not None and _breaks(held(ahead).chain, path.place, found)
+        if found is None or (breaks and abs(step) >= least):
+            if abs(step) < least:
+                return None
             step *= 0.5
+        elif breaks:
+            path, step = Path(ahead, found), to - ahead
+        else:
+            path = Path(ahead, found, (path.at, path.place))
     return path
 
 
@@ -182,6 +188,12 @@ def of_base(link: "StandingBody", stand: "Stand", name: str) -> tuple[float, flo
         moment -= weight / step * (before.moment - behind.moment)
         upward -= weight / step * (before.upward - behind.upward)
     return moment, upward
+
+
+def _breaks(chain: "StandingChain", before: Balance, after: Balance) -> bool:
+    """Whether a link breaks between two equilibria."""
+    stretches = zip(chain.ties, before.stretches.tolist(), after.stretches.tolist(), strict=True)
+    return any(is_broken(one, now) and not is_broken(one, was) for one, was, now in stretches)
 
 
 def _greatest(values: Vector) -> float:

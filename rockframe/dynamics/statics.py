@@ -154,8 +154,24 @@ class StandingChain(NamedTuple):
         if stands is None or not self.ties:
             return stands
         if len(stands) == 1 and not self.links[0].corner:
-            return self._at_height(stands[0])
+            found = self._at_height(stands[0])
+            # a link that is broken at one height may hold the body at another
+            broken = found is not None and self._has_broken(found)
+            return (self._slowly(rotations[0]) or found) if broken else found
         return self._at(self._loaded(stands, np.eye(len(rotations)).tolist()))
+
+    def _has_broken(self, stands: Sequence[Stand]) -> bool:
+        """Whether a link is broken where bodies stand."""
+        from rockframe.dynamics.tied import is_broken
+
+        tied = self.tied(stands)
+        return any(is_broken(one, of.elongation) for one, of in zip(self.ties, tied, strict=True))
+
+    def _slowly(self, rotation: float) -> list[Stand] | None:
+        """Give how bodies stand that were brought slowly from upright to a rotation."""
+        upright = self._under_weight([0.0] * len(self.links))
+        start = None if upright is None else self._loaded(upright, [len(self.links) * [1.0]])
+        return None if start is None else self.held(Path(0.0, start.place), rotation)[1]
 
     def _at_height(self, stand: Stand) -> list[Stand] | None:
         """Give how one body stands at its rotation, between heights at which it rises and falls.

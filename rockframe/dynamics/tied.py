@@ -12,6 +12,7 @@ import numpy as np
 
 from rockframe.compiled import Matrix, Vector
 from rockframe.dynamics.chain.link_rows import GROUND, ChainLink
+from rockframe.dynamics.events import LinkState
 from rockframe.dynamics.links import Stretch
 from rockframe.dynamics.trigonometry import sine_cosine, versine
 
@@ -122,6 +123,12 @@ def pulled(
 def force_at(tie: ChainLink, elongation: float) -> float:
     """Give what a link pulls that is stretched slowly."""
     return _answer(tie, elongation, None)[0]
+
+
+def is_broken(tie: ChainLink, elongation: float) -> bool:
+    """Whether a link is broken that is stretched slowly."""
+    law: Any = tie.numbers.law
+    return bool(law.shown(_answer(tie, elongation, None)[1]) == LinkState.BROKEN)
 
 
 def _answer(

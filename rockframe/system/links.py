@@ -4,7 +4,7 @@ import math
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from rockframe.components import Link, Load, PointLink, RearWall, Restrainer, Tendon
 from rockframe.dynamics.links import LinkNumbers
@@ -62,6 +62,8 @@ class OwnLink(PointLink):
 
 
 Point = tuple[float, float]
+ROUNDING: Final = 1e-14
+"""Of their distance from the middle of the lowest base, that of points that meet."""
 
 
 @dataclass(frozen=True)
@@ -217,6 +219,8 @@ def placed(
             continue  # its mass is that of its body
         bases = [(0.0, 0.0) if k < 0 else base_of(k, bodies, tops, offsets) for k in (on, to)]
         ends = _ends_of(part, bases[0], bases[1], bodies[on], tops[on])
+        if math.dist(*ends) <= ROUNDING * max(abs(place) for end in ends for place in end):
+            ends = (ends[0], ends[0])  # heights of bodies, added up, have left them apart
         points = [
             (x, y) if k < 0 else
             (x - base[0] - bodies[k].eccentricity, y - base[1] - bodies[k].centre_height)

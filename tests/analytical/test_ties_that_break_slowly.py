@@ -1,0 +1,68 @@
+"""Bodies that ties hold as they are brought slowly to a rotation, and ties whose points meet."""
+
+import math
+
+import pytest
+
+import rockframe as rf
+
+pytestmark = pytest.mark.analytical
+
+PAD, TIE = 4e6, 20e6
+HALF, STRENGTH = 0.5, 15e3
+BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
+PADS = rf.TwoSpringSupport(stiffness=f"{PAD} N/m", damping="0 N*s/m")
+HOLD_DOWN = rf.Restrainer(
+    on=("-0.5 m", "0 m"), to=("-0.5 m", "-3 m"), stiffness=f"{TIE} N/m", strength=f"{STRENGTH} N"
+)
+
+
+def pulls(rotation):
+    """Give what the tie pulls while it holds: the pads give way to it, too."""
+    return TIE * HALF * math.sin(rotation) * 2.0 * PAD / (2.0 * PAD + TIE)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.99, 1.01, 1.2, 3.0])
+def test_a_tie_that_breaks_holds_up_to_its_strength(share):
+    """At the height of a body without it, it would be broken from a share of 0.29 on."""
+    rotation = share * STRENGTH / pulls(1e-6) * 1e-6
+    held = rf.System(BLOCK, PADS, HOLD_DOWN, restraint="centre")
+    free = rf.System(BLOCK, PADS, restraint="centre")
+    more = held.setting.statics(rotation).restoring_moment
+    more -= free.setting.statics(rotation).restoring_moment
+    expected = HALF * pulls(rotation) if share < 1.0 else 0.0
+    assert more == pytest.approx(expected, rel=1e-4, abs=1e-6 * HALF * STRENGTH)
+
+
+def test_a_tie_between_bodies_breaks_in_the_same_way_however_many_rotations_are_given():
+    lower = rf.Block(width="1 m", height="1 m", mass="1 t")
+    tie = HOLD_DOWN.replace(to=("-0.5 m", "0.5 m"), to_body=2)
+    stack = rf.Stack(BLOCK, lower, interfaces=[PADS])
+    system = rf.System(stack, PADS, tie, restraint="centre")
+    stronger = rf.System(stack, PADS, tie.replace(strength="1 MN"), restraint="centre")
+    limit = STRENGTH / pulls(1e-6) * 1e-6  # about: the lower pads give way, too
+    rotations = [share * limit for share in (0.3, 0.6, 0.9, 1.2, 3.0)]
+    together = [one.restoring_moment for one in system.setting.held_at(rotations)]
+    alone = [system.setting.statics(one).restoring_moment for one in rotations]
+    assert alone == pytest.approx(together, rel=1e-9)
+    assert alone[0] == pytest.approx(stronger.setting.statics(rotations[0]).restoring_moment)
+
+
+def test_points_that_meet_but_for_rounding_meet():
+    """A tie of no length, of points that are given by heights of bodies, added up."""
+    statue = rf.Block(width="1.294 m", height="3.574 m", mass="146 kg")
+    drum = rf.Block(width="1.636 m", height="1.1 m", mass="24 t")
+    foot = rf.Block(width="1.746 m", height="3.3 m", mass="104 kg")
+    height = 3.3 + 0.7
+    soft, stiff = (
+        rf.TwoSpringSupport(stiffness=one, damping_ratio=0.1) for one in ("2 MN/m", "40 MN/m")
+    )
+    stack = rf.Stack(statue, drum, foot, interfaces=[soft, stiff], offsets=["0.01 m", "0.02 m"])
+    where = ("0.818 m", "0.7 m")
+    found = []
+    for apart in (0.0, 4.0 * math.ulp(height), -4.0 * math.ulp(height)):
+        to = (f"{0.818 + 0.02} m", f"{height + apart!r} m")
+        tie = rf.Restrainer(on=where, on_body=2, to=to, stiffness="2.8 GN/m")
+        found.append(rf.System(stack, stiff, tie).equilibrium())
+    for one in found[1:]:
+        assert float(one.rest_rotation) == pytest.approx(float(found[0].rest_rotation), rel=1e-9)
