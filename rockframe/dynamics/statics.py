@@ -144,34 +144,32 @@ class StandingChain(NamedTuple):
     @property
     def sizes(self) -> Vector:
         """Typical sizes of rotation and height of each body on its base."""
-        return np.array([
-            size for link in self.links for size in (link.allowed_rotation, link.settlement)
-        ])  # fmt: skip
+        return np.ravel([(link.allowed_rotation, link.settlement) for link in self.links])
 
     def settled(self, rotations: Sequence[float]) -> list[Stand] | None:
         """Give how the bodies stand at rotations on their bases; None where one would pull."""
+        if len(rotations) == 1:
+            return self.curve(rotations)[0]
         stands = self._under_weight(rotations)
         if stands is None or not self.ties:
             return stands
-        if len(stands) == 1 and not self.links[0].corner:
-            found = self._at_height(stands[0])
-            # a link that is broken at one height may hold the body at another
-            broken = found is not None and self._has_broken(found)
-            return (self._slowly(rotations[0]) or found) if broken else found
         return self._at(self._loaded(stands, np.eye(len(rotations)).tolist()))
 
     def _has_broken(self, stands: Sequence[Stand]) -> bool:
         """Whether a link is broken where bodies stand."""
         from rockframe.dynamics.tied import is_broken
 
-        tied = self.tied(stands)
-        return any(is_broken(one, of.elongation) for one, of in zip(self.ties, tied, strict=True))
+        tied = self.tied(stands) if stands else []
+        return any(is_broken(one, of.elongation) for one, of in zip(self.ties, tied, strict=False))
 
-    def _slowly(self, rotation: float) -> list[Stand] | None:
-        """Give how bodies stand that were brought slowly from upright to a rotation."""
-        upright = self._under_weight([0.0] * len(self.links))
-        start = None if upright is None else self._loaded(upright, [len(self.links) * [1.0]])
-        return None if start is None else self.held(Path(0.0, start.place), rotation)[1]
+    def _alone_at(self, rotation: float) -> list[Stand] | None:
+        """Give how one body stands at a rotation, whatever links it had there."""
+        stands = self._under_weight([rotation])
+        if stands is None or not self.ties:
+            return stands
+        if self.links[0].corner:
+            return self._at(self._loaded(stands, [[1.0]]))
+        return self._at_height(stands[0])
 
     def _at_height(self, stand: Stand) -> list[Stand] | None:
         """Give how one body stands at its rotation, between heights at which it rises and falls.
@@ -351,19 +349,25 @@ class StandingChain(NamedTuple):
 
         Followed from upright to either side; None from where the bases cannot carry it.
         """
-        if len(self.links) == 1:
-            return [self.settled([rotation]) for rotation in rotations]
-        found: list[list[Stand] | None] = [None] * len(rotations)
-        upright = self._under_weight([0.0] * len(self.links))
-        start = None if upright is None else self._loaded(upright, [len(self.links) * [1.0]])
+        one, every = len(self.links) == 1, range(len(rotations))
+        found = [self._alone_at(rotation) if one else None for rotation in rotations]
+        # a link that is broken at one height of a body may hold it at another
+        sought = [i for i in every if not one or self._has_broken(found[i] or [])]
         for side in (1.0, -1.0):
-            path = start and Path(0.0, start.place)
-            here = [i for i, each in enumerate(rotations) if math.copysign(1.0, each) == side]
+            here = [i for i in sought if math.copysign(1.0, rotations[i]) == side]
+            path = self._upright_path() if here else None
             for i in sorted(here, key=lambda i: abs(rotations[i])):
                 if path is None:
                     break
-                path, found[i] = self.held(path, rotations[i])
+                path, stands = self.held(path, rotations[i])
+                found[i] = stands or found[i]
         return found
+
+    def _upright_path(self) -> Path | None:
+        """Give where the curve begins: under all loads, the highest body upright."""
+        upright = self._under_weight([0.0] * len(self.links))
+        loaded = None if upright is None else self._loaded(upright, [len(self.links) * [1.0]])
+        return None if loaded is None else Path(0.0, loaded.place)
 
     def held(self, path: Path, rotation: float) -> tuple[Path | None, list[Stand] | None]:
         """Give how the bodies stand at a rotation of the highest one, followed along a path."""
