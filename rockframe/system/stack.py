@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from rockframe.dynamics.vibrations import ChainBody
 
 NO_REST: Final = "the bodies find no rest under their weight: their bases are too soft for them"
+PULLED: Final = ", or their restrainers or loads pull them over"
 
 
 @dataclass(frozen=True)
@@ -247,7 +248,7 @@ class StackSetting(Setting):
     def _rest(self) -> list[Stand]:
         found = self.standing.rest if self.groups else []
         if found is None:
-            raise AssemblyError([NO_REST])
+            raise AssemblyError([NO_REST + (PULLED if self.ties else "")])
         faults = list[str]()
         for k, rigid in enumerate(self.rigid):
             if rigid and not (carried := pressed(self, k, self._tied_at_rest)).bears(0.0):
@@ -370,7 +371,7 @@ class StackSetting(Setting):
         """Give the height at which the one body starts at a rotation, with its ties."""
         stands = self.standing.chain.settled([rotation])
         if stands is None:
-            raise AssemblyError([NO_REST])
+            raise AssemblyError([NO_REST + (PULLED if self.ties else "")])
         return stands[0].state.vertical
 
 
