@@ -24,7 +24,7 @@ from rockframe.dynamics.protocol import (
     Slope,
     Start,
 )
-from rockframe.dynamics.statics import link_of, settled
+from rockframe.dynamics.statics import settled, standing_body
 from rockframe.dynamics.switching import lift_by_slip, switch_part
 from rockframe.many import atan2, hypot, sqrt
 
@@ -340,7 +340,7 @@ def starting_state(part: OnBase, start: Start, own: tuple[float, ...]) -> tuple[
     body, base, rotation = part.body, part.base, start.rotation or 0.0
     height = start.vertical_displacement
     if height is None:
-        height = settled(link_of(part, own=own), rotation, body.gravity).state.vertical
+        height = settled(standing_body(part, own=own), rotation, body.gravity).state.vertical
     state = BodyState(rotation, height, 0.0, start.angular_velocity, start.vertical_velocity, 0.0)
     return state, part.standing(base.starting(body.base_line_at(state), own), state)
 

@@ -34,6 +34,10 @@ ANSWERED: Final = 1e3
 """Last change of a link's force over the weight, over that of coordinates over their sizes."""
 FAR: Final = 1e9
 """Of its size, a coordinate's change that leads nowhere."""
+RETURNS: Final = 0.25
+"""Share of the step before that a step takes back, from which on steps are halved."""
+LEAST_DAMPED: Final = 2.0**-6
+"""Share of a step to which they are halved."""
 SUDDEN: Final = 0.25
 """Change of a force within a step that is too large where a link has not answered, over weight."""
 STEP: Final = 1e-3
@@ -98,12 +102,12 @@ def followed(held: Callable[[float], HeldBodies], path: Path, to: float = 1.0) -
     step, least = way, LEAST_STEP * abs(way)
     while path.at != to:
         ahead = to if abs(to - path.at) <= abs(step) else path.at + step
-        guess = path.foreseen(ahead)
-        found = balanced(held(ahead), guess)
+        bodies, guess = held(ahead), path.foreseen(ahead)
+        found = balanced(bodies, guess)
         if found is not None and _greatest(found.rotations - guess.rotations) > NEAR:
             found = None
         # without a link that would have held the bodies may be in balance, too
-        breaks = found is not None and _breaks(held(ahead).chain, path.place, found)
+        breaks = found is not None and _breaks(bodies.chain, path.place, found)
         if found is None or (breaks and abs(step) >= least):
             if abs(step) < least:
                 return None
@@ -129,8 +133,9 @@ def balanced(held: HeldBodies, guess: Balance) -> Balance | None:
         if now.is_last and count == 0:
             return guess if now.is_stable() else None
         # contacts or links that take turns would lead to and fro
-        returns = now.move @ before < -0.25 * (before @ before)
-        damped, before = max(0.5 * damped, 2.0**-6) if returns else min(1.0, 2.0 * damped), now.move
+        returns = now.move @ before < -RETURNS * (before @ before)
+        damped = max(0.5 * damped, LEAST_DAMPED) if returns else min(1.0, 2.0 * damped)
+        before = now.move
         share = min(damped, NEAR / max(_greatest(now.move[::2]), NEAR))
         place = now.ahead(share)
         if share == 1.0 and now.is_last:
@@ -160,21 +165,21 @@ def of_loads(
 def of_bases(chain: "StandingChain", stands: "Sequence[Stand]") -> Matrix:
     """Give minus the changes of what bases do with coordinates; of rigid ones there are none."""
     found = np.zeros((2 * len(stands), 2 * len(stands)))
-    for k, (link, stand) in enumerate(zip(chain.links, stands, strict=True)):
-        if not link.corner:
+    for k, (standing, stand) in enumerate(zip(chain.bodies, stands, strict=True)):
+        if not standing.corner:
             own = slice(2 * k, 2 * k + 2)
-            found[own, own] = np.array([of_base(link, stand, name) for name in PLACES]).T
+            found[own, own] = np.array([of_base(standing, stand, name) for name in PLACES]).T
     return found
 
 
-def of_base(link: "StandingBody", stand: "Stand", name: str) -> tuple[float, float]:
+def of_base(standing: "StandingBody", stand: "Stand", name: str) -> tuple[float, float]:
     """Give minus the change of a base's moment and force with a coordinate or rate of its body.
 
     Rates are moved over those of a vibration that settles as much as the body does.
     """
-    body, base = link.part
-    size = link.allowed_rotation if name in (PLACES[0], RATES[0]) else link.settlement
-    step = STEP * size * (sqrt(body.gravity / link.settlement) if name in RATES else 1.0)
+    body, base = standing.part
+    size = standing.allowed_rotation if name in (PLACES[0], RATES[0]) else standing.settlement
+    step = STEP * size * (sqrt(body.gravity / standing.settlement) if name in RATES else 1.0)
     moment = upward = 0.0
     for place, weight in STENCIL:
         before, behind = (
@@ -249,13 +254,18 @@ class _Step:
             self.more_pull[one.link] += force * one.direction
         for i, (link, one) in enumerate(zip(self.chain.ties, self.tied, strict=True)):
             rounding = ANSWERED * CLOSE * self.chain.weight
-            if one.meets:
-                self.is_last = self.is_last and _greatest(self.more_pull[i]) <= rounding
-            else:
-                self.more_stretch[i] = self._stretched(link, one, i, rounding)
+            answers = _greatest(self.more_pull[i]) <= rounding
+            if not one.meets:
+                self.more_stretch[i], answers = self._stretched(link, one, i, rounding)
+            self.is_last = self.is_last and answers
 
-    def _stretched(self, link: "ChainLink", tied: "Tied", i: int, rounding: float) -> float:
-        """Give how a link's stretch goes on; where it begins to answer, by a little at first."""
+    def _stretched(
+        self, link: "ChainLink", tied: "Tied", i: int, rounding: float
+    ) -> tuple[float, bool]:
+        """Give how a link's stretch goes on, and whether its force is then the one foreseen.
+
+        Where it begins to answer it goes on by a little at first.
+        """
         share, stretch, more = 1.0, float(self.place.stretches[i]), self.more_stretch[i]
 
         def surprise(more: float) -> float:
@@ -263,12 +273,12 @@ class _Step:
             return self.chain.pull * abs(force_at(link, stretch + more) - foreseen)
 
         rounding += CLOSE * self.chain.pull * tied.stiffness * abs(stretch)
-        self.is_last = self.is_last and surprise(more) <= rounding
+        as_foreseen = surprise(more) <= rounding
         while tied.stiffness <= 0.0 and share > LEAST_SHARE:
             if surprise(share * more) <= SUDDEN * self.chain.weight:
                 break
             share *= 0.5
-        return share * more
+        return share * more, as_foreseen
 
     def ahead(self, share: float) -> Balance:
         """Give where a share of the step leads."""
@@ -318,8 +328,8 @@ class _Step:
         chain, weight, free, sizes = self.chain, self.chain.weight, self.free, self.sizes
         energy = weight * sizes[1]
         forces = chain.loads(self.stands, self._loads(self.stands))
-        for k, (link, one) in enumerate(zip(chain.links, self.stands, strict=True)):
-            if not link.corner:
+        for k, (standing, one) in enumerate(zip(chain.bodies, self.stands, strict=True)):
+            if not standing.corner:
                 forces[2 * k : 2 * k + 2] += one.force.moment, one.force.upward
         inner = self.of_bases + of_loads(chain, self.stands, self._loads, SECANT)
         inner *= sizes * sizes[:, None] / energy

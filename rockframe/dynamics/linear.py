@@ -30,9 +30,9 @@ def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
     states = [one.state for one in ties]
     for one in ties:
         damping += one.damping_matrix
-    for k, (link, stand) in enumerate(zip(chain.links, stands, strict=True)):
+    for k, (standing, stand) in enumerate(zip(chain.bodies, stands, strict=True)):
         own = slice(2 * k, 2 * k + 2)
-        damping[own, own] = np.array([of_base(link, stand, name) for name in RATES]).T
+        damping[own, own] = np.array([of_base(standing, stand, name) for name in RATES]).T
     stiffness = of_bases(chain, stands)
     stiffness += of_loads(chain, stands, lambda others: chain.tie_loads(others, states))
     return Linear(_mass(chain, stands), damping, stiffness)
@@ -45,18 +45,18 @@ def _mass(chain: StandingChain, stands: list[Stand]) -> Matrix:
     places, place = np.zeros((len(stands), 2)), np.zeros(2)
     turned = top = 0.0
     for k in range(len(stands) - 1, -1, -1):
-        stand, arm = stands[k], top + chain.links[k].part.body.height + stands[k].state.vertical
+        stand, arm = stands[k], top + chain.bodies[k].part.body.height + stands[k].state.vertical
         sine, cosine = sine_cosine(turned)
         axes = np.array([[cosine, -sine], [sine, cosine]])
         place = places[k] = place + np.array([stand.across, arm]) @ axes
         ways[: k + 1, :2, 2 * k] = stand.reach.rate * axes[0]
         ways[: k + 1, 2, 2 * k] = 1.0
         ways[: k + 1, :2, 2 * k + 1] = axes[1]
-        turned, top = turned + stand.state.rotation, chain.links[k].top
+        turned, top = turned + stand.state.rotation, chain.bodies[k].top
     for k in range(1, len(stands)):  # about the centre of the body that rotates
         x, y = (places[:k] - places[k]).T
         ways[:k, :2, 2 * k] += np.column_stack((y, -x))
     found = np.zeros((size, size))
-    for link, way in zip(chain.links, ways, strict=True):
-        found += way.T @ np.diag([link.mass, link.mass, link.part.body.inertia]) @ way
+    for standing, way in zip(chain.bodies, ways, strict=True):
+        found += way.T @ np.diag([standing.mass, standing.mass, standing.part.body.inertia]) @ way
     return found

@@ -108,7 +108,7 @@ class StandingChain(NamedTuple):
     Of what links them a share pulls.
     """
 
-    links: tuple[StandingBody, ...]
+    bodies: tuple[StandingBody, ...]
     along_gravity: float = 0.0
     ties: "tuple[ChainLink, ...]" = ()
     pull: float = 1.0
@@ -117,18 +117,18 @@ class StandingChain(NamedTuple):
     def upright(self) -> bool:
         """Whether nothing turns the bodies from where they stand upright."""
         level = self.along_gravity == 0.0 and not self.ties
-        return level and all(link.beside == 0.0 for link in self.links)
+        return level and all(one.beside == 0.0 for one in self.bodies)
 
     def with_share(self, share: float) -> "StandingChain":
         """Give the chain with a share of its slope and of the eccentricity of its bodies."""
         if share == 1.0:
             return self
-        links = tuple(link.with_share(share) for link in self.links)
-        return StandingChain(links, share * self.along_gravity, self.ties, share * self.pull)
+        bodies = tuple(one.with_share(share) for one in self.bodies)
+        return StandingChain(bodies, share * self.along_gravity, self.ties, share * self.pull)
 
     def frames(self, rotations: Sequence[float]) -> list[tuple[float, float]]:
         """Give gravity normal to the deck under each body, and along it."""
-        normal, along = self.links[0].part.body.gravity, self.along_gravity
+        normal, along = self.bodies[0].part.body.gravity, self.along_gravity
         turned, found = 0.0, [(normal, along)]
         for rotation in reversed(rotations[1:]):
             turned += rotation
@@ -139,12 +139,12 @@ class StandingChain(NamedTuple):
     @property
     def weight(self) -> float:
         """The weight of all bodies on a level base."""
-        return self.links[0].part.body.gravity * sum(link.mass for link in self.links)
+        return self.bodies[0].part.body.gravity * sum(one.mass for one in self.bodies)
 
     @property
     def sizes(self) -> Vector:
         """Typical sizes of rotation and height of each body on its base."""
-        return np.ravel([(link.allowed_rotation, link.settlement) for link in self.links])
+        return np.ravel([(one.allowed_rotation, one.settlement) for one in self.bodies])
 
     def settled(self, rotations: Sequence[float]) -> list[Stand] | None:
         """Give how the bodies stand at rotations on their bases; None where one would pull."""
@@ -167,7 +167,7 @@ class StandingChain(NamedTuple):
         stands = self._under_weight([rotation])
         if stands is None or not self.ties:
             return stands
-        if self.links[0].corner:
+        if self.bodies[0].corner:
             return self._at(self._loaded(stands, [[1.0]]))
         return self._at_height(stands[0])
 
@@ -178,18 +178,18 @@ class StandingChain(NamedTuple):
         """
         from scipy.optimize import brentq
 
-        link, rotation = self.links[0], stand.state.rotation
+        standing, rotation = self.bodies[0], stand.state.rotation
 
         def at(height: float) -> tuple[list[Stand], float]:
-            stands = self._with_arms([lifted(link, rotation, height)])
+            stands = self._with_arms([lifted(standing, rotation, height)])
             load = self.weights(stands)[0][1] + self.tie_loads(stands)[1]
             return stands, float(stands[0].force.upward + load)
 
-        here, far = stand.state.vertical, FAR * link.part.body.size()
+        here, far = stand.state.vertical, FAR * standing.part.body.size()
         found, lack = at(here)
         if abs(lack) <= 4.0 * ROUNDING * self.weight:
             return found
-        step = math.copysign(link.settlement, lack)
+        step = math.copysign(standing.settlement, lack)
         there = here + step
         while at(there)[1] * step > 0.0:
             step *= 2.0
@@ -204,47 +204,48 @@ class StandingChain(NamedTuple):
         """Give how the bodies stand at rotations on their bases without what links them."""
         mass, found = 0.0, list[Stand]()
         frames = self.frames(rotations)
-        for link, rotation, (normal, _) in zip(self.links, rotations, frames, strict=True):
-            mass += link.mass
+        for standing, rotation, (normal, _) in zip(self.bodies, rotations, frames, strict=True):
+            mass += standing.mass
             if not mass * normal > 0.0:
                 return None
-            found.append(settled(link, rotation, mass * normal))
+            found.append(settled(standing, rotation, mass * normal))
         return self._with_arms(found)
 
     def _with_arms(self, stands: Sequence[Stand]) -> list[Stand]:
         """Give the bodies with where they are over what they stand on."""
-        decks = [*(link.top for link in self.links[1:]), 0.0]
+        decks = [*(one.top for one in self.bodies[1:]), 0.0]
         return [
-            one._replace(arm=deck + link.part.body.height + one.state.vertical)
-            for link, one, deck in zip(self.links, stands, decks, strict=True)
+            one._replace(arm=deck + standing.part.body.height + one.state.vertical)
+            for standing, one, deck in zip(self.bodies, stands, decks, strict=True)
         ]
 
     def stands_at(self, balance: Balance) -> list[Stand]:
         """Give how the bodies stand on bases that carry some forces, or above them."""
-        places = zip(self.links, *(each.tolist() for each in balance[:3]), strict=True)
+        places = zip(self.bodies, *(each.tolist() for each in balance[:3]), strict=True)
         return self._with_arms([
-            settled(link, rotation, press) if press > 0.0 else lifted(link, rotation, height)
-            for link, rotation, height, press in places
+            settled(one, rotation, press) if press > 0.0 else lifted(one, rotation, height)
+            for one, rotation, height, press in places
         ])  # fmt: skip
 
     def moved(self, stands: Sequence[Stand], at: int, by: float) -> list[Stand]:
         """Give the bodies with one coordinate moved, without what their bases do then."""
         k, found = at // 2, [*stands]
-        link, now = self.links[k], stands[k]
+        standing, now = self.bodies[k], stands[k]
         state = now.state._replace(**{PLACES[at % 2]: now.state[at % 2] + by})
-        if link.corner:
-            found[k] = _on_corner(link, state.rotation, now.press)
+        if standing.corner:
+            found[k] = _on_corner(standing, state.rotation, now.press)
         else:
-            reach, across = link.way(link.part.body.attitude(state.rotation), now.mode.pivot)
+            attitude = standing.part.body.attitude(state.rotation)
+            reach, across = standing.way(attitude, now.mode.pivot)
             found[k] = now._replace(state=state, reach=reach, across=across)
         return self._with_arms(found)
 
     def following(self, stands: Sequence[Stand]) -> Matrix:
         """Give how coordinates go with those that are free: on a corner no height is."""
         found = np.eye(2 * len(stands))
-        for k, (link, stand) in enumerate(zip(self.links, stands, strict=True)):
-            if link.corner:
-                found[2 * k + 1, 2 * k] = -link.corner_lever(stand)
+        for k, (standing, stand) in enumerate(zip(self.bodies, stands, strict=True)):
+            if standing.corner:
+                found[2 * k + 1, 2 * k] = -standing.corner_lever(stand)
                 found[2 * k + 1, 2 * k + 1] = 0.0
         return found
 
@@ -254,9 +255,9 @@ class StandingChain(NamedTuple):
         A body that rests on a corner has none on its height: it follows from the rotation.
         """
         found = np.ravel(self.weights(stands)) + of_links
-        for k, (link, stand) in enumerate(zip(self.links, stands, strict=True)):
-            if link.corner:
-                found[2 * k] -= link.corner_lever(stand) * found[2 * k + 1]
+        for k, (standing, stand) in enumerate(zip(self.bodies, stands, strict=True)):
+            if standing.corner:
+                found[2 * k] -= standing.corner_lever(stand) * found[2 * k + 1]
                 found[2 * k + 1] = 0.0
         return found
 
@@ -268,9 +269,9 @@ class StandingChain(NamedTuple):
         loads = np.ravel(self.weights(stands))
         for pull, one in zip(path.place.pulls, self.reached(stands), strict=True):
             loads -= pull @ one.way
-        for k, (link, one) in enumerate(zip(self.links, stands, strict=True)):
-            if link.corner:
-                stands[k] = _on_corner(link, one.state.rotation, -float(loads[2 * k + 1]))
+        for k, (standing, one) in enumerate(zip(self.bodies, stands, strict=True)):
+            if standing.corner:
+                stands[k] = _on_corner(standing, one.state.rotation, -float(loads[2 * k + 1]))
         bears = all(one.press >= 0.0 for one in stands)
         return self._with_arms(stands) if bears else None
 
@@ -278,7 +279,7 @@ class StandingChain(NamedTuple):
         """Give where the points of what links the bodies are."""
         from rockframe.dynamics.tied import reached
 
-        return reached(self.links, stands, self.ties)
+        return reached(self.bodies, stands, self.ties)
 
     def tied(
         self, stands: Sequence[Stand], states: Sequence[int] | None = None,
@@ -287,7 +288,7 @@ class StandingChain(NamedTuple):
         """Give how what links the bodies is stretched."""
         from rockframe.dynamics.tied import tied
 
-        return tied(self.links, stands, self.ties, states, stretches)
+        return tied(self.bodies, stands, self.ties, states, stretches)
 
     def tie_loads(self, stands: Sequence[Stand], states: Sequence[int] | None = None) -> Vector:
         """Give the generalised forces of links on rotation and height of each body."""
@@ -310,27 +311,28 @@ class StandingChain(NamedTuple):
         found = list[tuple[float, float]]()
         mass = side = height = 0.0  # of what stands on a body, and its moments about the centre
         frames = self.frames([stand.state.rotation for stand in stands])
-        for link, stand, (normal, along) in zip(self.links, stands, frames, strict=True):
+        for standing, stand, (normal, along) in zip(self.bodies, stands, frames, strict=True):
             if mass > 0.0:  # from the axes of its deck to those of the one beneath
                 sine, cosine = sine_cosine(stand.state.rotation)
-                height += mass * link.top
+                height += mass * standing.top
                 side, height = side * cosine + height * sine, height * cosine - side * sine
-            mass += link.mass
+            mass += standing.mass
             moment = normal * side - along * (height + mass * stand.reach.rate)
             found.append((moment, -mass * normal))
             side += mass * stand.across
-            height += mass * (link.part.body.height + stand.state.vertical)
+            height += mass * (standing.part.body.height + stand.state.vertical)
         return found
 
     def rise(self, stands: Sequence[Stand]) -> float:
         """Give the rise of the highest centre of mass from where it is upright and at rest."""
         found = turned = top = 0.0
-        for link, stand in zip(self.links[::-1], stands[::-1], strict=True):
+        for standing, stand in zip(self.bodies[::-1], stands[::-1], strict=True):
             sine, cosine = sine_cosine(turned)
             if turned != 0.0:
-                found -= stand.across * sine + (top + link.part.body.height) * versine(sine, cosine)
+                lowers = (top + standing.part.body.height) * versine(sine, cosine)
+                found -= stand.across * sine + lowers
             found += stand.state.vertical * cosine
-            turned, top = turned + stand.state.rotation, link.top
+            turned, top = turned + stand.state.rotation, standing.top
         return found
 
     def rest(self) -> list[Stand] | None:
@@ -339,7 +341,7 @@ class StandingChain(NamedTuple):
         Eccentricity and slope grow from zero, and rest is followed from upright: a chain that
         leans has a second equilibrium, farther out, from which it falls.
         """
-        upright = self._under_weight([0.0] * len(self.links))
+        upright = self._under_weight([0.0] * len(self.bodies))
         if upright is None or self.upright:
             return upright
         return self._at(self._loaded(upright, []))
@@ -349,7 +351,7 @@ class StandingChain(NamedTuple):
 
         Followed from upright to either side; None from where the bases cannot carry it.
         """
-        one, every = len(self.links) == 1, range(len(rotations))
+        one, every = len(self.bodies) == 1, range(len(rotations))
         found = [self._alone_at(rotation) if one else None for rotation in rotations]
         # a link that is broken at one height of a body may hold it at another
         sought = [i for i in every if not one or self._has_broken(found[i] or [])]
@@ -365,13 +367,13 @@ class StandingChain(NamedTuple):
 
     def _upright_path(self) -> Path | None:
         """Give where the curve begins: under all loads, the highest body upright."""
-        upright = self._under_weight([0.0] * len(self.links))
-        loaded = None if upright is None else self._loaded(upright, [len(self.links) * [1.0]])
+        upright = self._under_weight([0.0] * len(self.bodies))
+        loaded = None if upright is None else self._loaded(upright, [len(self.bodies) * [1.0]])
         return None if loaded is None else Path(0.0, loaded.place)
 
     def held(self, path: Path, rotation: float) -> tuple[Path | None, list[Stand] | None]:
         """Give how the bodies stand at a rotation of the highest one, followed along a path."""
-        highest = np.ones((1, len(self.links)))
+        highest = np.ones((1, len(self.bodies)))
         further = followed(lambda at: HeldBodies(self, highest, np.array([at])), path, rotation)
         return further, self._at(further)
 
@@ -385,13 +387,10 @@ class StandingChain(NamedTuple):
         )
 
 
-def link_of(
+def standing_body(
     part: OnBase, mass: float = 1.0, top: float = 0.0, beside: float = 0.0, own: Any = None
 ) -> StandingBody:
-    """Give a body on its base; the arguments are those of a link.
-
-    Without variables of its own the base is as before any run.
-    """
+    """Give a body on its base, which without variables of its own is as before any run."""
     body, base = part
     if own is None:
         own = base.read(np.zeros(base.variables()), 0)
@@ -399,21 +398,21 @@ def link_of(
     return StandingBody(part, mass, top, beside, base.level(True, rest, own), own)
 
 
-def settled(link: StandingBody, rotation: float, press: float) -> Stand:
+def settled(standing: StandingBody, rotation: float, press: float) -> Stand:
     """Give how a body stands at a rotation on its base, which carries a force.
 
     The force of a base falls with the height of the body on it. The height at which the base
     carries the weight is a first guess, which a secant between bounds refines.
     """
-    if link.corner:
-        return _on_corner(link, rotation, press)
-    body, base = link.part
-    own = link.own if isinstance(link.own, tuple) else np.array(link.own)
+    if standing.corner:
+        return _on_corner(standing, rotation, press)
+    body, base = standing.part
+    own = standing.own if isinstance(standing.own, tuple) else np.array(standing.own)
     attitude = body.attitude(rotation)
     lift = body.left * attitude.sine, -body.right * attitude.sine
     height = base.resting_height(*lift, own) - attitude.rise
-    noise = ROUNDING * (link.settlement + abs(lift[0]) + abs(lift[1]) + abs(attitude.rise))
-    hardness = press / link.settlement
+    noise = ROUNDING * (standing.settlement + abs(lift[0]) + abs(lift[1]) + abs(attitude.rise))
+    hardness = press / standing.settlement
     low, high, before = -math.inf, math.inf, (math.nan, math.nan)
     tries = 0
     while True:
@@ -433,24 +432,24 @@ def settled(link: StandingBody, rotation: float, press: float) -> Stand:
         halved = tries > SECANTS and tries % 2 == 0 and low > -math.inf and high < math.inf
         if halved or not low < height < high:
             height = 0.5 * (low + high)
-    mode = link.part.standing(contact, state)
-    return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, press, own)
+    mode = standing.part.standing(contact, state)
+    return Stand(state, mode, *standing.way(attitude, mode.pivot), line, force, press, own)
 
 
-def lifted(link: StandingBody, rotation: float, height: float) -> Stand:
+def lifted(standing: StandingBody, rotation: float, height: float) -> Stand:
     """Give how a body stands that links may have lifted off its base."""
-    body, base = link.part
-    own = link.own if isinstance(link.own, tuple) else np.array(link.own)
+    body, base = standing.part
+    own = standing.own if isinstance(standing.own, tuple) else np.array(standing.own)
     state, attitude = BodyState(rotation, height, 0.0, 0.0, 0.0, 0.0), body.attitude(rotation)
     line = body.base_line(state, attitude)
     contact = base.starting(line, own)
-    force, mode = base.force(contact, line, own), link.part.standing(contact, state)
-    return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, force.upward, own)
+    force, mode = base.force(contact, line, own), standing.part.standing(contact, state)
+    return Stand(state, mode, *standing.way(attitude, mode.pivot), line, force, force.upward, own)
 
 
-def _on_corner(link: StandingBody, rotation: float, press: float) -> Stand:
+def _on_corner(standing: StandingBody, rotation: float, press: float) -> Stand:
     """Give how a body stands on a corner of a rigid base."""
-    body, right = link.part.body, link.corner > 0
+    body, right = standing.part.body, standing.corner > 0
     attitude = body.attitude(rotation)
     level = attitude.rise + (-body.right if right else body.left) * attitude.sine
     state = BodyState(rotation, -level, 0.0, 0.0, 0.0, 0.0)
@@ -458,31 +457,31 @@ def _on_corner(link: StandingBody, rotation: float, press: float) -> Stand:
     force = BaseForce(press, press * (line.right_lever if right else line.left_lever), 0.0)
     contact = both_contacts(int(right), int(not right))
     mode = Mode(contact, PIVOT_RIGHT if right else PIVOT_LEFT, False)
-    return Stand(state, mode, *link.way(attitude, mode.pivot), line, force, press, link.own)
+    return Stand(state, mode, *standing.way(attitude, mode.pivot), line, force, press, standing.own)
 
 
-def uplift_rotation(link: StandingBody, press: float) -> float:
+def uplift_rotation(standing: StandingBody, press: float) -> float:
     """Give the least rotation to the right at which a base is no longer in full contact.
 
     NaN where it is up to a right angle.
     """
-    body, base = link.part
+    body, base = standing.part
 
     def is_full(rotation: float) -> bool:
-        contact = settled(link, rotation, press).mode.contact
+        contact = settled(standing, rotation, press).mode.contact
         return base.is_held(contact, True) and base.is_held(contact, False)
 
     most = math.inf if body.small else 0.5 * math.pi
     if not body.small and is_full(most):
         return math.nan
     # where the end has risen by the settlement, and on from there by secants
-    guess = link.allowed_rotation
+    guess = standing.allowed_rotation
     guess = guess if body.small else asin(min(guess, 1.0))
     last, left, slope = math.nan, math.nan, 1.0 / guess
     for _ in range(HALVINGS):
-        stand = settled(link, guess, press)
+        stand = settled(standing, guess, press)
         # how much lower the higher end is than where it parts, over the settlement
-        now = base.level(True, stand.line, stand.own) / link.settlement
+        now = base.level(True, stand.line, stand.own) / standing.settlement
         if not abs(now) > ROUNDING or guess == last:
             break
         slope = (left - now) / (guess - last) if left > now or left < now else slope

@@ -75,10 +75,10 @@ class Reached(NamedTuple):
 
 
 def reached(
-    links: "Sequence[StandingBody]", stands: "Sequence[Stand]", ties: Sequence[ChainLink]
+    bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]", ties: Sequence[ChainLink]
 ) -> list[Reached]:
     """Give where the points of links are, of bodies that stand."""
-    frames, found = _frames(links, stands) if ties else [], list[Reached]()
+    frames, found = _frames(bodies, stands) if ties else [], list[Reached]()
     for one in ties:
         on, on_way = _point(one.on, one.on_point, stands, frames)
         to, to_way = _point(one.to, one.to_point, stands, frames)
@@ -87,7 +87,7 @@ def reached(
 
 
 def tied(
-    links: "Sequence[StandingBody]",
+    bodies: "Sequence[StandingBody]",
     stands: "Sequence[Stand]",
     ties: Sequence[ChainLink],
     states: Sequence[int] | None = None,
@@ -98,7 +98,7 @@ def tied(
     Their forces are those of other stretches where these are told.
     """
     none = [None] * len(ties)
-    points = reached(links, stands, ties)
+    points = reached(bodies, stands, ties)
     each = zip(ties, points, states or none, none if stretches is None else stretches, strict=True)
     return [pulled(*one) for one in each]
 
@@ -189,17 +189,17 @@ def rocked(
     return found
 
 
-def _frames(links: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list[_Frame]:
+def _frames(bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list[_Frame]:
     """Give where bodies are, from where they are given."""
     found, place, turned = list[_Frame](), np.zeros(2), 0.0
     sine, cosine = 0.0, 1.0
     for k in range(len(stands) - 1, -1, -1):
-        stand, body = stands[k], links[k].part.body
-        fixed = links[k + 1].top + body.height if k + 1 < len(stands) else body.height
+        stand, body = stands[k], bodies[k].part.body
+        fixed = bodies[k + 1].top + body.height if k + 1 < len(stands) else body.height
         along, normal = np.array([cosine, -sine]), np.array([sine, cosine])
         lacks = versine(sine, cosine)
         lift = np.array([fixed * sine, -fixed * lacks])  # of what is fixed normal to the base
-        beside = links[k].beside
+        beside = bodies[k].beside
         slid = (stand.across - beside) * along + beside * np.array([-lacks, -sine])
         place = place + slid + lift + stand.state.vertical * normal
         turned += stand.state.rotation

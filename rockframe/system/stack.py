@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rockframe.components import Component, Link, Load, Tendon
 from rockframe.components.block_numbers import BlockSI
-from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, link_of
+from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, standing_body
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import BaseLoad, SupportedBody, body_of_block, with_mass
 from rockframe.system.fitting import BaseFriction
@@ -208,9 +208,9 @@ class StackSetting(Setting):
             carried = math.fsum(one.mass for one in self.bodies[: lowest + 1])
             numbers.append(self.bases[lowest].law(law, mass, carried))
             part = OnBase(law, numbers[-1].law)
-            link = link_of(part, body.mass / mass, height - body.centre_height, beside)
+            link = standing_body(part, body.mass / mass, height - body.centre_height, beside)
             if lowest == lifted:
-                small = min(one.settlement for one in self.standing.chain.links)
+                small = min(one.settlement for one in self.standing.chain.bodies)
                 link = link._replace(corner=side, settlement=small)
             found.append(link)
         ties = tuple(self._between_groups(one, groups) for one in self.ties)
@@ -371,7 +371,7 @@ class StackSetting(Setting):
         """Give the height at which the one body starts at a rotation, with its ties."""
         stands = self.standing.chain.settled([rotation])
         if stands is None:
-            raise AssemblyError([NO_REST + (PULLED if self.ties else "")])
+            raise AssemblyError([NO_REST + PULLED])
         return stands[0].state.vertical
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from rockframe.dynamics.statics import Stand, StandingChain, link_of
+from rockframe.dynamics.statics import Stand, StandingChain, standing_body
 from rockframe.errors import AssemblyError
 from rockframe.many import atan2, isnan
 from rockframe.system.alone import AloneSetting
@@ -118,7 +118,8 @@ class StackedSetting(Setting):
 
         both = self._stack(cap_mass, cap_inertia)
         links = tuple(
-            link_of(OnBase(one.body, one.base.law), one.mass, one.top, one.beside) for one in both
+            standing_body(OnBase(one.body, one.base.law), one.mass, one.top, one.beside)
+            for one in both
         )
         chain = StandingChain(links, self.slope.along_gravity)
         return StandingBodies(chain, self.body.mass, tuple(one.base for one in both))

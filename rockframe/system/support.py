@@ -15,7 +15,7 @@ from rockframe.components.bases import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
 from rockframe.dynamics.equilibrium import of_base
-from rockframe.dynamics.statics import Stand, StandingChain, link_of, uplift_rotation
+from rockframe.dynamics.statics import Stand, StandingChain, standing_body, uplift_rotation
 from rockframe.many import sqrt
 from rockframe.system.bodies import (
     BaseLoad,
@@ -58,7 +58,7 @@ class StandingBodies:
         """Give the states with the highest body held at rotations; None where there is none."""
         curve = self.chain.curve(rotations)
         found = [None if stands is None else self.statics_of(stands) for stands in curve]
-        least = LEAST * self.chain.links[0].allowed_rotation if self.chain.upright else 0.0
+        least = LEAST * self.chain.bodies[0].allowed_rotation if self.chain.upright else 0.0
         for i, (rotation, state) in enumerate(zip(rotations, found, strict=True)):
             if state is not None and abs(rotation) < least:
                 found[i] = self._near_upright(rotation, state)
@@ -66,7 +66,7 @@ class StandingBodies:
 
     def _near_upright(self, rotation: float, state: Statics) -> Statics:
         """Give a state with moments to all digits, by their slope, exact to the fourth order."""
-        step = SMALL * self.chain.links[0].allowed_rotation
+        step = SMALL * self.chain.bodies[0].allowed_rotation
         near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
         share = rotation / (6.0 * step)
         return replace(
@@ -77,8 +77,8 @@ class StandingBodies:
 
     def statics_of(self, stands: list[Stand]) -> Statics:
         """Give the moments by which bodies stand so, and what their bases show."""
-        (part, *_), lowest = self.chain.links[0], stands[-1]
-        body = self.chain.links[-1].part.body
+        (part, *_), lowest = self.chain.bodies[0], stands[-1]
+        body = self.chain.bodies[-1].part.body
         attitude = body.attitude(lowest.state.rotation)
         arm = body.height * attitude.sine + 0.5 * (body.left - body.right) * attitude.cosine
         held = [part.base.is_held(stands[0].mode.contact, left) for left in (True, False)]
@@ -94,10 +94,10 @@ class StandingBodies:
     def reactions(self, stands: list[Stand]) -> dict[str, float]:
         """Give what the bases show, by the names of the schema."""
         found = dict[str, float]()
-        for link, stand, numbers in zip(self.chain.links, stands, self.bases, strict=True):
-            if link.corner:
+        for standing, stand, numbers in zip(self.chain.bodies, stands, self.bases, strict=True):
+            if standing.corner:
                 continue
-            base = link.part.base
+            base = standing.part.base
             shown = base.observed(stand.mode.contact, stand.line, stand.own)
             for column, value in zip(numbers.columns, shown, strict=True):
                 found[column.name] = (self.mass if column.per_mass else 1.0) * value
@@ -164,12 +164,14 @@ class Support(ABC):
     @property
     def settlement(self) -> float:
         """Delta, settlement under the weight [m]."""
-        return self.standing.chain.links[0].settlement
+        return self.standing.chain.bodies[0].settlement
 
     @cached_property
     def uplift_angle(self) -> float:
         """Rotation at which contact is first lost; NaN if it never is [rad]."""
-        return uplift_rotation(self.standing.chain.links[0], self.load.options.slope.normal_gravity)
+        return uplift_rotation(
+            self.standing.chain.bodies[0], self.load.options.slope.normal_gravity
+        )
 
     @abstractmethod
     def law(self, body: Body, mass: float, load_mass: float) -> BaseNumbers:
@@ -221,7 +223,7 @@ class Support(ABC):
         from rockframe.dynamics.on_base import OnBase
 
         body, numbers = self.load.rigid_body, self.base_numbers
-        link = link_of(OnBase(body, numbers.law), beside=eccentricity_of(body))
+        link = standing_body(OnBase(body, numbers.law), beside=eccentricity_of(body))
         chain = StandingChain((link,), self.load.options.slope.along_gravity)
         return StandingBodies(chain, self.load.body.mass, (numbers,))
 
@@ -243,7 +245,7 @@ class Support(ABC):
 
     def _slopes(self, name: str) -> tuple[float, float]:
         """Give how moment and force on the upright body fall with a coordinate or a rate."""
-        return of_base(self.standing.chain.links[0], self.standing.upright[0], name)
+        return of_base(self.standing.chain.bodies[0], self.standing.upright[0], name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
         """Tell vertical vibration, and rocking where the base holds the body, by these titles."""

@@ -20,7 +20,7 @@ from rockframe.dynamics.linear import linear
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
-from rockframe.dynamics.statics import StandingChain, link_of
+from rockframe.dynamics.statics import StandingChain, standing_body
 from rockframe.system.statics import stored_energy
 
 pytestmark = pytest.mark.analytical
@@ -109,7 +109,7 @@ def test_slopes_of_the_forces_are_the_stiffnesses_that_bases_declare(block, base
     """Sizes and steps of runs are measured by these."""
     support = rf.System(BLOCKS[block], BASES[base], rotation=rotation).setting.support
     numbers, standing = support.base_numbers, support.standing
-    link, stand = standing.chain.links[0], standing.upright[0]
+    link, stand = standing.chain.bodies[0], standing.upright[0]
     slopes = np.array([of_base(link, stand, name) for name in (*PLACES, *RATES)])
     h, g = support.load.body.centre_height, support.load.options.slope.normal_gravity
     vertical, turning = numbers.vertical_stiffness, numbers.rotational_stiffness
@@ -181,7 +181,7 @@ def test_a_stack_at_rest_is_not_accelerated(block, inclination, restraint, rotat
 @pytest.mark.parametrize("block", BLOCKS)
 def test_work_on_a_held_body_is_its_energy(block, base):
     setting = rf.System(BLOCKS[block], BASES[base]).setting
-    link = setting.support.standing.chain.links[0]
+    link = setting.support.standing.chain.bodies[0]
     body, law = link.part
     for share in (0.1, 0.3):
         angle = share * setting.overturning_angle
@@ -215,7 +215,9 @@ def bodies(beside=0.0, along=0.0):
             base = pads_numbers(
                 body, stiffness=(900.0, 1500.0)[k], damping=1.0, restitution=(1, 1), load=above
             )
-        links.append(link_of(OnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body)))
+        links.append(
+            standing_body(OnBase(body, base.law), MASSES[k], TOPS[k], eccentricity_of(body))
+        )
     return StandingChain(tuple(links), along)
 
 
@@ -224,7 +226,7 @@ def potential(chain, places):
     point, turned, energy = np.zeros(2), 0.0, 0.0
     top = 0.0
     for link, (rotation, rise), mass, above in reversed(
-        list(zip(chain.links, places, MASSES, TOPS, strict=True))
+        list(zip(chain.bodies, places, MASSES, TOPS, strict=True))
     ):
         body, law = link.part
         state = BodyState(rotation, rise, 0.0, 0.0, 0.0, 0.0)
@@ -330,5 +332,5 @@ def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run()
         state, mode = starting_state(part, Start(rotation), ())
         force = part.base.force(mode.contact, body.base_line_at(state), ())
         assert force.upward == pytest.approx(G, rel=1e-12)
-    (stand,) = StandingChain((link_of(part),)).rest()
+    (stand,) = StandingChain((standing_body(part),)).rest()
     assert stand.state.vertical == pytest.approx(PROP * 0.01 / 4500.0, rel=1e-12)

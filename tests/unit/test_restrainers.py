@@ -447,7 +447,7 @@ def out_of_balance(system: rf.System) -> float:
         one.force.upward + weight + load
         for one, (_, weight), load in zip(stands, weights, loads[1::2], strict=True)
     ]
-    height = sum(link.part.body.height for link in chain.links)
+    height = sum(link.part.body.height for link in chain.bodies)
     moments = [moment / height for moment in chain.moments(stands)]
     return float(max(map(abs, [*upward, *moments]))) / chain.weight
 
