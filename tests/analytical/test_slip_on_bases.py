@@ -243,6 +243,24 @@ def test_friction_as_great_as_one_likes_holds(friction):
     np.testing.assert_allclose(slippery, held, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize(("number", "ends"), [(189, "0.1 s"), (169, "0.13 s"), (174, "0.13 s")])
+def test_great_friction_is_compared_no_finer_than_what_presses_is_known(number, ends):
+    """Each body slipped and stuck in turn, without end, as its friction came to the limit."""
+    drawn_system, shake = drawn("friction on pads", np.random.default_rng(number))
+    block = drawn_system.parts["block"]
+    width, height = block.si.width, block.si.height
+    below = rf.Block(
+        width=f"{1.4 * width} m", height=f"{max(height, 1.1 * width)} m", mass="3 t"
+    )  # fmt: skip
+    pads = PADS.replace(frequency_ratio=20, friction=1e5)
+    stack = rf.Stack(block, below, interfaces=[pads])
+    with plainly():
+        found = rf.System(stack, pads).simulate(
+            shake, duration=ends, outputs=None, second_look=False
+        )
+    assert int(found.status) == Status.COMPLETED
+
+
 @BASES
 def test_a_squat_block_slides_where_its_base_has_friction(base):
     squat = rf.Block(width="2 m", height="1 m", mass="4 t")

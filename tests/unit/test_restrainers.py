@@ -468,6 +468,18 @@ def test_ties_of_any_stiffness_between_bodies_on_pads_let_them_find_rest(stiffne
     assert out_of_balance(system) < 1e-12 * max(1.0, stiffness / 1e8)
 
 
+@pytest.mark.parametrize("offset", ["0 m", "2 cm"])
+def test_pads_too_soft_to_bear_a_body_beside_links_that_hold_nothing_are_refused(offset):
+    # upright the forces balance, and at a lean where they do the bodies would fall on
+    soft, firm = PADS.replace(frequency_ratio=3), PADS
+    slack = TIE.replace(slack="5 cm")
+    stack = rf.Stack(BLOCK, rf.Block(width="2 m", height="1 m", mass="4 t"), interfaces=[soft],
+                     offsets=[offset])  # fmt: skip
+    for standing in (stack, BLOCK):
+        with pytest.raises(AssemblyError, match="too soft for them, or their restrainers"):
+            rf.System(standing, firm if standing is stack else soft, slack)
+
+
 @pytest.mark.parametrize("times", [1e3, 1e6, 1e9])
 def test_a_bar_that_is_as_good_as_rigid_carries_what_balance_leaves_to_it(times):
     beside, half = 0.05, 0.5
