@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from benchmarks.tied_runs import drawn
 from benchmarks.tied_runs import run as run_drawn
 from plainly import plainly
 
@@ -478,6 +479,20 @@ def test_pads_too_soft_to_bear_a_body_beside_links_that_hold_nothing_are_refused
     for standing in (stack, BLOCK):
         with pytest.raises(AssemblyError, match="too soft for them, or their restrainers"):
             rf.System(standing, firm if standing is stack else soft, slack)
+
+
+@pytest.mark.parametrize("number", [802, 1929])
+def test_links_that_begin_to_answer_within_a_step_are_found_on_the_way(number):
+    system, *_ = drawn(number)
+    chain = system.setting.standing.chain
+    upper = chain.bodies[0].part.body
+    turned = 0.5 * math.atan2(upper.right, upper.height)
+    places = [share * turned for share in (0.001, 0.02, 0.3, -0.02, -0.3)]
+    for rotation, stands in zip(places, chain.curve(places), strict=True):
+        assert stands is not None
+        assert sum(one.state.rotation for one in stands) == pytest.approx(rotation, rel=1e-9)
+        moments = chain.moments(stands)  # one couple holds all
+        assert max(moments) - min(moments) < 1e-6 * chain.weight * upper.height
 
 
 @pytest.mark.parametrize("times", [1e3, 1e6, 1e9])
