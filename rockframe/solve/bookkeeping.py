@@ -243,6 +243,8 @@ def record_event(
     if after.contact != FULL and math.isnan(clock[at.FIRST_UPLIFT]):
         clock[at.FIRST_UPLIFT] = time
     repeats = row > 0 and before.mode == after.mode  # and so it would do without end
+    for i in range(events.codes.shape[1] if repeats else 0):
+        repeats &= events.codes[row, i] == events.codes[row - 1, i]
     for i in range(events.values.shape[1] if repeats else 0):
         repeats &= events.values[row, i] == events.values[row - 1, i]
     close = time - clock[at.EVENT_TIME] <= progress.controls[at.CHATTER_TIME]

@@ -299,3 +299,21 @@ def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
             motion, duration=ends, accuracy="fast", outputs=None, second_look=False
         )
     assert int(found.status) <= Status.TOPPLED
+
+
+def test_a_body_that_would_slip_hardly_any_way_is_held_where_its_end_turns_back():
+    """It slipped to either side at the middle and at a corner, and its end left and landed."""
+    system, motion = drawn("stack of squat bodies", np.random.default_rng(2412))
+    with plainly():
+        found = system.simulate(motion, duration="0.36 s", outputs=("energy",))
+    assert int(found.status) <= Status.TOPPLED
+    assert float(found.energy_residual) < 1e-8
+
+
+def test_overturning_at_the_instant_of_another_event_is_no_repetition():
+    """The state and the mode were those after the landing that came before, and the run ended."""
+    system, motion = drawn("stack of squat bodies", np.random.default_rng(840))
+    with plainly():
+        found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
+    assert int(found.status) == Status.OVERTURNED
+    assert found.event_time[-1] == found.event_time[-2] == found.overturning_time

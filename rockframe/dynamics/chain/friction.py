@@ -68,8 +68,13 @@ class SlippingChain(SlipperyBases):
         new = self.let_slip(k if slip == HOLD else -1, new, state, ground, memory)
         if slip in (HOLD, SLIP):
             memory[LAST_EVENT] = self.kind_of(k, mode, new)
+            if new == mode:
+                new = self.end_short_slips(new, state, ground, memory)
         elif which < 2 * CORNER_GUARDS:
-            new = self.wait(k, which < CORNER_GUARDS, new, state, ground, memory)
+            left = which < CORNER_GUARDS
+            if self.turns_back(k, left, new, state, ground, memory):
+                new = self.end_short_slips(new, state, ground, memory)
+            new = self.wait(k, left, new, state, ground, memory)
         return new
 
     @kernel
@@ -98,6 +103,13 @@ class SlippingChain(SlipperyBases):
                 mode = self.with_slip(found, 0.0, mode, state, memory)
             lets_go = -1
         return mode
+
+    @kernel
+    def end_short_slips(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
+        """Give the mode in which bodies that would slip but hardly any way are held."""
+        for k in range(self.body_count):
+            mode = self.end_short_slip(k, mode, state, ground, memory)
+        return self.let_slip(-1, mode, state, ground, memory)
 
     @kernel
     def held_in_vain(self, lets_go: int, holding: int, mode: int) -> tuple[int, float]:

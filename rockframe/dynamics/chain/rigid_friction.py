@@ -8,7 +8,7 @@ import math
 from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
-from rockframe.dynamics.body import REST_AMPLITUDE, accelerated
+from rockframe.dynamics.body import accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import PULLED
 from rockframe.dynamics.chain.impact import JAMMED, Found, bearing_corners
@@ -114,30 +114,25 @@ class SlippingRigidChain(TriedSlips):
     ) -> int:
         """Hold bodies again that an impact moves but so far along bases that give way.
 
-        A slip below all that counts ends at once, with all that it does; bounces may end with it.
+        Bounces may end with it.
         """
-        new, n, slipping = mode, self.coordinates(), self.velocity_room()
+        new = mode
         for k in range(self.body_count):
-            was, now, body = self.part_mode(before, k), self.part_mode(new, k), self.on_base(k).body
-            if not self.is_slippery(k) or was.slides or not now.slides:
-                continue
-            slope = self.accelerate(new, state, ground)
-            rate, _ = self.slip_rate(k, new, state)
-            slows = -self.sense(new, k) * self.slips_on(k, now.pivot, False, state)
-            if rate * rate < 2.0 * slows * REST_AMPLITUDE * body.size():
-                for i in range(n):
-                    slipping[i] = slope[i]
-                had, time = self.energies(new, state).kinetic, abs(rate) / slows
-                state[self.horizontal_of(k)] += 0.5 * rate * time  # as far as it comes
-                memory[self.kept(k) + OFFSET] += 0.5 * rate * time
-                new = self.with_slip(k, 0.0, new, state, memory)
-                slope = self.accelerate(new, state, ground)
-                for i in range(n):  # what the slip adds to velocities before it ends
-                    state[n + i] += (slipping[i] - slope[i]) * time
-                self.end_slip(k, new, state)
-                self.write_contacts(new, state, memory)
-                memory[IMPACT_LOSS] += had - self.energies(new, state).kinetic
+            if self.is_slippery(k) and not self.part_mode(before, k).slides:
+                new = self.stop_short_slip(k, new, state, ground, memory)
         return new if new == mode else self.rest_where_small(new, state, ground, memory)
+
+    @kernel
+    def stop_short_slip(
+        self, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Hold a body that would slip but so far along its base that gives way; add its way."""
+        was_at = state[self.horizontal_of(k)]
+        new = self.end_short_slip(k, mode, state, ground, memory)
+        if new != mode:
+            memory[self.kept(k) + OFFSET] += state[self.horizontal_of(k)] - was_at
+            self.write_contacts(new, state, memory)
+        return new
 
     @kernel
     def switch_beside(
@@ -162,7 +157,11 @@ class SlippingRigidChain(TriedSlips):
         new = self.go_on(new, state, memory)
         new = self.hold_as_far(new, state, ground, memory)
         if which < 2 * CORNER_GUARDS:
-            new = self.wait(k, which < CORNER_GUARDS, new, state, ground, memory)
+            left = which < CORNER_GUARDS
+            if self.turns_back(k, left, new, state, ground, memory):
+                new = self.stop_short_slip(k, new, state, ground, memory)
+                new = self.hold_as_far(new, state, ground, memory)
+            new = self.wait(k, left, new, state, ground, memory)
         return new
 
     @kernel

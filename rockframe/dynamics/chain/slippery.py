@@ -5,9 +5,11 @@ against it otherwise. What a base presses with follows from where its body is, s
 waits for another, and friction holds nothing in an impact beside it.
 """
 
+import math
+
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
-from rockframe.dynamics.body import accelerated
+from rockframe.dynamics.body import REST_AMPLITUDE, accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.motion import load_along, load_bodies, place_bodies, press_at
 from rockframe.dynamics.chain.rows import PLACES
@@ -137,6 +139,50 @@ class SlipperyBases(SlippingBodies):
         turned = out[BEFORE_HORIZONTAL * k + ROTATION]
         slides = out[self.horizontal_of(k)] - room[k * PLACES + at.REACH] * turned
         return out[BEFORE_HORIZONTAL * k + VERTICAL], slides
+
+    @kernel
+    def turns_back(
+        self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> bool:
+        """Whether an end that has left comes back at once, or one that has landed leaves."""
+        event, body = memory[LAST_EVENT], self.on_base(k).body
+        if event not in (SEPARATION, IMPACT):
+            return False
+        sense = 1.0 if event == SEPARATION else -1.0
+        speed, _ = end_speed(self.on_base(k), left, self.state_of(k, state))
+        rises = self.end_accelerations(k, mode, state, ground)
+        return body.returns_at_once(
+            max(sense * speed, 0.0), -sense * (rises[0] if left else rises[1])
+        )
+
+    @kernel
+    def end_short_slip(
+        self, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Hold a body that would slip but so far along its base that gives way, if it slows.
+
+        A slip below all that counts ends at once, with all that it does until then.
+        """
+        body, n = self.on_base(k).body, self.coordinates()
+        if not self.part_mode(mode, k).slides:
+            return mode
+        slope = self.accelerate(mode, state, ground)
+        rate, _ = self.slip_rate(k, mode, state)
+        found = self.guards_of_slip(k, mode, state, slope, 0.0, 1.0)
+        slows = -found.slip_rate * math.sqrt(body.gravity * body.size())
+        if rate * rate >= 2.0 * slows * REST_AMPLITUDE * body.size():
+            return mode
+        had, time = self.energies_of_bodies(mode, state).kinetic, abs(rate) / slows
+        state[self.horizontal_of(k)] += 0.5 * rate * time  # as far as it comes
+        for i in range(n):  # what the slip adds to velocities before it ends
+            state[n + i] += slope[i] * time
+        new = self.with_slip(k, 0.0, mode, state, memory)
+        slope = self.accelerate(new, state, ground)
+        for i in range(n):
+            state[n + i] -= slope[i] * time
+        self.end_slip(k, new, state)
+        memory[IMPACT_LOSS] += had - self.energies_of_bodies(new, state).kinetic
+        return new
 
     @kernel
     def wait(
