@@ -7,7 +7,7 @@ from typing import Final
 
 from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
-from rockframe.dynamics.body import REST_AMPLITUDE, accelerated
+from rockframe.dynamics.body import REST_AMPLITUDE
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.corners import OPENING, PULLED, RigidCorners
 from rockframe.dynamics.chain.impact import (
@@ -29,7 +29,7 @@ from rockframe.dynamics.chain.motion import (
 from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.on_base import Mode
-from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING, REENGAGE, corner_contact
+from rockframe.dynamics.pads import CORNER_GUARDS, REENGAGE
 from rockframe.dynamics.protocol import (
     HELD_PLACE,
     IMPACT_LOSS,
@@ -202,25 +202,6 @@ class RigidChain(RigidCorners):
                 left = corner % 2 == 0
                 new = self.hold_if_small(corner // 2, left, new, state, ground, memory)
         return self.rest_where_small(new, state, ground, memory)
-
-    @kernel
-    def waits_on(self, k: int, mode: int, state: Vector, ground: Ground) -> bool:
-        """Whether an end that has left goes on waiting for its pad, as a corner elsewhere parts.
-
-        Speeds do not change then: it does as long as its pad presses less and less.
-        """
-        contact = self.part_mode(mode, k).contact
-        for side in range(2):
-            if not self.is_rigid(k) and corner_contact(contact, side == 0) == LEAVING:
-                return self.presses_less(k, side == 0, mode, state, ground)
-        return False
-
-    @kernel
-    def presses_less(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> bool:
-        """Whether the force of a base that gives way on an end does not rise."""
-        part, rises = self.on_base(k), self.end_accelerations(k, mode, state, ground)
-        line = part.body.base_line_at(self.state_of(k, state))
-        return not part.base.will_press(left, accelerated(line, rises[0], rises[1]), ())
 
     @kernel
     def catch_up(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:

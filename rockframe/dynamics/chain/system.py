@@ -3,18 +3,14 @@
 from rockframe.compiled import Vector, inlined, kernel, put
 from rockframe.dynamics.base import Guards, Variables
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
-from rockframe.dynamics.body import BodyState
+from rockframe.dynamics.body import BodyState, accelerated
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.moving import MovingBodies
-from rockframe.dynamics.chain.rows import (
-    COLUMNS,
-    GUARDS,
-    OBSERVED,
-    PLACES,
-)
+from rockframe.dynamics.chain.rows import COLUMNS, GUARDS, OBSERVED, PLACES
+from rockframe.dynamics.events import IMPACT
 from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode, SlidingGuards
-from rockframe.dynamics.pads import CORNER_GUARDS
-from rockframe.dynamics.protocol import HELD_PLACE, Ground, Slope
+from rockframe.dynamics.pads import CORNER_GUARDS, LEAVING, corner_contact
+from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground, Slope
 from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
 
 
@@ -123,12 +119,32 @@ class Chain(MovingBodies):
         k = guard // GUARDS
         new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
         for above in range(k):
-            new = self.disturb(above, new, state)
+            if memory[LAST_EVENT] == IMPACT or not self.waits_on(above, new, state, ground):
+                new = self.disturb(above, new, state)
         for below in range(k + 1, self.body_count):
             if not self.is_rigid(below) and not self.is_slippery(below):
                 new = checked_sliding(self, self.on_base(below), below, new, state)
         memory[HELD_PLACE + self.body_count] = k + 1.0
         return new
+
+    @kernel
+    def waits_on(self, k: int, mode: int, state: Vector, ground: Ground) -> bool:
+        """Whether an end that has left goes on waiting for its pad beside an event elsewhere.
+
+        Unless that is an impact, it does as long as its pad presses less and less.
+        """
+        contact = self.part_mode(mode, k).contact
+        for side in range(2):
+            if not self.is_rigid(k) and corner_contact(contact, side == 0) == LEAVING:
+                return self.presses_less(k, side == 0, mode, state, ground)
+        return False
+
+    @kernel
+    def presses_less(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> bool:
+        """Whether the force of a base that gives way on an end does not rise."""
+        part, rises = self.on_base(k), self.end_accelerations(k, mode, state, ground)
+        line = part.body.base_line_at(self.state_of(k, state))
+        return not part.base.will_press(left, accelerated(line, rises[0], rises[1]), ())
 
     @kernel
     def disturb(self, k: int, mode: int, state: Vector) -> int:
