@@ -24,7 +24,7 @@ from rockframe.dynamics.protocol import (
     Slope,
     Start,
 )
-from rockframe.dynamics.statics import settled, standing_body
+from rockframe.dynamics.standing import settled, standing_body
 from rockframe.dynamics.switching import lift_by_slip, switch_part
 from rockframe.many import atan2, hypot, sqrt
 

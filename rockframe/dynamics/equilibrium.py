@@ -17,7 +17,8 @@ from rockframe.many import sqrt
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.link_rows import ChainLink
-    from rockframe.dynamics.statics import Stand, StandingBody, StandingChain
+    from rockframe.dynamics.standing import Stand, StandingBody
+    from rockframe.dynamics.statics import StandingChain
     from rockframe.dynamics.tied import Tied
 
 TRIES: Final = 40

@@ -10,7 +10,8 @@ import numpy as np
 
 from rockframe.compiled import Matrix
 from rockframe.dynamics.equilibrium import RATES, of_base, of_bases, of_loads
-from rockframe.dynamics.statics import Stand, StandingChain
+from rockframe.dynamics.standing import Stand
+from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.trigonometry import sine_cosine
 
 

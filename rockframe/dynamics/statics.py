@@ -6,100 +6,33 @@ what is left are moments, :eq:`eq-static-chain`. All is per unit mass.
 """
 
 import math
-import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
+from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.base import BaseForce
-from rockframe.dynamics.bed import both_contacts
-from rockframe.dynamics.body import (
-    PIVOT_LEFT,
-    PIVOT_RIGHT,
-    Attitude,
-    BaseLine,
-    BodyState,
-    Reach,
-)
 from rockframe.dynamics.equilibrium import PLACES, Balance, HeldBodies, Path, followed
-from rockframe.dynamics.on_base import Mode, OnBase
+from rockframe.dynamics.standing import (
+    ROUNDING,
+    Stand,
+    StandingBody,
+    lifted,
+    on_corner,
+    settled,
+)
 from rockframe.dynamics.trigonometry import sine_cosine, versine
-from rockframe.many import asin
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.link_rows import ChainLink
     from rockframe.dynamics.tied import Reached, Tied
 
-ROUNDING: Final = 4.0 * sys.float_info.epsilon
-"""Share of the sizes of heights that is rounding."""
-TRIES: Final = 200
-"""Heights that are tried at most."""
-SECANTS: Final = 8
-"""Of them by secants alone; where contact ends between two, each second one halves what is left."""
 FAR: Final = 10.0
 """Of the size of a body, a change of its height that leads to no balance."""
 TINY: Final = 1e-30
 """Height that is nothing [m]."""
 LEFT: Final = 1e-6
 """Share of the weight that may be left where a link is as stiff as rounding shows."""
-SHARP: Final = 1e-9
-"""Share of the uplift angle by which contact is full before it and partial beyond."""
-HALVINGS: Final = 60
-"""Of the rotation at which contact is first lost, where the levels of the ends do not tell it."""
-
-
-class StandingBody(NamedTuple):
-    """A body on its base, in a chain of bodies."""
-
-    part: OnBase
-    mass: float  # over the mass that all is measured by
-    top: float  # height of its deck above its centre of mass
-    beside: float  # of its centre of mass to the right of that beneath, upright
-    settlement: float  # of its base, a typical size
-    own: Any  # variables of its base's own, as they are before any run
-    # by which it has lifted from a rigid base: 1 bears on its right corner, -1 on its left one
-    corner: int = 0
-
-    @property
-    def allowed_rotation(self) -> float:
-        """The rotation that the settlement allows before an end of the base lifts, about."""
-        return 2.0 * self.settlement / (self.part.body.left + self.part.body.right)
-
-    def corner_lever(self, stand: "Stand") -> float:
-        """Give by how much its corner rises with its rotation."""
-        return stand.line.right_lever if self.corner > 0 else stand.line.left_lever
-
-    def way(self, attitude: Attitude, pivot: int) -> tuple[Reach, float]:
-        """Give how the centre of mass moves along the deck beneath, and where it is there."""
-        body = self.part.body
-        pin = body.pin(pivot)
-        across = self.beside + pin + (body.height * attitude.sine - pin * attitude.cosine)
-        return body.reach(pin, attitude), across
-
-    def with_share(self, share: float) -> "StandingBody":
-        """Give the body with a share of its eccentricity."""
-        body = self.part.body
-        if self.beside == 0.0 and body.left == body.right:
-            return self
-        half, off = 0.5 * (body.left + body.right), 0.5 * share * (body.left - body.right)
-        part = OnBase(body._replace(left=half + off, right=half - off), self.part.base)
-        return self._replace(part=part, beside=share * self.beside)
-
-
-class Stand(NamedTuple):
-    """A body at a rotation on its base, which carries what is on it."""
-
-    state: BodyState
-    mode: Mode
-    reach: Reach
-    across: float  # of its centre of mass along the deck beneath, from the one beneath
-    line: BaseLine
-    force: BaseForce
-    press: float  # what stands on its base, along the normal of that
-    own: Any  # variables of its base's own, as at a start there
-    arm: float = 0.0  # of its centre of mass normal to the deck beneath, from the one beneath
 
 
 class StandingChain(NamedTuple):
@@ -233,7 +166,7 @@ class StandingChain(NamedTuple):
         standing, now = self.bodies[k], stands[k]
         state = now.state._replace(**{PLACES[at % 2]: now.state[at % 2] + by})
         if standing.corner:
-            found[k] = _on_corner(standing, state.rotation, now.press)
+            found[k] = on_corner(standing, state.rotation, now.press)
         else:
             attitude = standing.part.body.attitude(state.rotation)
             reach, across = standing.way(attitude, now.mode.pivot)
@@ -271,7 +204,7 @@ class StandingChain(NamedTuple):
             loads -= pull @ one.way
         for k, (standing, one) in enumerate(zip(self.bodies, stands, strict=True)):
             if standing.corner:
-                stands[k] = _on_corner(standing, one.state.rotation, -float(loads[2 * k + 1]))
+                stands[k] = on_corner(standing, one.state.rotation, -float(loads[2 * k + 1]))
         bears = all(one.press >= 0.0 for one in stands)
         return self._with_arms(stands) if bears else None
 
@@ -385,115 +318,3 @@ class StandingChain(NamedTuple):
         return followed(
             lambda share: HeldBodies(self.with_share(share), rows, held), Path(0.0, start)
         )
-
-
-def standing_body(
-    part: OnBase, mass: float = 1.0, top: float = 0.0, beside: float = 0.0, own: Any = None
-) -> StandingBody:
-    """Give a body on its base, which without variables of its own is as before any run."""
-    body, base = part
-    if own is None:
-        own = base.read(np.zeros(base.variables()), 0)
-    rest = body.base_line_at(BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    return StandingBody(part, mass, top, beside, base.level(True, rest, own), own)
-
-
-def settled(standing: StandingBody, rotation: float, press: float) -> Stand:
-    """Give how a body stands at a rotation on its base, which carries a force.
-
-    The force of a base falls with the height of the body on it. The height at which the base
-    carries the weight is a first guess, which a secant between bounds refines.
-    """
-    if standing.corner:
-        return _on_corner(standing, rotation, press)
-    body, base = standing.part
-    own = standing.own if isinstance(standing.own, tuple) else np.array(standing.own)
-    attitude = body.attitude(rotation)
-    lift = body.left * attitude.sine, -body.right * attitude.sine
-    height = base.resting_height(*lift, own) - attitude.rise
-    noise = ROUNDING * (standing.settlement + abs(lift[0]) + abs(lift[1]) + abs(attitude.rise))
-    hardness = press / standing.settlement
-    low, high, before = -math.inf, math.inf, (math.nan, math.nan)
-    tries = 0
-    while True:
-        state = BodyState(rotation, height, 0.0, 0.0, 0.0, 0.0)
-        line = body.base_line(state, attitude)
-        contact = base.starting(line, own)
-        force = base.force(contact, line, own)
-        excess = force.upward - press
-        if (before[1] - excess) * (height - before[0]) > 0.0:
-            hardness = (before[1] - excess) / (height - before[0])
-        step, before = excess / hardness, (height, excess)
-        tries += 1
-        if abs(step) <= noise or tries == TRIES:
-            break
-        low, high = (height, high) if excess > 0.0 else (low, height)
-        height += step
-        halved = tries > SECANTS and tries % 2 == 0 and low > -math.inf and high < math.inf
-        if halved or not low < height < high:
-            height = 0.5 * (low + high)
-    mode = standing.part.standing(contact, state)
-    return Stand(state, mode, *standing.way(attitude, mode.pivot), line, force, press, own)
-
-
-def lifted(standing: StandingBody, rotation: float, height: float) -> Stand:
-    """Give how a body stands that links may have lifted off its base."""
-    body, base = standing.part
-    own = standing.own if isinstance(standing.own, tuple) else np.array(standing.own)
-    state, attitude = BodyState(rotation, height, 0.0, 0.0, 0.0, 0.0), body.attitude(rotation)
-    line = body.base_line(state, attitude)
-    contact = base.starting(line, own)
-    force, mode = base.force(contact, line, own), standing.part.standing(contact, state)
-    return Stand(state, mode, *standing.way(attitude, mode.pivot), line, force, force.upward, own)
-
-
-def _on_corner(standing: StandingBody, rotation: float, press: float) -> Stand:
-    """Give how a body stands on a corner of a rigid base."""
-    body, right = standing.part.body, standing.corner > 0
-    attitude = body.attitude(rotation)
-    level = attitude.rise + (-body.right if right else body.left) * attitude.sine
-    state = BodyState(rotation, -level, 0.0, 0.0, 0.0, 0.0)
-    line = body.base_line(state, attitude)
-    force = BaseForce(press, press * (line.right_lever if right else line.left_lever), 0.0)
-    contact = both_contacts(int(right), int(not right))
-    mode = Mode(contact, PIVOT_RIGHT if right else PIVOT_LEFT, False)
-    return Stand(state, mode, *standing.way(attitude, mode.pivot), line, force, press, standing.own)
-
-
-def uplift_rotation(standing: StandingBody, press: float) -> float:
-    """Give the least rotation to the right at which a base is no longer in full contact.
-
-    NaN where it is up to a right angle.
-    """
-    body, base = standing.part
-
-    def is_full(rotation: float) -> bool:
-        contact = settled(standing, rotation, press).mode.contact
-        return base.is_held(contact, True) and base.is_held(contact, False)
-
-    most = math.inf if body.small else 0.5 * math.pi
-    if not body.small and is_full(most):
-        return math.nan
-    # where the end has risen by the settlement, and on from there by secants
-    guess = standing.allowed_rotation
-    guess = guess if body.small else asin(min(guess, 1.0))
-    last, left, slope = math.nan, math.nan, 1.0 / guess
-    for _ in range(HALVINGS):
-        stand = settled(standing, guess, press)
-        # how much lower the higher end is than where it parts, over the settlement
-        now = base.level(True, stand.line, stand.own) / standing.settlement
-        if not abs(now) > ROUNDING or guess == last:
-            break
-        slope = (left - now) / (guess - last) if left > now or left < now else slope
-        last, left = guess, now
-        guess = min(max(guess + now / slope, 0.5 * guess), 2.0 * guess, most)
-    low, high = (1.0 - SHARP) * guess, (1.0 + SHARP) * guess
-    if is_full(low) and not is_full(min(high, most)):
-        return guess
-    low, high = 0.0, guess if body.small else most
-    while is_full(high):
-        high *= 2.0
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if is_full(middle) else (low, middle)
-    return high

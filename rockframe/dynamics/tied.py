@@ -17,7 +17,7 @@ from rockframe.dynamics.links import Stretch
 from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 if TYPE_CHECKING:
-    from rockframe.dynamics.statics import Stand, StandingBody
+    from rockframe.dynamics.standing import Stand, StandingBody
 
 Ends = tuple[tuple[float, float], tuple[float, float]]
 """Both points of a link."""

@@ -13,7 +13,7 @@ from rockframe.system.words import uplift_words
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
     from rockframe.dynamics.body import Body
-    from rockframe.dynamics.statics import Stand
+    from rockframe.dynamics.standing import Stand
     from rockframe.dynamics.tied import Tied
     from rockframe.system.stack import StackSetting
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rockframe.components import Component, Link, Load, Tendon
 from rockframe.components.block_numbers import BlockSI
-from rockframe.dynamics.statics import Stand, StandingBody, StandingChain, standing_body
+from rockframe.dynamics.standing import Stand, StandingBody, standing_body
+from rockframe.dynamics.statics import StandingChain
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import BaseLoad, SupportedBody, body_of_block, with_mass
 from rockframe.system.fitting import BaseFriction

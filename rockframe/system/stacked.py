@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from rockframe.dynamics.statics import Stand, StandingChain, standing_body
+from rockframe.dynamics.standing import Stand, standing_body
+from rockframe.dynamics.statics import StandingChain
 from rockframe.errors import AssemblyError
 from rockframe.many import atan2, isnan
 from rockframe.system.alone import AloneSetting

@@ -20,7 +20,8 @@ from rockframe.dynamics.linear import linear
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
-from rockframe.dynamics.statics import StandingChain, standing_body
+from rockframe.dynamics.standing import standing_body
+from rockframe.dynamics.statics import StandingChain
 from rockframe.system.statics import stored_energy
 
 pytestmark = pytest.mark.analytical

@@ -65,7 +65,7 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
     mass : float
         Of the block [kg].
     rest : StackRest
-        Where block and cap are at rest, :meth:`rockframe.dynamics.statics.Chain.rest`.
+        Where block and cap are at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest`.
 
     Returns
     -------
