@@ -6,15 +6,13 @@ Every error derives from :class:`RockframeError`, so that a script can tell
 
 import sys
 import warnings
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from difflib import get_close_matches
 from inspect import currentframe
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
-
-Found = TypeVar("Found")
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 LONGEST_SHOWN = 100
 """Characters of a value beyond which a message does not show all of it."""
@@ -277,18 +275,6 @@ def warn(message: str, category: type[RockframeWarning]) -> None:
     while frame and str(frame.f_globals.get("__name__")).partition(".")[0] == package:
         level, frame = level + 1, frame.f_back
     warnings.warn(message, category, stacklevel=level)
-
-
-def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
-    """Compute what goes with a finished run, without a risk to the run."""
-    try:
-        return work()
-    except Warning:  # asked for as an error
-        raise
-    except Exception as problem:
-        kind = "" if isinstance(problem, RockframeError) else f"{type(problem).__name__}: "
-        missing.append(f"{what} could not be computed: {kind}{problem}")
-        return instead
 
 
 if not TYPE_CHECKING:  # or no name would be unknown to type checkers

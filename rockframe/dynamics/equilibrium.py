@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
+from rockframe.dynamics.standing import PLACES, STENCIL, STEP, of_base
 from rockframe.dynamics.tied import force_at, is_broken
-from rockframe.many import sqrt
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.link_rows import ChainLink
-    from rockframe.dynamics.standing import Stand, StandingBody
+    from rockframe.dynamics.standing import Stand
     from rockframe.dynamics.statics import StandingChain
     from rockframe.dynamics.tied import Tied
 
@@ -41,14 +41,8 @@ LEAST_DAMPED: Final = 2.0**-6
 """Share of a step to which they are halved."""
 SUDDEN: Final = 0.25
 """Change of a force within a step that is too large where a link has not answered, over weight."""
-STEP: Final = 1e-3
-"""By which coordinates are moved, over their sizes, to see how forces change."""
-STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
-"""Steps to both sides, and weights of a first derivative that is exact to the fourth order."""
 SECANT: Final = ((1.0, 0.5),)
 """Likewise to the second order, which is as good for a step of Newton's."""
-PLACES: Final = ("rotation", "vertical")
-RATES: Final = ("angular_velocity", "vertical_velocity")
 
 
 class HeldBodies(NamedTuple):
@@ -171,29 +165,6 @@ def of_bases(chain: "StandingChain", stands: "Sequence[Stand]") -> Matrix:
             own = slice(2 * k, 2 * k + 2)
             found[own, own] = np.array([of_base(standing, stand, name) for name in PLACES]).T
     return found
-
-
-def of_base(standing: "StandingBody", stand: "Stand", name: str) -> tuple[float, float]:
-    """Give minus the change of a base's moment and force with a coordinate or rate of its body.
-
-    Rates are moved over those of a vibration that settles as much as the body does.
-    """
-    body, base = standing.part
-    size = standing.allowed_rotation if name in (PLACES[0], RATES[0]) else standing.settlement
-    step = STEP * size * (sqrt(body.gravity / standing.settlement) if name in RATES else 1.0)
-    moment = upward = 0.0
-    for place, weight in STENCIL:
-        before, behind = (
-            base.force(
-                stand.mode.contact,
-                body.base_line_at(stand.state._replace(**{name: getattr(stand.state, name) + by})),
-                stand.own,
-            )
-            for by in (place * step, -place * step)
-        )
-        moment -= weight / step * (before.moment - behind.moment)
-        upward -= weight / step * (before.upward - behind.upward)
-    return moment, upward
 
 
 def _breaks(chain: "StandingChain", before: Balance, after: Balance) -> bool:

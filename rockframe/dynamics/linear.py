@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix
-from rockframe.dynamics.equilibrium import RATES, of_base, of_bases, of_loads
-from rockframe.dynamics.standing import Stand
+from rockframe.dynamics.equilibrium import of_bases, of_loads
+from rockframe.dynamics.standing import RATES, Stand, of_base
 from rockframe.dynamics.statics import StandingChain
 from rockframe.dynamics.trigonometry import sine_cosine
 

@@ -21,7 +21,7 @@ from rockframe.dynamics.body import (
     Reach,
 )
 from rockframe.dynamics.on_base import Mode, OnBase
-from rockframe.many import asin
+from rockframe.many import asin, sqrt
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
 """Share of the sizes of heights that is rounding."""
@@ -33,6 +33,12 @@ SHARP: Final = 1e-9
 """Share of the uplift angle by which contact is full before it and partial beyond."""
 HALVINGS: Final = 60
 """Of the rotation at which contact is first lost, where the levels of the ends do not tell it."""
+STEP: Final = 1e-3
+"""By which coordinates are moved, over their sizes, to see how forces change."""
+STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+"""Steps to both sides, and weights of a first derivative that is exact to the fourth order."""
+PLACES: Final = ("rotation", "vertical")
+RATES: Final = ("angular_velocity", "vertical_velocity")
 
 
 class StandingBody(NamedTuple):
@@ -197,3 +203,26 @@ def uplift_rotation(standing: StandingBody, press: float) -> float:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if is_full(middle) else (low, middle)
     return high
+
+
+def of_base(standing: StandingBody, stand: Stand, name: str) -> tuple[float, float]:
+    """Give minus the change of a base's moment and force with a coordinate or rate of its body.
+
+    Rates are moved over those of a vibration that settles as much as the body does.
+    """
+    body, base = standing.part
+    size = standing.allowed_rotation if name in (PLACES[0], RATES[0]) else standing.settlement
+    step = STEP * size * (sqrt(body.gravity / standing.settlement) if name in RATES else 1.0)
+    moment = upward = 0.0
+    for place, weight in STENCIL:
+        before, behind = (
+            base.force(
+                stand.mode.contact,
+                body.base_line_at(stand.state._replace(**{name: getattr(stand.state, name) + by})),
+                stand.own,
+            )
+            for by in (place * step, -place * step)
+        )
+        moment -= weight / step * (before.moment - behind.moment)
+        upward -= weight / step * (before.upward - behind.upward)
+    return moment, upward

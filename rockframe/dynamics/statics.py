@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple, cast
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.equilibrium import PLACES, Balance, HeldBodies, Path, followed
+from rockframe.dynamics.equilibrium import Balance, HeldBodies, Path, followed
 from rockframe.dynamics.standing import (
+    PLACES,
     ROUNDING,
     Stand,
     StandingBody,
@@ -92,7 +93,7 @@ class StandingChain(NamedTuple):
         """Whether a link is broken where bodies stand."""
         from rockframe.dynamics.tied import is_broken
 
-        tied = self.tied(stands) if stands else []
+        tied = self.tied(stands) if stands and self.ties else []
         return any(is_broken(one, of.elongation) for one, of in zip(self.ties, tied, strict=False))
 
     def _alone_at(self, rotation: float) -> list[Stand] | None:

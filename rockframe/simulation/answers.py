@@ -1,15 +1,15 @@
 """Histories, forces and points of a run, as far as they are asked for."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
 from rockframe.compiled import Integers
 from rockframe.dynamics.events import IMPACT, REVERSAL, SILENT, SLIP, STICK
 from rockframe.dynamics.protocol import BODY_FORCES, column_of
-from rockframe.errors import or_missing
+from rockframe.errors import RockframeError
 from rockframe.motion import GroundMotion
 from rockframe.results.along_steps import FRACTIONS, AlongSteps
 from rockframe.results.diagnostics import Diagnostic
@@ -43,6 +43,8 @@ from rockframe.solve.observe import memory_at_outputs, observe_run, observe_stat
 from rockframe.solve.trajectory import Trajectory
 from rockframe.system.assembly import Assembly
 from rockframe.system.own_base import OwnAnswers
+
+Found = TypeVar("Found")
 
 OF_SLIPS: Final = (SLIP, REVERSAL, STICK)
 """Events by which a base that could not be held any longer slips, and holds again."""
@@ -287,3 +289,15 @@ def _level(moved: Array, slope: Slope) -> Array:
     """Give horizontal and vertical components of those along and normal to the base."""
     back = replace(slope, inclination=-slope.inclination)
     return np.column_stack(back.turned(moved[:, 0], moved[:, 1]))
+
+
+def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
+    """Compute what goes with a finished run, without a risk to the run."""
+    try:
+        return work()
+    except Warning:  # asked for as an error
+        raise
+    except Exception as problem:
+        kind = "" if isinstance(problem, RockframeError) else f"{type(problem).__name__}: "
+        missing.append(f"{what} could not be computed: {kind}{problem}")
+        return instead

@@ -12,7 +12,7 @@ import xarray as xr
 
 from rockframe.compiled import compiling_for
 from rockframe.dynamics.chain.rigid import RigidChain
-from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, or_missing, warn
+from rockframe.errors import ModelWarning, RockframeWarning, SolverWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import (
     Generic,
@@ -26,7 +26,7 @@ from rockframe.results.outcome import (
 )
 from rockframe.results.schema import build_dataset, schema_row
 from rockframe.results.variables.runs import Direction
-from rockframe.simulation.answers import Answers, answers_of, ground_at
+from rockframe.simulation.answers import Answers, answers_of, ground_at, or_missing
 from rockframe.simulation.certify.certificate import certify
 from rockframe.simulation.certify.run_summary import RunSummary, run_summary
 from rockframe.simulation.certify.second_look import doubts, peak_error, second_look

@@ -15,12 +15,11 @@ from rockframe.dynamics.base_numbers import bed_numbers, pads_numbers
 from rockframe.dynamics.body import CENTRE, BodyState
 from rockframe.dynamics.coupled.model import state_at
 from rockframe.dynamics.coupled.model import system_of as coupled_of
-from rockframe.dynamics.equilibrium import PLACES, RATES, of_base
 from rockframe.dynamics.linear import linear
 from rockframe.dynamics.on_base import OnBase
 from rockframe.dynamics.pads import ElasticPads
 from rockframe.dynamics.protocol import Ground, Start
-from rockframe.dynamics.standing import standing_body
+from rockframe.dynamics.standing import PLACES, RATES, of_base, standing_body
 from rockframe.dynamics.statics import StandingChain
 from rockframe.system.statics import stored_energy
 
