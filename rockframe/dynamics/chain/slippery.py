@@ -145,15 +145,13 @@ class SlipperyBases(SlippingBodies):
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> bool:
         """Whether an end that has left comes back at once, or one that has landed leaves."""
-        event, body = memory[LAST_EVENT], self.on_base(k).body
-        if event not in (SEPARATION, IMPACT):
+        event = memory[LAST_EVENT]
+        speed, noise = end_speed(self.on_base(k), left, self.state_of(k, state))
+        if event not in (SEPARATION, IMPACT) or abs(speed) > noise:
             return False
-        sense = 1.0 if event == SEPARATION else -1.0
-        speed, _ = end_speed(self.on_base(k), left, self.state_of(k, state))
         rises = self.end_accelerations(k, mode, state, ground)
-        return body.returns_at_once(
-            max(sense * speed, 0.0), -sense * (rises[0] if left else rises[1])
-        )
+        rise = rises[0] if left else rises[1]
+        return rise < 0.0 if event == SEPARATION else rise > 0.0
 
     @kernel
     def end_short_slip(
