@@ -10,10 +10,11 @@ from rockframe.dynamics.chain.impact import NEARLY_ZERO
 from rockframe.dynamics.chain.rows import GUARDS, PLACES
 from rockframe.dynamics.chain.slippery import SlipperyBases
 from rockframe.dynamics.chain.slips import KINETIC, OFFSET, STATIC, TRIES
-from rockframe.dynamics.events import SILENT
+from rockframe.dynamics.events import IMPACT, SILENT
 from rockframe.dynamics.on_base import HOLD, IDLE, SLIP, Mode
 from rockframe.dynamics.pads import CORNER_GUARDS
 from rockframe.dynamics.protocol import HELD_PLACE, LAST_EVENT, Ground, Slope
+from rockframe.dynamics.switching import stay_if_small
 
 
 class SlippingChain(SlipperyBases):
@@ -72,6 +73,8 @@ class SlippingChain(SlipperyBases):
                 new = self.end_short_slips(new, state, ground, memory)
         elif which < 2 * CORNER_GUARDS:
             left = which < CORNER_GUARDS
+            if memory[LAST_EVENT] == IMPACT:
+                stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
             if self.turns_back(k, left, new, state, ground, memory):
                 new = self.end_short_slips(new, state, ground, memory)
             new = self.wait(k, left, new, state, ground, memory)

@@ -197,10 +197,7 @@ class RigidChain(RigidCorners):
             return new
         memory[LAST_EVENT] = IMPACT
         new = self.let_bear(mode, closed, before, 0, state, ground, memory)
-        for corner in range(2 * self.body_count):
-            if closed >> corner & 1 != 0:
-                left = corner % 2 == 0
-                new = self.hold_if_small(corner // 2, left, new, state, ground, memory)
+        new = self.hold_where_small(closed, new, state, ground, memory)
         return self.rest_where_small(new, state, ground, memory)
 
     @kernel
@@ -262,10 +259,21 @@ class RigidChain(RigidCorners):
         return parted
 
     @kernel
+    def hold_where_small(
+        self, closed: int, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Hold corners that were closed in an impact, and that leave only to come back at once."""
+        for corner in range(2 * self.body_count):
+            if closed >> corner & 1 != 0:
+                left = corner % 2 == 0
+                mode = self.hold_if_small(corner // 2, left, mode, state, ground, memory)
+        return mode
+
+    @kernel
     def hold_if_small(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Hold a corner that was closed in an impact, and that leaves only to come back at once."""
+        """Hold a corner of a body that flies only to come back at once."""
         part, corner = self.on_base(k), (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
         if not part.flies(self.part_mode(mode, k).contact):
             return mode
@@ -341,6 +349,7 @@ class RigidChain(RigidCorners):
         memory[IMPACT_LOSS] += had - self.energies(flying, state).kinetic
         event = memory[LAST_EVENT]
         new = self.let_bear(free, before, before, 0, state, ground, memory)
+        new = self.hold_where_small(before, new, state, ground, memory)
         new = self.rest_where_small(new, state, ground, memory)
         memory[LAST_EVENT] = event
         return new
