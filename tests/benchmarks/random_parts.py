@@ -21,8 +21,9 @@ COMPLETE = 2  # the last status of runs that come to their end: completed, overt
 PARTS = (
     "stiff wall", "frame", "frame with tendons", "friction on pads", "friction on soil",
     "elastic wall on rigid ground", "elastic wall on pads", "stack of mixed bases",
-    "stack of squat bodies",
+    "stack of squat bodies", "stack with friction of any size",
 )  # fmt: skip
+BASES = ("rigid ground", "pads", "soil")
 RUNS = 10_000
 NOT_UNIQUE = ("impacts_of_several_modes", "impacts_of_no_mode", "corners_held_without_pressing")
 
@@ -57,20 +58,23 @@ def drawn_wall(width, height, rng):
     )  # fmt: skip
 
 
-def drawn_stack(width, height, rng):
-    """Give two or three blocks upon one another, each on a base of its own."""
-    shares = rng.dirichlet(np.full(int(rng.choice([2, 2, 3])), 4.0))
+def drawn_stack(width, height, rng, counts=(2, 2, 3), kinds=BASES, friction=None):
+    """Give blocks upon one another, each on a base of its own."""
+    shares = rng.dirichlet(np.full(int(rng.choice(counts)), 4.0))
     blocks, bases = [], []
     for share in shares:  # from the ground up
         blocks.insert(0, rf.Block(
             width=f"{width} m", height=f"{max(share * height, 0.75 * width)} m",
             mass=f"{2e3 * share} kg",
         ))  # fmt: skip
-        kinds = ["rigid ground", "pads"] if bases else ["rigid ground", "pads", "soil"]
-        friction = drawn_friction(width, height, rng) if rng.random() < 0.7 else {}
-        bases.insert(0, drawn_base(str(rng.choice(kinds)), friction, rng))
+        slips = friction
+        if slips is None:
+            slips = drawn_friction(width, height, rng) if rng.random() < 0.7 else {}
+        on = str(rng.choice([one for one in kinds if one != "soil" or not bases]))
+        bases.insert(0, drawn_base(on, slips, rng))
         width *= rng.uniform(0.5, 1.0)
-    return rf.System(rf.Stack(*blocks, interfaces=bases[:-1]), bases[-1])
+    body = rf.Stack(*blocks, interfaces=bases[:-1]) if len(blocks) > 1 else blocks[0]
+    return rf.System(body, bases[-1])
 
 
 def drawn_squat(rng):
@@ -104,6 +108,9 @@ def drawn(part, rng):
         system = drawn_stack(width, height, rng)
     elif part == "stack of squat bodies":
         system = drawn_squat(rng)
+    elif part == "stack with friction of any size":
+        friction = {"friction": 10.0 ** rng.uniform(-12.0, 12.0)}
+        system = drawn_stack(width, height, rng, (1, 2, 3), BASES[1:], friction)
     elif " on " in part:
         what, on = part.split(" on ")
         slides = what == "friction" or rng.random() < 0.5
