@@ -317,3 +317,12 @@ def test_overturning_at_the_instant_of_another_event_is_no_repetition():
         found = system.simulate(motion, accuracy="fast", outputs=None, second_look=False)
     assert int(found.status) == Status.OVERTURNED
     assert found.event_time[-1] == found.event_time[-2] == found.overturning_time
+
+
+@pytest.mark.long
+def test_friction_of_millions_lets_bounces_and_slips_end():
+    """A body let go of its base and was held, without end, as the one below slipped."""
+    system, motion = drawn("stack with friction of any size", np.random.default_rng(650))
+    found = system.simulate(motion, duration="1.03 s", outputs=("energy",), second_look=False)
+    assert int(found.status) <= Status.TOPPLED
+    assert float(found.energy_residual) < 1e-8
