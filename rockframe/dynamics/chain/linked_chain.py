@@ -188,17 +188,6 @@ class LinkedSlippingChain(LinkedLists, LinkedSlips, SlippingChain):  # pyright: 
 
     __slots__ = ()
 
-    @kernel
-    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode.
-
-        A link that breaks, or a wall that is touched, may leave friction more than it can hold.
-        """
-        new = self.switch_one(mode, guard, state, ground, memory)
-        if guard >= self.own_guards():
-            new = self.let_slip(-1, new, state, ground, memory)
-        return new
-
 
 class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
     LinkedLists, LinkedSlips, RestOnGround, SlippingRigidChain
