@@ -34,7 +34,6 @@ from rockframe.dynamics.chain.rows import PLACES
 from rockframe.dynamics.protocol import ContactModel, Energies, Ground, Guards, Slope, Start
 from rockframe.dynamics.slide_motion import (
     COLUMNS,
-    FULL,
     GUARDS,
     HELD,
     MODES,
@@ -195,19 +194,6 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     ) -> int:
         """Carry out the switch that a guard of the block calls for; give the new mode."""
         return self.switch_contact(mode, guard, state, ground, memory)
-
-    @kernel
-    def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out the switch that a guard calls for; give the new mode.
-
-        A link that breaks, or a wall that is touched, may leave friction more than it can hold.
-        """
-        new = self.switch_one(mode, guard, state, ground, memory)
-        # a slip that starts at once goes on
-        slips = self.sense(new) != 0.0 and state[SIZE + SLIP] == 0.0
-        if guard >= GUARDS and self.static < math.inf and not slips:
-            new = self.go_on(new, state, ground, False, FULL)
-        return new
 
     @kernel
     def energies_of_bodies(self, mode: int, state: Vector) -> Energies:

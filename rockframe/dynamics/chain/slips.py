@@ -176,17 +176,23 @@ class SlippingBodies(Chain):
         sway, rotating = body.horizontal_velocity, reach.rate * rate
         # a slip that starts, or is hardly one, is not stopped by rounding
         slip = scale * (sense * (sway - rotating) + NOISE * (abs(sway) + abs(rotating)))
-        least = self.rounding(k, self.friction_of(k, KINETIC))
+        least = self.rounding(k, self.friction_of(k, KINETIC)) / self.number(k, at.MASS)
         return SlidingGuards(1.0, slip, scale * (sense * change + least))
 
     @inlined
     def rounding(self, k: int, friction: float) -> float:
-        """Give the acceleration that is rounding beside the friction of what a base presses with.
+        """Give the force that is rounding beside the friction of what a base presses with.
 
-        That is what forces of the size of weights leave, or that force itself.
+        That is what forces of the size of the weights on it leave, or that force itself.
         """
-        thrust = abs(self.places()[k * PLACES + at.THRUST])
-        return ROUNDING * thrust + (ROUNDING + NOISE * friction) * self.number(k, at.GRAVITY)
+        mass = 0.0
+        for j in range(k + 1):
+            mass += self.number(j, at.MASS)
+        thrust, weight = (
+            abs(self.places()[k * PLACES + at.THRUST]),
+            mass * self.number(k, at.GRAVITY),
+        )
+        return ROUNDING * thrust + (ROUNDING + NOISE * friction) * weight
 
     @kernel
     def go_on(self, mode: int, state: Vector, memory: Vector) -> int:
