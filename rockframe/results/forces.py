@@ -33,22 +33,12 @@ height of the centre of mass."""
 
 def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
     """Give absolute accelerations, :eq:`eq-base-moment`, and the friction demand."""
-    thrust, press = values["horizontal_reaction"], values["vertical_reaction"]
-    rotation = values.get(STACKED, values["rotation"])
-    body, small = load.body, load.options.small
-    sine, cosine = sines_cosines(rotation, small=small)
-    beside, lift = body.eccentricity * cosine, body.eccentricity * sine
-    if small:  # widths to first order
-        lift = np.zeros_like(rotation)
-    weight_arm = body.centre_height * sine + beside
-    thrust_arm = body.centre_height * cosine - lift
+    small = load.options.small
+    sine, cosine = sines_cosines(values.get(STACKED, values["rotation"]), small=small)
     found: dict[str, Generic] = {
         "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
         "absolute_vertical_acceleration": values["vertical_acceleration"] + ground[:, 1],
-        "base_overturning_moment": body.base_ratio
-        * (
-            weight_arm * press - thrust_arm * thrust - body.inertia * values["angular_acceleration"]
-        ),
+        "base_overturning_moment": load.body.base_moment(values, sine, cosine, small=small),
     }
     return found | friction_demands(values, load)
 

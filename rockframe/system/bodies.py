@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, Final, NamedTuple
 
+import numpy as np
+
 from rockframe.components.bases import CushionCapSI
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.dynamics.body import Body
+from rockframe.dynamics.chain.link_rows import LINK_MOMENT
 from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
 from rockframe.system.options import RESTRAINT_CODES, Options
@@ -74,6 +77,19 @@ class SupportedBody(BodyGeometry):
     def base_ratio(self) -> float:
         """Half the width that bears over b; 1 unless the body stands for several [1]."""
         return 1.0
+
+    def base_moment(
+        self, values: Mapping[str, Any], sine: Array, cosine: Array, *, small: bool
+    ) -> Array:
+        """Give the moment of the base about its middle, :eq:`eq-base-moment` [N m]."""
+        beside, lift = self.eccentricity * cosine, self.eccentricity * sine
+        if small:  # widths to first order
+            lift = np.zeros_like(sine)
+        press, thrust = values["vertical_reaction"], values["horizontal_reaction"]
+        moment = (self.centre_height * sine + beside) * press
+        moment = moment - (self.centre_height * cosine - lift) * thrust
+        moment = moment - self.inertia * values["angular_acceleration"]
+        return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
 
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
         """Give where points, from the middle of the base, are from the centre of mass [m]."""

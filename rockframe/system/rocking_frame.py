@@ -49,6 +49,17 @@ class FrameBody(SupportedBody):
         """Half the width of a column over that of the body [1]."""
         return self.frame.column.half_width / self.half_width
 
+    def base_moment(
+        self, values: Mapping[str, Any], sine: Array, cosine: Array, *, small: bool
+    ) -> Array:
+        """Give the moment of the feet about their middles, by the corners that bear [N m]."""
+        half, shift = (
+            self.frame.column.half_width,
+            values["right_reaction"] - values["left_reaction"],
+        )
+        lift = 0.0 if small else values["horizontal_reaction"] * np.abs(sine)
+        return half * (shift * cosine + lift)
+
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
         """Give where points of a column, or of the beam, are from the centre of mass [m].
 

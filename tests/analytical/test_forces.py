@@ -144,6 +144,20 @@ def test_the_moment_of_the_base_is_that_of_its_pads():
     np.testing.assert_allclose(response.base_overturning_moment, expected, atol=1e-8 * MASS * G * B)
 
 
+def test_the_moment_of_the_base_is_that_of_its_pads_beside_ties_and_loads():
+    """Ties and loads have moments of their own, which are not those of the base."""
+    tie = rf.Restrainer(
+        on=(f"{-B} m", f"{H} m"), to=(f"{-2 * B} m", f"{0.5 * H} m"), stiffness="20 MN/m",
+        preload=f"{0.05 * MASS * G} N",
+    )  # fmt: skip
+    load = rf.Load(at=("0 m", f"{H} m"), horizontal=f"{0.01 * MASS * G} N")
+    system = rf.System(BLOCK, PADS, tie, load, restraint="centre")
+    response = system.simulate(PULSE, outputs="reaction")
+    arm = B * np.cos(response.rotation)
+    expected = arm * (response.right_reaction - response.left_reaction)
+    np.testing.assert_allclose(response.base_overturning_moment, expected, atol=1e-8 * MASS * G * B)
+
+
 def test_the_pressure_under_the_toe():
     system = rf.System(BLOCK, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0))
     response = system.simulate(PULSE, outputs="toe_pressure")
