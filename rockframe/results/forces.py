@@ -18,6 +18,8 @@ from rockframe.system.bodies import BaseLoad
 
 STACKED: Final = "rotation_on_cap"
 """A column of scenes in which a block stands on a cap."""
+ON_BASE: Final = (STACKED, "rotation_on_base")
+"""Columns of the rotation of a body on another one, of which a scene has one at most."""
 OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
 """Columns that the friction between cap and soil follows from, where a scene has them all."""
 OF_SETTLEMENT: Final = ("vertical_displacement", "rotation")
@@ -34,7 +36,8 @@ height of the centre of mass."""
 def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
     """Give absolute accelerations, :eq:`eq-base-moment`, and the friction demand."""
     small = load.options.small
-    sine, cosine = sines_cosines(values.get(STACKED, values["rotation"]), small=small)
+    on_base = next((values[name] for name in ON_BASE if name in values), values["rotation"])
+    sine, cosine = sines_cosines(on_base, small=small)
     found: dict[str, Generic] = {
         "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
         "absolute_vertical_acceleration": values["vertical_acceleration"] + ground[:, 1],

@@ -88,7 +88,9 @@ class SupportedBody(BodyGeometry):
         press, thrust = values["vertical_reaction"], values["horizontal_reaction"]
         moment = (self.centre_height * sine + beside) * press
         moment = moment - (self.centre_height * cosine - lift) * thrust
-        moment = moment - self.inertia * values["angular_acceleration"]
+        # in a cascade that of the second stage alone
+        spin = values.get("angular_acceleration_on_base", values["angular_acceleration"])
+        moment = moment - self.inertia * spin
         return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
 
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
