@@ -111,6 +111,24 @@ class SupportedBody(BodyGeometry):
         return square + (distance - self.half_width) * (distance + self.half_width)
 
 
+@dataclass(frozen=True)
+class OnCorners(SupportedBody):
+    """A body on rigid ground on which something else acts than its weight and its base."""
+
+    @property
+    def foot(self) -> float:
+        """Half the width that bears [m]."""
+        return self.half_width
+
+    def base_moment(
+        self, values: Mapping[str, Any], sine: Array, cosine: Array, *, small: bool
+    ) -> Array:
+        """Give the moment of the base about its middle, by the corners that bear [N m]."""
+        shift = values["right_reaction"] - values["left_reaction"]
+        lift = 0.0 if small else values["horizontal_reaction"] * np.abs(sine)
+        return self.foot * (shift * cosine + lift)
+
+
 class OverturningAngles(NamedTuple):
     """Rotations, both positive, at which a body stands on edge; the lesser is theta [rad]."""
 
@@ -132,9 +150,9 @@ class Cap:
     inertia: float
 
 
-def body_of_block(block: BlockSI) -> SupportedBody:
+def body_of_block(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> SupportedBody:
     """Give a block as a body."""
-    return SupportedBody(
+    return kind(
         block.half_width, block.centre_height, block.mass, block.inertia, block.shape_factor,
         block.eccentricity,
     )  # fmt: skip
