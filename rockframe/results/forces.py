@@ -137,10 +137,5 @@ def residuals(values: Values, load: BaseLoad) -> dict[str, float]:
 
 def _settlement(values: Values, load: BaseLoad) -> Array:
     """Give how much lower than at rest the middle of the base is, :eq:`eq-settlement`."""
-    body, small, rotation = load.body, load.options.small, values["rotation"]
-    half, beside = 0.5 * rotation, body.eccentricity * rotation
-    if not small:
-        half = np.sin(half)
-        beside = body.eccentricity * np.sin(rotation) if body.eccentricity != 0.0 else beside
-    sunk = -values["vertical_displacement"] - beside
-    return sunk - 2.0 * body.centre_height * half**2
+    small = load.options.small
+    return load.body.sunk(values["rotation"], values["vertical_displacement"], small=small)

@@ -93,6 +93,14 @@ class SupportedBody(BodyGeometry):
         moment = moment - self.inertia * spin
         return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
 
+    def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
+        """Give how much lower than at rest the middle of the base is, :eq:`eq-settlement` [m]."""
+        half, beside = 0.5 * rotation, self.eccentricity * rotation
+        if not small:
+            half = np.sin(half)
+            beside = self.eccentricity * np.sin(rotation) if self.eccentricity != 0.0 else beside
+        return -height - beside - 2.0 * self.centre_height * half**2
+
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
         """Give where points, from the middle of the base, are from the centre of mass [m]."""
         return x - self.eccentricity, y - self.centre_height
@@ -127,6 +135,10 @@ class OnCorners(SupportedBody):
         shift = values["right_reaction"] - values["left_reaction"]
         lift = 0.0 if small else values["horizontal_reaction"] * np.abs(sine)
         return self.foot * (shift * cosine + lift)
+
+    def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
+        """Give how much lower than at rest the middle of the base is: it rises [m]."""
+        return -self.foot * np.abs(rotation if small else np.sin(rotation))
 
 
 class OverturningAngles(NamedTuple):

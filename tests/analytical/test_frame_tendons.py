@@ -69,6 +69,9 @@ def test_the_moment_of_the_feet_is_that_of_the_corners_that_bear():
     shift = (run.right_reaction - run.left_reaction).values * np.cos(lean)
     expected = 0.8 * (shift + run.horizontal_reaction.values * np.sin(np.abs(lean)))
     np.testing.assert_allclose(run.base_overturning_moment, expected, rtol=1e-12, atol=1e-3)
+    risen = 0.8 * np.sin(abs(lean[-1]))  # of the middle of each foot
+    assert float(run.residual_settlement) == pytest.approx(-risen, rel=1e-12)
+    assert float(run.peak_settlement) == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.long
