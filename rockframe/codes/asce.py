@@ -1,5 +1,6 @@
 """ASCE 7-22, chapter 13: statics of a component, beside its motion on a floor."""
 
+import math
 from collections.abc import Mapping
 from typing import Final
 
@@ -99,7 +100,9 @@ def asce_7_22(
     by_formula = 0.4 * base * given["H_f"] / given["R_mu"] * given["C_AR"] / given["R_po"]
     least, most = _LEAST * base, _MOST * base
     force = min(max(by_formula, least), most)
-    tipping, resisting = force * body.centre_height, _RESISTING * weight * arm
+    lifting = _VERTICAL * given["S_DS"] * weight
+    pressing = max(_RESISTING * weight - lifting, 0.0)
+    tipping, resisting = force * body.centre_height, pressing * arm
     newton, moment = Unit.NEWTON, Unit.NEWTON_METRE
     factors = tuple(
         CheckedLine(name, value, Unit.ONE, "factor", "given") for name, value in given.items()
@@ -111,17 +114,17 @@ def asce_7_22(
         CheckedLine("F_p, least", least, newton, "0.3 S_DS I_p W_p", "13.3.1"),
         CheckedLine("F_p, greatest", most, newton, "1.6 S_DS I_p W_p", "13.3.1"),
         CheckedLine("F_p", force, newton, "horizontal force at the centre of mass", "13.3.1"),
-        CheckedLine("F_v", _VERTICAL * given["S_DS"] * weight, newton,
-                    "vertical force, up or down, 0.2 S_DS W_p", "chapter 13"),
+        CheckedLine("F_v", lifting, newton,
+                    "vertical force at the same time, up or down, 0.2 S_DS W_p", "chapter 13"),
     )  # fmt: skip
-    needed = force / (_RESISTING * weight)
+    needed = force / pressing if pressing > 0.0 else math.inf
     statics = (
         CheckedLine("M_OT", tipping, moment, "F_p times the height of the centre of mass",
                     "equilibrium"),
-        CheckedLine("M_R", resisting, moment, "0.9 W_p times the lesser arm", "equilibrium"),
+        CheckedLine("M_R", resisting, moment, "0.9 W_p - F_v times the lesser arm", "equilibrium"),
         CheckedLine("M_anchors", max(tipping - resisting, 0.0), moment,
                     "what anchors must carry, M_OT - M_R", "equilibrium"),
-        CheckedLine("mu", needed, Unit.ONE, "friction to stay without anchors, F_p/(0.9 W_p)",
+        CheckedLine("mu", needed, Unit.ONE, "friction to stay without anchors, F_p/(0.9 W_p - F_v)",
                     "equilibrium"),
     )  # fmt: skip
     verdicts = [

@@ -33,7 +33,7 @@ def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
         damping += one.damping_matrix
     for k, (standing, stand) in enumerate(zip(chain.bodies, stands, strict=True)):
         own = slice(2 * k, 2 * k + 2)
-        damping[own, own] = np.array([of_base(standing, stand, name) for name in RATES]).T
+        damping[own, own] += np.array([of_base(standing, stand, name) for name in RATES]).T
     stiffness = of_bases(chain, stands)
     stiffness += of_loads(chain, stands, lambda others: chain.tie_loads(others, states))
     return Linear(_mass(chain, stands), damping, stiffness)

@@ -134,6 +134,29 @@ class StandingChain(NamedTuple):
         found, lack = at(cast("float", height))
         return found if abs(lack) <= LEFT * self.weight else None
 
+    def uplift_rotation(self, side: float) -> float:
+        """Give the rotation to a side at which an end of one body with links is about to part.
+
+        NaN where it is up to a right angle.
+        """
+        from scipy.optimize import brentq
+
+        (standing,) = self.bodies
+
+        def lack(rotation: float) -> float:
+            lying = lifted(standing, rotation, 0.0)
+            height = standing.part.base.level(side > 0.0, lying.line, lying.own)
+            stands = self._with_arms([lifted(standing, rotation, height)])
+            load = self.weights(stands)[0][1] + self.tie_loads(stands)[1]
+            return float(stands[0].force.upward + load)
+
+        far = side * standing.allowed_rotation
+        while lack(far) < 0.0:
+            far *= 2.0
+            if abs(far) > 0.5 * math.pi:
+                return math.nan
+        return cast("float", brentq(lack, 0.0, far))
+
     def _under_weight(self, rotations: Sequence[float]) -> list[Stand] | None:
         """Give how the bodies stand at rotations on their bases without what links them."""
         mass, found = 0.0, list[Stand]()

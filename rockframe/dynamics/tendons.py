@@ -261,10 +261,23 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         out[bare.BASE_SHEAR] += pull * sine
         out[bare.THRUST] += pull * sine
         out[bare.PRESS] += pull * cosine
-        if rocks != bare.ON_RIGHT:
-            out[bare.LEFT_REACTION] += pull * cosine * (1.0 if rocks == bare.ON_LEFT else 0.5)
-        if rocks != bare.ON_LEFT:
-            out[bare.RIGHT_REACTION] += pull * cosine * (1.0 if rocks == bare.ON_RIGHT else 0.5)
+        if rocks == bare.ON_LEFT:
+            out[bare.LEFT_REACTION] += pull * cosine
+        elif rocks == bare.ON_RIGHT:
+            out[bare.RIGHT_REACTION] += pull * cosine
+        else:
+            # the corners bear as far apart as rocking is, which the tendons put off
+            left, right, corner = (
+                out[bare.LEFT_REACTION],
+                out[bare.RIGHT_REACTION],
+                self.rocking.right,
+            )
+            half = corner.radius * sine_cosine(corner.angle)[0]
+            limit, share = half * (left + right) + self.lever(0.0) * pull, 0.0
+            if limit > 0.0:
+                share = half * (left - right) / limit
+            out[bare.LEFT_REACTION] = 0.5 * (1.0 + share) * out[bare.PRESS]
+            out[bare.RIGHT_REACTION] = 0.5 * (1.0 - share) * out[bare.PRESS]
         link = self.stretched(mode, state, 0.0)
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)

@@ -24,10 +24,10 @@ from rockframe.dynamics.chain.link_rows import (
 )
 from rockframe.dynamics.chain.linked import Linked, rows_of_links, with_room
 from rockframe.dynamics.chain.model import (
+    columns_of_ties,
     links_shown,
     rounding_of_ties,
     scales_of_links,
-    tie_columns,
     tie_tolerance,
 )
 from rockframe.dynamics.chain.rows import PLACES
@@ -243,10 +243,7 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
         system=system,
         scales=np.append(alone.scales, scales_of_links(system, ties)),
         guard_tolerance=np.concatenate([own_tolerance, *map(tie_tolerance, ties)]),
-        columns=(
-            *own,
-            *(column for i in range(len(ties)) for column in tie_columns(i, shown=i < tied)),
-        ),
+        columns=(*own, *columns_of_ties(len(ties), tied)),
         memory=(*alone.memory, "link_of_event"),
         links=tied,
         selects=True,

@@ -137,8 +137,8 @@ def moment_rotation(
     Returns
     -------
     matplotlib.axes.Axes
-        Of a block on pads on a cap the rotations are those of the block on the cap, where a run
-        is drawn.
+        Of a block on pads on a cap the rotations are those of the block on the cap, of a stack
+        those of the highest body on the one below, where a run is drawn.
 
     Raises
     ------
@@ -170,12 +170,11 @@ def moment_rotation(
         runs = runs_of(given, "moment_rotation", window)
         _need(runs, ("base_overturning_moment",), "moment_rotation")
         on = single(ax, "moment_rotation", (5.6, 4.2))
-        if len(runs) == 1 and "rotation_on_cap" not in runs[0].dataset:
+        if len(runs) == 1 and _on_base(runs[0].dataset).name == "rotation":
             _draw_beneath(on.axes, runs[0], angle, size)
         for run in runs:
-            name = "rotation_on_cap" if "rotation_on_cap" in run.dataset else "rotation"
             on.axes.plot(
-                angle.of(run.dataset[name]), size.of(run.dataset["base_overturning_moment"]),
+                angle.of(_on_base(run.dataset)), size.of(run.dataset["base_overturning_moment"]),
                 color=run.colour, linestyle=run.style, linewidth=0.9, label=run.label,
             )  # fmt: skip
         if on.axes.get_legend_handles_labels()[0]:
@@ -302,6 +301,13 @@ def _draw_held(axes: Axes, held: xr.Dataset, angle: Shown, size: Shown) -> None:
             angle.of(held["angle"]), values, color=colour_of(number), linestyle=style, label=words
         )
     key(axes, title="moment", title_fontsize="small")
+
+
+def _on_base(run: xr.Dataset) -> xr.DataArray:
+    """Give the rotation of a run's body on what it stands on."""
+    if "body" in run.dims:
+        return run["body_rotation_on_base"].isel(body=0)
+    return run["rotation_on_cap" if "rotation_on_cap" in run else "rotation"]
 
 
 def _draw_beneath(axes: Axes, run: Run, angle: Shown, size: Shown) -> None:

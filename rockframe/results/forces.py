@@ -18,6 +18,8 @@ from rockframe.system.bodies import BaseLoad
 
 STACKED: Final = "rotation_on_cap"
 """A column of scenes in which a block stands on a cap."""
+ON_BASE: Final = (STACKED, "rotation_on_base")
+"""Columns of the rotation of a body on another one, of which a scene has one at most."""
 OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
 """Columns that the friction between cap and soil follows from, where a scene has them all."""
 OF_SETTLEMENT: Final = ("vertical_displacement", "rotation")
@@ -33,22 +35,13 @@ height of the centre of mass."""
 
 def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
     """Give absolute accelerations, :eq:`eq-base-moment`, and the friction demand."""
-    thrust, press = values["horizontal_reaction"], values["vertical_reaction"]
-    rotation = values.get(STACKED, values["rotation"])
-    body, small = load.body, load.options.small
-    sine, cosine = sines_cosines(rotation, small=small)
-    beside, lift = body.eccentricity * cosine, body.eccentricity * sine
-    if small:  # widths to first order
-        lift = np.zeros_like(rotation)
-    weight_arm = body.centre_height * sine + beside
-    thrust_arm = body.centre_height * cosine - lift
+    small = load.options.small
+    on_base = next((values[name] for name in ON_BASE if name in values), values["rotation"])
+    sine, cosine = sines_cosines(on_base, small=small)
     found: dict[str, Generic] = {
         "absolute_horizontal_acceleration": values["horizontal_acceleration"] + ground[:, 0],
         "absolute_vertical_acceleration": values["vertical_acceleration"] + ground[:, 1],
-        "base_overturning_moment": body.base_ratio
-        * (
-            weight_arm * press - thrust_arm * thrust - body.inertia * values["angular_acceleration"]
-        ),
+        "base_overturning_moment": load.body.base_moment(values, sine, cosine, small=small),
     }
     return found | friction_demands(values, load)
 
@@ -144,10 +137,5 @@ def residuals(values: Values, load: BaseLoad) -> dict[str, float]:
 
 def _settlement(values: Values, load: BaseLoad) -> Array:
     """Give how much lower than at rest the middle of the base is, :eq:`eq-settlement`."""
-    body, small, rotation = load.body, load.options.small, values["rotation"]
-    half, beside = 0.5 * rotation, body.eccentricity * rotation
-    if not small:
-        half = np.sin(half)
-        beside = body.eccentricity * np.sin(rotation) if body.eccentricity != 0.0 else beside
-    sunk = -values["vertical_displacement"] - beside
-    return sunk - 2.0 * body.centre_height * half**2
+    small = load.options.small
+    return load.body.sunk(values["rotation"], values["vertical_displacement"], small=small)

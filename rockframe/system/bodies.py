@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, Final, NamedTuple
 
+import numpy as np
+
 from rockframe.components.bases import CushionCapSI
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.dynamics.body import Body
+from rockframe.dynamics.chain.link_rows import LINK_MOMENT
 from rockframe.many import Many, atan2, tan
 from rockframe.signals.arrays import Array
 from rockframe.system.options import RESTRAINT_CODES, Options
@@ -75,6 +78,29 @@ class SupportedBody(BodyGeometry):
         """Half the width that bears over b; 1 unless the body stands for several [1]."""
         return 1.0
 
+    def base_moment(
+        self, values: Mapping[str, Any], sine: Array, cosine: Array, *, small: bool
+    ) -> Array:
+        """Give the moment of the base about its middle, :eq:`eq-base-moment` [N m]."""
+        beside, lift = self.eccentricity * cosine, self.eccentricity * sine
+        if small:  # widths to first order
+            lift = np.zeros_like(sine)
+        press, thrust = values["vertical_reaction"], values["horizontal_reaction"]
+        moment = (self.centre_height * sine + beside) * press
+        moment = moment - (self.centre_height * cosine - lift) * thrust
+        # in a cascade that of the second stage alone
+        spin = values.get("angular_acceleration_on_base", values["angular_acceleration"])
+        moment = moment - self.inertia * spin
+        return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
+
+    def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
+        """Give how much lower than at rest the middle of the base is, :eq:`eq-settlement` [m]."""
+        half, beside = 0.5 * rotation, self.eccentricity * rotation
+        if not small:
+            half = np.sin(half)
+            beside = self.eccentricity * np.sin(rotation) if self.eccentricity != 0.0 else beside
+        return -height - beside - 2.0 * self.centre_height * half**2
+
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
         """Give where points, from the middle of the base, are from the centre of mass [m]."""
         return x - self.eccentricity, y - self.centre_height
@@ -91,6 +117,28 @@ class SupportedBody(BodyGeometry):
         """
         square = self.radius**2 * (1.0 + 1.0 / self.shape_factor)
         return square + (distance - self.half_width) * (distance + self.half_width)
+
+
+@dataclass(frozen=True)
+class OnCorners(SupportedBody):
+    """A body on rigid ground on which something else acts than its weight and its base."""
+
+    @property
+    def foot(self) -> float:
+        """Half the width that bears [m]."""
+        return self.half_width
+
+    def base_moment(
+        self, values: Mapping[str, Any], sine: Array, cosine: Array, *, small: bool
+    ) -> Array:
+        """Give the moment of the base about its middle, by the corners that bear [N m]."""
+        shift = values["right_reaction"] - values["left_reaction"]
+        lift = 0.0 if small else values["horizontal_reaction"] * np.abs(sine)
+        return self.foot * (shift * cosine + lift)
+
+    def sunk(self, rotation: Array, height: Array, *, small: bool) -> Array:
+        """Give how much lower than at rest the middle of the base is: it rises [m]."""
+        return -self.foot * np.abs(rotation if small else np.sin(rotation))
 
 
 class OverturningAngles(NamedTuple):
@@ -114,9 +162,9 @@ class Cap:
     inertia: float
 
 
-def body_of_block(block: BlockSI) -> SupportedBody:
+def body_of_block(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> SupportedBody:
     """Give a block as a body."""
-    return SupportedBody(
+    return kind(
         block.half_width, block.centre_height, block.mass, block.inertia, block.shape_factor,
         block.eccentricity,
     )  # fmt: skip

@@ -10,11 +10,12 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.components.link import WallImpact, WallSide
 from rockframe.errors import AssemblyError
 from rockframe.system.bodies import (
+    BaseLoad,
+    OnCorners,
     OverturningAngles,
     Restitutions,
     SupportedBody,
     body_of_block,
-    load_of,
     resolve_restitution,
 )
 from rockframe.system.options import Options
@@ -142,7 +143,8 @@ class RearWallSetting(RigidGroundSetting):
 
 def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
     """Resolve the parts of a block before a wall."""
-    load, wall = load_of(parts.the_block, options), cast("RearWall", parts.wall)
+    load = BaseLoad(body_of_block(parts.the_block, OnCorners), options)
+    wall = cast("RearWall", parts.wall)
     given = None if parts.ground is None else parts.ground.si.restitution
     restitution = resolve_restitution(given, load.body.maximum_restitution)
     if not load.options.slope.level:

@@ -12,7 +12,7 @@ from rockframe.components import RockingFrame, Tendon
 from rockframe.components.rocking_frame import RockingFrameSI
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
-from rockframe.system.bodies import BaseLoad, Restitutions, SupportedBody, resolve_restitution
+from rockframe.system.bodies import BaseLoad, OnCorners, Restitutions, resolve_restitution
 from rockframe.system.links import called_alike, link_labels, tie_of, tie_words
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class FrameBody(SupportedBody):
+class FrameBody(OnCorners):
     """The body that rocks on rigid ground as columns under a beam do, :eq:`eq-rocking-frame-body`.
 
     Its mass and its centre of mass are those of columns and beam together.
@@ -47,7 +47,12 @@ class FrameBody(SupportedBody):
     @property
     def base_ratio(self) -> float:
         """Half the width of a column over that of the body [1]."""
-        return self.frame.column.half_width / self.half_width
+        return self.foot / self.half_width
+
+    @property
+    def foot(self) -> float:
+        """Half the width of a column [m]."""
+        return self.frame.column.half_width
 
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
         """Give where points of a column, or of the beam, are from the centre of mass [m].

@@ -280,6 +280,16 @@ class StackSetting(Setting):
         """Rotation of the highest body at rest [rad]."""
         return math.fsum(one.state.rotation for one in self._rest) if self.leans else 0.0
 
+    @cached_property
+    def uplift_angle(self) -> float:
+        """That of the highest body; NaN where links on it act with other bodies below [rad]."""
+        if self.rigid[0] or all(0 not in (one.on, one.to) for one in self.ties):
+            return self.bases[0].uplift_angle
+        if len(self.bodies) > 1:
+            return math.nan
+        found = (abs(self.standing.chain.uplift_rotation(side)) for side in (1.0, -1.0))
+        return min((one for one in found if not math.isnan(one)), default=math.nan)
+
     def small_motion(self) -> SmallMotion | None:
         """Give the equations of small motion about rest, of each body on what it stands on."""
         if not self.groups:

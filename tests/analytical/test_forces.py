@@ -135,11 +135,36 @@ def test_reactions_follow_from_newtons_law(scene, response):
     np.testing.assert_allclose(response.vertical_reaction, shown, atol=1e-9 * mass * G)
 
 
-def test_the_moment_of_the_base_is_that_of_its_pads():
+TIED = (
+    rf.Restrainer(
+        on=(f"{-B} m", f"{H} m"), to=(f"{-2 * B} m", f"{0.5 * H} m"), stiffness="20 MN/m",
+        preload=f"{0.05 * MASS * G} N",
+    ),
+    rf.Load(at=("0 m", f"{H} m"), horizontal=f"{0.01 * MASS * G} N"),
+)  # fmt: skip
+PLINTH = rf.Block(width="3.2 m", height="2.4 m", mass="30 t")
+STACK = rf.Stack(BLOCK, PLINTH, interfaces=[PADS])
+ON_PADS = {
+    "ground": (BLOCK, PADS),
+    "ties and a load": (BLOCK, PADS, *TIED),
+    "cap": (BLOCK, PADS, CAP, SOIL),
+    "cap, cascade": (BLOCK, PADS, CAP, SOIL),
+    "plinth": (STACK, SOIL),
+    "plinth, tied": (STACK, SOIL, TIED[0].replace(to_body=2, to=("-1.5 m", "1 m")), TIED[1]),
+}
+
+
+@pytest.mark.parametrize("where", ON_PADS)
+def test_the_moment_of_the_base_is_that_of_its_pads(where):
     """Held in the middle, the horizontal reaction has no lever about it."""
-    system = rf.System(BLOCK, PADS, restraint="centre")
+    coupling = "cascade" if "cascade" in where else "coupled"
+    system = rf.System(*ON_PADS[where], restraint="centre", coupling=coupling)
     response = system.simulate(PULSE, outputs="reaction")
-    arm = B * np.cos(response.rotation)
+    tilt = response.get("rotation_on_cap", response.rotation)
+    if "plinth" in where:
+        tilt = response.body_rotation_on_base.isel(body=0)
+        assert float(abs(tilt - response.rotation).max()) > 1e-3
+    arm = B * np.cos(tilt)
     expected = arm * (response.right_reaction - response.left_reaction)
     np.testing.assert_allclose(response.base_overturning_moment, expected, atol=1e-8 * MASS * G * B)
 

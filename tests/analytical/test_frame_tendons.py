@@ -47,6 +47,33 @@ def test_a_tendon_that_holds_nothing_makes_no_difference():
         np.testing.assert_allclose(run[name], bare[name], rtol=0.0, atol=1e-6 * scale)
 
 
+def test_reactions_at_rest_come_to_a_corner_as_rocking_begins():
+    system = rf.System(BENT, TENDON)
+    starts, rest = system.setting.uplift_acceleration, system.equilibrium()
+    shares = np.array([0.0, 0.25, 0.5, 0.999, 0.0])
+    motion = rf.GroundMotion.from_arrays((-shares * starts, "m/s^2"), time_step="0.2 s")
+    run = system.simulate(motion, outputs=("reaction",))
+    assert float(run.peak_rotation) == 0.0
+    press = 2.0 * float(rest.static_left_reaction)
+    np.testing.assert_allclose(run.left_reaction, 0.5 * (1.0 - shares) * press, rtol=1e-9)
+    np.testing.assert_allclose(run.right_reaction, 0.5 * (1.0 + shares) * press, rtol=1e-9)
+    np.testing.assert_allclose(
+        run.base_overturning_moment, shares * float(rest.uplift_moment), rtol=1e-9, atol=1e-3
+    )
+
+
+def test_the_moment_of_the_feet_is_that_of_the_corners_that_bear():
+    run = rf.System(BENT, TENDON).simulate(PULSE.scaled(1.5), **PLAN)
+    lean = run.rotation.values
+    assert abs(lean).max() > 0.01
+    shift = (run.right_reaction - run.left_reaction).values * np.cos(lean)
+    expected = 0.8 * (shift + run.horizontal_reaction.values * np.sin(np.abs(lean)))
+    np.testing.assert_allclose(run.base_overturning_moment, expected, rtol=1e-12, atol=1e-3)
+    risen = 0.8 * np.sin(abs(lean[-1]))  # of the middle of each foot
+    assert float(run.residual_settlement) == pytest.approx(-risen, rel=1e-12)
+    assert float(run.peak_settlement) == pytest.approx(0.0, abs=1e-12)
+
+
 @pytest.mark.long
 def test_one_column_s_tendons_are_those_of_a_block_that_is_bent_twice():
     """Without a beam, a column with a tendon at half of its gaps is a block with that tendon."""

@@ -162,6 +162,8 @@ def test_a_block_that_leans_on_its_wall():
     np.testing.assert_allclose(run.base_shear, 1600.0 * 2.0 - thrust, rtol=1e-12)
     np.testing.assert_allclose(run.left_reaction, 1600.0 * 9.81, rtol=1e-12)
     np.testing.assert_allclose(run.right_reaction, 0.0, atol=1e-9)
+    # all of it bears at the rear corner, whatever the wall takes at the top
+    np.testing.assert_allclose(run.base_overturning_moment, -1600.0 * 9.81 * 0.15, rtol=1e-12)
 
 
 def test_statics_studies_figures_and_files(tmp_path):

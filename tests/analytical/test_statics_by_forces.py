@@ -334,3 +334,20 @@ def test_a_law_that_pushes_is_in_equilibrium_at_rest_and_at_the_start_of_a_run()
         assert force.upward == pytest.approx(G, rel=1e-12)
     (stand,) = StandingChain((standing_body(part),)).rest()
     assert stand.state.vertical == pytest.approx(PROP * 0.01 / 4500.0, rel=1e-12)
+
+
+def test_dashpots_of_ties_damp_small_motion():
+    """A post under the middle of a block: it stands beside both pads as it moves up and down."""
+    mass, stiffness, damping = 5e3, 4e6, 2e4
+    block = rf.Block(width="1 m", height="3 m", mass=f"{mass} kg")
+    pads = rf.TwoSpringSupport(stiffness=f"{stiffness} N/m", damping=f"{damping} N s/m")
+    post = rf.Restrainer(
+        on=("0 m", "1 m"), to=("0 m", "0 m"), stiffness="1e6 N/m", damping="6e4 N s/m",
+        compression=True,
+    )  # fmt: skip
+    modes = rf.System(block, pads, post).frequencies()
+    upright = int(np.argmax(np.abs(modes.vertical_displacement_shape.values)))
+    frequency = math.sqrt((2.0 * stiffness + 1e6) / mass)
+    assert float(modes.angular_frequency[upright]) == pytest.approx(frequency, rel=1e-9)
+    ratio = (2.0 * damping + 6e4) / (2.0 * mass * frequency)
+    assert float(modes.damping_ratio[upright]) == pytest.approx(ratio, rel=1e-9)

@@ -1,5 +1,7 @@
 """Tendons through bodies, :eq:`eq-tendon`, loads on them, and several links in one scene."""
 
+import math
+
 import numpy as np
 import pytest
 from plainly import plainly
@@ -28,6 +30,32 @@ def test_a_central_tendon_has_the_moments_of_its_closed_form():
     b, ea, preload = 1.0, 20e6, 0.2e6
     added = preload * b * np.cos(0.5 * ANGLES) + ea * b**2 / 8.0 * np.sin(ANGLES)
     np.testing.assert_allclose(moments(BLOCK, TENDON) - moments(BLOCK), added, rtol=1e-12)
+
+
+@pytest.mark.parametrize("base", ["pads", "soil"])
+def test_contact_is_first_lost_under_all_that_the_base_carries(base):
+    """An end lifts where the base line has turned by the settlement under weight and load."""
+    given = {"pads": rf.TwoSpringSupport(stiffness="40 MN/m", damping_ratio=0.1),
+             "soil": rf.WinklerSoil(stiffness="40 MPa", damping_ratio=0.1)}  # fmt: skip
+    floor = rf.Load(at=("0 m", "8 m"), vertical="400 kN")
+    system = rf.System(BLOCK, given[base], floor)
+    angle = math.asin((WEIGHT + 4e5) / (2.0 * 40e6) / 1.0)  # both have 80 MN/m in all
+    assert float(system.equilibrium().uplift_angle) == pytest.approx(angle, rel=1e-9)
+    around = angle * np.array([-1.0001, -0.9999, 0.9999, 1.0001])
+    contact = system.moment_rotation((around, "rad")).held_contact_state.values
+    assert (contact != 0).tolist() == [True, False, False, True]
+    sides = rf.System(BLOCK, given[base], floor.replace(horizontal="20 kN"))
+    assert float(sides.equilibrium().uplift_angle) == pytest.approx(angle, rel=1e-9)
+
+
+def test_what_lifts_a_tied_body_of_a_stack_is_left_open():
+    stack = rf.Stack(rf.Block(width="1 m", height="3 m", mass="2 t"), BLOCK, interfaces=[PADS])
+    free, loaded = (
+        rf.System(stack, PADS, LOAD.replace(at=("0 m", "2 m"), on_body=body)) for body in (2, 1)
+    )
+    bare = rf.System(stack, PADS).setting.uplift_angle
+    assert free.setting.uplift_angle == bare
+    assert math.isnan(loaded.setting.uplift_angle)
 
 
 def test_no_preload_is_one_of_zero():

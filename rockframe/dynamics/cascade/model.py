@@ -62,6 +62,7 @@ def cascade(
         scales=_in_turn(second.scales, first.scales),
         guard_tolerance=np.concatenate([second.guard_tolerance, first.guard_tolerance]),
         columns=(*COLUMNS, *second.columns[shown:], *under),
+        selects=True,
         contacts=CONTACTS,
         memory=(*MEMORY, "held_place_of_first"),
         mass=second.mass,

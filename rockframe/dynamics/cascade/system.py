@@ -39,6 +39,7 @@ COLUMNS: Final = (
     *STACK_COLUMNS,
     Column("cap_acceleration"),
     Column("cap_vertical_acceleration"),
+    Column("angular_acceleration_on_base"),  # of the second stage, whose forces are shown
 )
 
 
@@ -257,6 +258,7 @@ class Cascade(Stacked, Stages):
             upper.vertical,
             on_top.x,
             on_top.y,
+            above.rotation,
         ) + self.bases_observed(mode, state)
 
     @kernel

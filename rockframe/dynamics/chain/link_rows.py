@@ -48,6 +48,8 @@ LIES: Final = 7
 
 LINK_COLUMNS: Final = 3
 """What users see of each link: force, elongation and state."""
+LINK_MOMENT: Final = "link_moment"
+"""The column behind them: the moment of all links on the first body, about its centre of mass."""
 
 
 class ChainLink(NamedTuple):
@@ -210,7 +212,7 @@ class LinkRows(Linkable):
     @inlined
     def columns(self) -> int:
         """Give the number of columns."""
-        return self.own_columns() + LINK_COLUMNS * self.link_count
+        return self.own_columns() + LINK_COLUMNS * self.link_count + 1
 
     @inlined
     def column_room(self) -> Vector:

@@ -176,16 +176,22 @@ class Linked(LinkPoints):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Give the columns of the bodies, then force, elongation and state of each link."""
+        """Give the columns of the bodies, then those of each link, and the moment of all."""
         out, room = self.observe_bodies(mode, state, slope, ground, memory), self.places()
+        moment = 0.0
         for i in range(self.link_count):
             row, own = self.row_of_link(i), self.of_link(i, state)
             law, standing = self.law_of(row), self.link_state(mode, row)
             on, to = self.points_of(row, room)
-            link = self.drawn(row, on, to).stretch
-            j = self.own_columns() + LINK_COLUMNS * i
-            out[j], out[j + 1] = law.force(standing, link, own), link.elongation
+            link = self.drawn(row, on, to)
+            j, force = self.own_columns() + LINK_COLUMNS * i, law.force(standing, link.stretch, own)
+            out[j], out[j + 1] = force, link.stretch.elongation
             out[j + 2] = law.shown(standing)
+            if row[ON] == 0.0:
+                moment -= force * (link.x * on.arm_y - link.y * on.arm_x)
+            if row[TO] == 0.0:
+                moment += force * (link.x * to.arm_y - link.y * to.arm_x)
+        out[self.columns() - 1] = moment
         return out
 
     def keep_energies(self, mode: int, state: Vector) -> None:

@@ -1,7 +1,7 @@
 """Assembly of the model of a chain of bodies: sizes, bounds of its frequencies, initial state."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -19,7 +19,7 @@ from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, DEGREES, ROTATION, VERT
 from rockframe.dynamics.body import BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.friction import SlippingChain
-from rockframe.dynamics.chain.link_rows import ChainLink
+from rockframe.dynamics.chain.link_rows import LINK_MOMENT, ChainLink
 from rockframe.dynamics.chain.linked import Linked
 from rockframe.dynamics.chain.linked_chain import ChainLinks, RestOnGround, linked
 from rockframe.dynamics.chain.rigid import KEPT, RigidChain
@@ -137,7 +137,7 @@ def chain(
                 for k in range(count if frictions else 0)
                 for name in ("slip", "slip_velocity")
             ),
-            *(column for i in range(len(ties)) for column in tie_columns(i, shown=i < tied)),
+            *columns_of_ties(len(ties), tied),
         ),
         memory=(
             *MEMORY, *(f"held_place_of_{k}" for k in range(1, count)), "body_of_event",
@@ -230,14 +230,15 @@ def tie_tolerance(tie: ChainLink) -> Vector:
     return np.full(GUARDS_OF_LINK, ROUNDING * reach_of(tie))
 
 
-def tie_columns(i: int, *, shown: bool) -> tuple[Column, ...]:
-    """Name the columns of a link; users do not see those of a load."""
-    kind = "restrainer" if shown else "unused_load"
-    return (
-        Column(column_of(f"{kind}_force", i), per_mass=True),
-        Column(column_of(f"{kind}_elongation", i)),
-        Column(column_of(f"{kind}_state", i)),
-    )
+def columns_of_ties(ties: int, shown: int) -> Iterator[Column]:
+    """Name the columns of links; users do not see those of the last, which are loads."""
+    for i in range(ties):
+        kind = "restrainer" if i < shown else "unused_load"
+        yield Column(column_of(f"{kind}_force", i), per_mass=True)
+        yield Column(column_of(f"{kind}_elongation", i))
+        yield Column(column_of(f"{kind}_state", i))
+    if ties:
+        yield Column(LINK_MOMENT, per_mass=True)
 
 
 def _scales(links: Sequence[ChainBody]) -> Vector:

@@ -18,7 +18,8 @@ from rockframe.plot._response import CONTACT_COLOURS, histories_of
 from rockframe.units.shown import reader_units
 
 BLOCK = rf.Block(width="0.8 m", height="4 m", mass="2 t", centre_of_mass=("2 m", "0.05 m"))
-SYSTEM = rf.System(BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
+SYSTEM = rf.System(BLOCK, PADS)
 PULSE = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
 
 
@@ -210,6 +211,14 @@ def test_moments_and_phases_are_those_of_system_and_run(runs):
         lines(phase)[0].get_ydata(), np.degrees(run.angular_velocity), rtol=1e-12
     )
     assert phase.get_ylabel() == "rate of the rotation [° s$^{-1}$]"
+
+
+def test_moments_of_the_highest_body_stand_over_its_rotation_on_the_one_below():
+    stack = rf.Stack(BLOCK, rf.Block(width="1 m", height="0.8 m", mass="2 t"), interfaces=[PADS])
+    run = rf.System(stack, PADS).simulate(PULSE, outputs=("base_overturning_moment",))
+    (drawn,) = lines(rf.plot.moment_rotation(run, rotation="rad", moment="N*m"))
+    np.testing.assert_array_equal(drawn.get_xdata(), run.body_rotation_on_base.isel(body=0))
+    np.testing.assert_array_equal(drawn.get_ydata(), run.base_overturning_moment)
 
 
 def test_counted_shares_reach_to_their_own_bounds():
