@@ -101,8 +101,8 @@ def asce_7_22(
     least, most = _LEAST * base, _MOST * base
     force = min(max(by_formula, least), most)
     lifting = _VERTICAL * given["S_DS"] * weight
-    pressing = max(_RESISTING * weight - lifting, 0.0)
-    tipping, resisting = force * body.centre_height, pressing * arm
+    pressing, lifted = _RESISTING * weight, max(_RESISTING * weight - lifting, 0.0)
+    tipping, resisting = force * body.centre_height, lifted * arm
     newton, moment = Unit.NEWTON, Unit.NEWTON_METRE
     factors = tuple(
         CheckedLine(name, value, Unit.ONE, "factor", "given") for name, value in given.items()
@@ -115,21 +115,24 @@ def asce_7_22(
         CheckedLine("F_p, greatest", most, newton, "1.6 S_DS I_p W_p", "13.3.1"),
         CheckedLine("F_p", force, newton, "horizontal force at the centre of mass", "13.3.1"),
         CheckedLine("F_v", lifting, newton,
-                    "vertical force at the same time, up or down, 0.2 S_DS W_p", "chapter 13"),
+                    "vertical force at the same time, up or down, 0.2 S_DS W_p", "13.3.1"),
     )  # fmt: skip
-    needed = force / pressing if pressing > 0.0 else math.inf
+    needed = force / lifted if lifted > 0.0 else math.inf
     statics = (
         CheckedLine("M_OT", tipping, moment, "F_p times the height of the centre of mass",
                     "equilibrium"),
-        CheckedLine("M_R", resisting, moment, "0.9 W_p - F_v times the lesser arm", "equilibrium"),
+        CheckedLine("M_R", pressing * arm, moment, "0.9 W_p times the lesser arm", "equilibrium"),
+        CheckedLine("M_R, with F_v", resisting, moment, "0.9 W_p - F_v times the lesser arm",
+                    "13.3.1"),
         CheckedLine("M_anchors", max(tipping - resisting, 0.0), moment,
-                    "what anchors must carry, M_OT - M_R", "equilibrium"),
-        CheckedLine("mu", needed, Unit.ONE, "friction to stay without anchors, F_p/(0.9 W_p - F_v)",
-                    "equilibrium"),
+                    "what anchors must carry, M_OT - M_R, with F_v", "equilibrium"),
+        CheckedLine("mu", force / pressing, Unit.ONE,
+                    "friction to stay without anchors, F_p/(0.9 W_p)", "equilibrium"),
+        CheckedLine("mu, with F_v", needed, Unit.ONE, "F_p/(0.9 W_p - F_v)", "13.3.1"),
     )  # fmt: skip
     verdicts = [
         CheckedVerdict("tipping", tipping <= resisting,
-                       f"M_OT {tipping:.4g} N m, M_R {resisting:.4g} N m", "chapter 13")
+                       f"M_OT {tipping:.4g} N m, M_R, with F_v {resisting:.4g} N m", "chapter 13")
     ]  # fmt: skip
     there = None if system.parts.ground is None else system.parts.ground.friction
     if friction is not None:
@@ -137,7 +140,7 @@ def asce_7_22(
     if there is not None:
         verdicts.append(
             CheckedVerdict("sliding", needed <= there,
-                           f"needed {needed:.4g}, there is {there:.4g}", "equilibrium")
+                           f"needed with F_v {needed:.4g}, there is {there:.4g}", "equilibrium")
         )  # fmt: skip
     lines = {"Factors": factors, "Forces": forces, "Statics, without anchors": statics}
     if floor_motions is not None:

@@ -143,17 +143,19 @@ def test_a_component_on_its_floor():
     assert check.value("F_p") == pytest.approx(force)
     assert check.value("F_v") == pytest.approx(0.2 * 1.2 * weight)
     assert check.value("M_OT") == pytest.approx(force * 0.9)
-    pressing = 0.9 * weight - 0.2 * 1.2 * weight  # the vertical force lifts it at the same time
-    assert check.value("M_R") == pytest.approx(pressing * 0.3)
-    assert check.value("M_anchors") == pytest.approx(force * 0.9 - pressing * 0.3)
-    assert check.value("mu") == pytest.approx(force / pressing)
+    lifted = 0.9 * weight - 0.2 * 1.2 * weight  # by the vertical force at the same time
+    assert check.value("M_R") == pytest.approx(0.9 * weight * 0.3)
+    assert check.value("M_R, with F_v") == pytest.approx(lifted * 0.3)
+    assert check.value("M_anchors") == pytest.approx(force * 0.9 - lifted * 0.3)
+    assert check.value("mu") == pytest.approx(force / (0.9 * weight))
+    assert check.value("mu, with F_v") == pytest.approx(force / lifted)
     assert check.passed == {"tipping": False, "sliding": False, "motion": True}
     most = rf.codes.asce_7_22(CABINET, **(given | {"height_factor": 30.0}))
     assert most.value("F_p") == pytest.approx(1.6 * 1.2 * 1.5 * weight)
     least = rf.codes.asce_7_22(CABINET, **(given | {"height_factor": 0.1}))
     assert least.value("F_p") == pytest.approx(0.3 * 1.2 * 1.5 * weight)
     lifted = rf.codes.asce_7_22(CABINET, spectral_acceleration=5, friction=1)
-    assert (lifted.value("M_R"), lifted.value("mu")) == (0.0, math.inf)
+    assert (lifted.value("M_R, with F_v"), lifted.value("mu, with F_v")) == (0.0, math.inf)
     assert lifted.passed == {"tipping": False, "sliding": False}
     squat = rf.Block(width="2 m", height="1.6 m", mass="1 t")
     assert rf.codes.asce_7_22(squat, spectral_acceleration=0.5).passed == {"tipping": True}
