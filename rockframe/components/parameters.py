@@ -388,7 +388,9 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
                 f"and above, got {shown(given)}"
             )
             raise ComponentError(msg)
-        x, y = (to_si(one, LENGTH, owner=owner, name=self.name) for one in pair)
+        x, y = (
+            to_si(one, LENGTH, owner=owner, name=f"{self.name}[{k}]") for k, one in enumerate(pair)
+        )
         return x, y
 
     def write(self, value: tuple[float, float]) -> str:

@@ -266,7 +266,8 @@ def run_study(
         warn(f"{OWNER}: interrupted; {unfinished}", SolverWarning)
     if not study.lazy:
         dataset = not_screened(dataset) if study.handed_over else dataset
-        say_what_is_missing(dataset)
+        kept = study.histories
+        say_what_is_missing(dataset, () if kept is None else kept.names or ())
     return dataset
 
 

@@ -343,6 +343,15 @@ def test_a_case_is_found_by_what_is_known_of_it(tmp_path, monkeypatch):
     assert alone.simulate().peak_rotation == made.peak_rotation[0, 0, 0]
 
 
+def test_a_history_that_no_scene_of_a_sweep_has_is_told():
+    asked = {"scale": [0.5, 1.0], "duration": "0.1 s", "accuracy": "fast"}
+    with pytest.warns(ModelWarning, match="outputs names 'slip', which no scene of the cases has"):
+        runs = rf.sweep(SYSTEM, PULSE, outputs=["slip", "rotation"], **asked)
+    assert runs.rotation.dims == ("scale", "motion", "time")
+    with pytest.raises(StudyError, match="a sweep keeps histories over time alone, and at points"):
+        rf.sweep(SYSTEM, PULSE, outputs=["body_rotation"], **asked)
+
+
 def test_further_rounds_of_an_analysis_leave_the_records_of_sweeps_at_hand(monkeypatch):
     monkeypatch.setattr(of_cases, "_REMEMBERED", 2)
     pulse = np.sin(np.linspace(0.0, 2.0 * np.pi, 51))
