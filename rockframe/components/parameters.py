@@ -3,7 +3,7 @@
 import re
 from enum import Enum, StrEnum
 from types import SimpleNamespace
-from typing import Any, Final, Generic, NoReturn, Self, TypeVar, overload
+from typing import Any, ClassVar, Final, Generic, NoReturn, Self, TypeVar, overload
 
 import numpy as np
 
@@ -56,6 +56,7 @@ class Declared(Generic[Public, Usual]):
         ``DERIVED`` for one that then follows from others.
     """
 
+    single: ClassVar[bool] = True  # whether a value is one number or word, as along an axis
     name: str
     written_as: str
     annotation: Any
@@ -370,6 +371,7 @@ class Count(Declared[int, Usual]):
 class Place(Declared[tuple[Quantity, Quantity], Missing]):
     """A parameter that is a point: how far to the right it is, and how high."""
 
+    single = False
     written_as = "tuple of str or Quantity"
     annotation = tuple[QuantityLike, QuantityLike]
 
@@ -388,7 +390,9 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
                 f"and above, got {shown(given)}"
             )
             raise ComponentError(msg)
-        x, y = (to_si(one, LENGTH, owner=owner, name=self.name) for one in pair)
+        x, y = (
+            to_si(one, LENGTH, owner=owner, name=f"{self.name}[{k}]") for k, one in enumerate(pair)
+        )
         return x, y
 
     def write(self, value: tuple[float, float]) -> str:

@@ -25,6 +25,7 @@ _OF_COLUMN: Final = " of column"
 class _Column(Declared[Block, Missing]):
     """The parameter that is a block."""
 
+    single = False
     written_as = "Block"
     annotation = Block
 

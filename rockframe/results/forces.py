@@ -126,13 +126,15 @@ def peaks_along(
     return forces, {"peak_settlement": max(float(deepest), 0.0) + 0.0}
 
 
-def residuals(values: Values, load: BaseLoad) -> dict[str, float]:
+def residuals(last: Values, load: BaseLoad) -> dict[str, float]:
     """Give what is left at the end of a run, by its names in the schema."""
-    last = {name: values[name][-1:] for name in OF_SETTLEMENT}
-    return {
+    left = {
         "residual_rotation": float(last["rotation"][0]),
         "residual_settlement": float(_settlement(last, load)[0]),
     }
+    if "slip" in last:
+        left["residual_displacement"] = float(last["horizontal_displacement"][0])
+    return left
 
 
 def _settlement(values: Values, load: BaseLoad) -> Array:

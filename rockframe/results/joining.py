@@ -12,6 +12,7 @@ from rockframe.arguments import checked_dataset, truth
 from rockframe.errors import SchemaError, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA, dated, without_fill_values
+from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
 
@@ -74,8 +75,8 @@ def concat(
     -------
     xarray.Dataset
         The variables that all runs have, without events and, unless asked for, without
-        histories. Where motions differ, or `dim` is ``"motion"``, their names are a
-        coordinate ``motion``.
+        histories; NaN for bodies and restrainers that a run has not. Where motions differ, or
+        `dim` is ``"motion"``, their names are a coordinate ``motion``.
 
     Raises
     ------
@@ -130,7 +131,7 @@ def concat(
     rows = [row if dim in row.dims else row.expand_dims(dim) for row in rows]
     try:
         joined = xr.concat(
-            _with_motions(rows, dim),
+            _with_motions(_with_all_places(rows, dim), dim),
             dim=dim,
             data_vars="minimal",
             coords="different",
@@ -141,6 +142,7 @@ def concat(
     except ValueError as problem:
         msg = f"{_OWNER}: the runs do not fit one another: {problem}"
         raise SchemaError(msg) from problem
+    _type_flags(joined)
     joined.attrs |= _as_one_sweep(given, dim, joined)
     joined.attrs["history"] = dated(f"{joined.sizes[dim]} joined along {dim!r}")
     if labels is not None:
@@ -166,6 +168,24 @@ def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
     if 0 < having < len(runs):
         msg = f"{_OWNER}: {having} of {len(runs)} datasets have the dimension {dim!r}; expected "
         raise SchemaError(msg + "all or none")
+
+
+def _with_all_places(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
+    """Give rows all bodies and restrainers that any has."""
+    places: dict[str, list[Any]] = {}
+    for name in (*BODY, *RESTRAINER):
+        labels = [row[name].to_numpy().tolist() for row in rows if name in row.coords]
+        if name != dim and any(one != labels[0] for one in labels):
+            places[name] = list(dict.fromkeys(label for one in labels for label in one))
+    return [row.reindex({n: one for n, one in places.items() if n in row.coords}) for row in rows]
+
+
+def _type_flags(joined: xr.Dataset) -> None:
+    """Give flags the type of their values, which gaps in one of the runs have made floats."""
+    for name, values in [*joined.data_vars.items()]:
+        if "flag_values" in values.attrs and values.dtype.kind == "f":
+            flags = np.asarray(values.attrs["flag_values"], np.float64)
+            joined[name] = values.astype(np.float64).assign_attrs(flag_values=flags)
 
 
 def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:

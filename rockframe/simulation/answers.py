@@ -104,10 +104,9 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     found = slidings(system, along)
     of_forces, of_settlement = peaks_along(along, upright, load)
     scalars: dict[str, Generic | float] = {
-        **of_forces, **sliding_scalars(found), **residuals(values, load), **of_settlement,
+        **of_forces, **sliding_scalars(found), **residuals(_at_the_end(system, plan, run), load),
+        **of_settlement,
     }  # fmt: skip
-    if "slip" in values:
-        scalars["residual_displacement"] = float(values["horizontal_displacement"][-1])
     if model.shows_bodies:
         rotations = rotations_of(model.system.bodies())
         scalars["peak_body_rotation"] = _peaks_of(rotations, along)
@@ -199,6 +198,15 @@ def _observed(
     is_impact = (events.kind == IMPACT) & system.setting.struck_by_base
     states = EventStates(events.time, is_impact, before, after)
     return along, values, states, ground[:count], moved[:count]
+
+
+def _at_the_end(system: Assembly, plan: Plan, run: Trajectory) -> dict[str, Generic]:
+    """Give what the model shows at the end of a run, which need not be a sample."""
+    ending, ground = run.ending, ground_at(plan.motion, np.array([run.end_time]))
+    return observe_states(
+        system.model, np.array([ending.mode]), ending.state[None], ending.memory[None],
+        np.zeros(1, dtype=np.int64), ground_on_slope(ground, system.options.slope)[1],
+    )  # fmt: skip
 
 
 def _along(

@@ -76,7 +76,8 @@ def outputs_of(
             if "time" in dims:
                 found = (
                     f"outputs need not name {name!r}: a single run has it anyway, if its scene "
-                    f"has; on request there are {words}"
+                    "has; a sweep keeps histories over time alone, and at points, and "
+                    "rf.case(...).simulate() gives the others"
                 )
             faults.append(found)
     requested = tuple(name for name in ON_REQUEST if name in wanted)

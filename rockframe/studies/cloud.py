@@ -308,7 +308,7 @@ def read_least(given: Any, values: xr.DataArray, *, owner: str) -> float:
 
 
 def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> float:
-    unit, words = str(values.attrs.get("units", "1")), str(values.name).replace("_", " ")
+    unit, words = str(values.attrs.get("units", "1")), f"a value of {values.name}"
     return read_in_unit(given, unit, words, owner=owner, name=name, condition=POSITIVE)
 
 

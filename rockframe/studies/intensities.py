@@ -241,7 +241,7 @@ def motions_of_runs(runs: xr.Dataset, given: object, *, owner: str) -> dict[str,
         )
         raise StudyError(msg)
     which = [name for name in names if name in used]
-    every = unscaled_motions(runs.attrs, which, given, store_of(runs))
+    every = unscaled_motions(runs.attrs, which, given, store_of(runs), owner=owner)
     found = {name: motion for name, motion in every.items() if motion is not None}
     if len(found) < len(every):
         msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"

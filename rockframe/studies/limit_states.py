@@ -115,7 +115,7 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
     row, least = SCHEMA[name], math.nan
     if value is not None:
         unit = str(row.unit or Unit.ONE)
-        least = read_in_unit(value, unit, row.long_name, owner=owner, name=name)
+        least = read_in_unit(value, unit, "a limit", owner=owner, name=name)
     return LimitState(math.nan, name, least, "" if label is None else str(label))
 
 

@@ -31,6 +31,7 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.limit_states import interrupted
 from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
+from rockframe.studies.sweeps.case import remember
 from rockframe.studies.sweeps.execution import ProgressBar, bar_of
 from rockframe.studies.sweeps.motions import TARGETS
 from rockframe.studies.sweeps.planning import plan_study
@@ -66,13 +67,26 @@ class Rounds:
     store: Path | None
     bar: ProgressBar
 
-    def sweep(self, part: str, cases: Any, axes: Mapping[str, Any], **more: Any) -> xr.Dataset:
-        """Run the cases of a part, which names a folder and stands on the bar."""
+    def sweep(
+        self,
+        part: str,
+        cases: Any,
+        axes: Mapping[str, Any],
+        *,
+        further: bool = False,
+        **more: Any,
+    ) -> xr.Dataset:
+        """Run the cases of a part, which names a folder and stands on the bar.
+
+        Of further parts no result tells, by which :func:`rockframe.case` would find their motions.
+        """
         asked = {**self.run, **more}
         means: Any = {name: asked.pop(name, None) for name in ExecutionArguments.__annotations__}
         del means["progress"]
         means["store"] = None if self.store is None else self.store / part
         study = plan_study(self.scene, self.motions, axes, cases, **asked)
+        if not further:
+            remember(study)
         self.bar.name(part)
         return run_study(study, self.bar, **means)
 
@@ -362,7 +376,7 @@ class Lines:
         names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))
         cases = {**self._heads(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
-        runs = rounds.sweep(part, cases, {})
+        runs = rounds.sweep(part, cases, {}, further=True)
         return runs, self.verdicts(runs).transpose(VERDICT, CASE).to_numpy()
 
     def _heads(self, rows: Any) -> dict[str, Any]:

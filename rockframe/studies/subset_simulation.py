@@ -47,7 +47,6 @@ from rockframe.studies.limit_states import (
 from rockframe.studies.lines import INTERRUPTED, Rounds, rounds_of
 from rockframe.studies.probability import SAMPLED, Spread, read_correlation, read_spread
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.case import remember, remembered
 from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
 from rockframe.system.options import PointsLike
@@ -258,7 +257,7 @@ class _Sampler:
         """Run samples, a row of normal scores each."""
         table = self._table(scores)
         with collected_warnings() if self.runs else nullcontext([]) as said:
-            runs = self._rounds.sweep(part, table, {})
+            runs = self._rounds.sweep(part, table, {}, further=bool(self.runs))
         self.said += said
         if interrupted(runs):
             raise KeyboardInterrupt
@@ -308,9 +307,6 @@ def _labelled(
 ) -> xr.Dataset:
     """Give the samples of all levels, each with its run, and what follows from them."""
     first = sampler.runs[0]
-    study = remembered(first.attrs)
-    if study is not None:  # by which `rockframe.case` finds motions and functions
-        remember(study)
     samples = concat(sampler.runs, CASE).isel(
         {CASE: np.concatenate([one.origins for one in found])}
     )

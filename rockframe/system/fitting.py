@@ -107,8 +107,9 @@ def _misfits_of_links(parts: Parts) -> list[str]:
     faults: list[str] = []
     base = next((one for one in (parts.pads, parts.soil) if one is not None), None)
     if parts.cap is not None:
+        kinds = " and a ".join(dict.fromkeys(type(one).__name__ for one in parts.links))
         faults.append(
-            "a Restrainer and a CushionCap are both given; give the cap as the lowest body of a "
+            f"a {kinds} and a CushionCap are given together; give the cap as the lowest body of a "
             "Stack"
         )
     if parts.stack is None and parts.ground is not None:

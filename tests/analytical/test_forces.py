@@ -245,6 +245,24 @@ def test_peaks_stand_over_all_that_is_shown(response):
     assert response.residual_rotation == response.rotation[-1]
 
 
+@pytest.mark.parametrize("scene", ["rigid ground", "pads"])
+def test_what_remains_is_told_of_the_end_between_two_samples(scene):
+    runs = [
+        SCENES[scene].simulate(PULSE, duration="1.3 s", **asked)
+        for asked in (
+            {},
+            {"output_step": "0.2 s"},
+            {"outputs": None, "points": {"top": ("0 m", f"{H} m")}},
+        )
+    ]
+    assert runs[1].time[-1] == pytest.approx(1.2)
+    exact = SCENES[scene].simulate(PULSE, duration="1.3 s", output_step="0.65 s")
+    for run in runs:
+        assert run.residual_rotation == pytest.approx(exact.rotation[-1].item(), rel=1e-12)
+        assert run.residual_settlement == exact.residual_settlement
+    assert runs[1].rotation[-1] != exact.rotation[-1]
+
+
 def test_a_block_that_came_to_rest_has_no_residual_displacement():
     response = rf.System(BLOCK, PADS).simulate(PULSE, duration="300 s", output_step="1 s")
     assert abs(response.residual_rotation) < 1e-6

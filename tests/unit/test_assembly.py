@@ -116,6 +116,10 @@ def test_a_system_does_not_change_its_parts():
         ((block(), soil(), rf.RigidGround()), ["RigidGround", "WinklerSoil", "both"]),
         ((block(), cap(), soil(), rf.RigidGround()), ["RigidGround", "CushionCap", "WinklerSoil"]),
         ((block(), cap()), ["CushionCap", "without a WinklerSoil"]),
+        (
+            (block(), cap(), soil(), rf.Tendon(stiffness="1 MN/m"), rf.Tendon(stiffness="2 MN/m")),
+            ["a Tendon and a CushionCap", "lowest body of a Stack"],
+        ),
         ((block(), pads(), cap()), ["CushionCap", "without a WinklerSoil"]),
         ((block(), pads(), soil()), ["TwoSpringSupport", "WinklerSoil", "without a CushionCap"]),
         ((block(), rf.WinklerSoil), ["WinklerSoil", "class itself"]),

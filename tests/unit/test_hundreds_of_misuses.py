@@ -190,6 +190,7 @@ VALUES = {
     # parts
     "block(width=0.8)": "width needs a length with a unit, got 0.8",
     "block(width='0.8 s')": "width needs a length in a unit such as m, got '0.8 s'",
+    "rf.Load(at=('0 m', 3), vertical='1 kN')": "Load: at[1] needs a length with a unit, got 3",
     "block(width='0.8 metr')": "'0.8 metr', whose unit cannot be read",
     "block(width='0,8 m')": "a decimal point",
     "block(width='-0.8 m')": "width must be greater than zero, got '-0.8 m'",

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 import xarray as xr
+from plainly import plainly
 
 import rockframe as rf
 from rockframe.errors import SchemaError, SolverWarning
@@ -252,3 +253,41 @@ def test_sweeps_that_differ_otherwise_are_none():
             assert "case_count" not in joined.attrs
             with pytest.raises(SchemaError, match="differ along one axis"):
                 rf.case(joined, width=0.4, scale=1.0)
+
+
+def test_bodies_and_restrainers_that_a_run_has_not_are_gaps(tmp_path):
+    def tied(*names):
+        ties = [rf.Tendon(stiffness="1 MN/m", name=name) for name in names]
+        return rf.System(BLOCK, *ties).simulate(PULSE)
+
+    with plainly():
+        runs = [tied("west"), tied("west", "east"), tied("east")]
+    joined = rf.concat(runs, histories=True)
+    assert joined.restrainer.values.tolist() == ["west", "east"]
+    there = [[True, False], [True, True], [False, True]]
+    assert joined.peak_restrainer_force.notnull().values.tolist() == there
+    assert joined.restrainer_state.notnull().all("time").values.tolist() == there
+    assert joined.restrainer_state.dtype == joined.restrainer_state.flag_values.dtype == float
+    joined.to_netcdf(tmp_path / "joined.nc")
+    xr.testing.assert_identical(xr.load_dataset(tmp_path / "joined.nc"), joined)
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
+def test_sweeps_of_which_one_has_gaps_are_that_of_all(tmp_path):
+    def drums(count):
+        joint = rf.RigidGround(friction=0.4)
+        return rf.System(rf.Stack(*[BLOCK] * count, interfaces=[joint] * (count - 1)), joint)
+
+    def swept(*counts):
+        asked = {"accuracy": "fast", "outputs": ["rotation"], "duration": "0.2 s"}
+        return rf.sweep(drums, PULSE, count=counts, **asked)
+
+    with plainly():
+        parts, whole = [swept(2), swept(3, 1)], swept(2, 3, 1)
+    joined = rf.concat(parts, "count", histories=True)
+    for name in ("overturned", "peak_body_slip", "peak_body_rotation", "rotation", "status"):
+        xr.testing.assert_identical(joined[name], whole[name])
+        flags = whole[name].attrs.get("flag_values", whole[name].values[:0])
+        assert joined[name].attrs.get("flag_values", flags).dtype == flags.dtype
+    assert np.isnan(joined.overturned[2, 0])  # a stack of one body is refused
+    assert rf.case(joined, count=3, scene=drums).system == drums(3)

@@ -9,7 +9,14 @@ from pathlib import Path
 from typing import Any, Final
 
 from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts, part_slots
-from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made
+from rockframe.command.files.tables import (
+    Place,
+    TomlFile,
+    arguments_of,
+    checked,
+    made,
+    table_title,
+)
 from rockframe.command.typed_calls import check_of
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
@@ -45,6 +52,10 @@ def described_motion(file: TomlFile, where: Place, given: object) -> GroundMotio
     operations = table.pop(_OPERATIONS, [])
     if CONSTRUCTOR in table and _FILE not in table:
         motion = _constructed(file, where, table)
+    elif _FILE not in table:
+        ways = f"{_FILE!r}, the path of a record, or {CONSTRUCTOR!r}, one of {', '.join(MOTIONS)}"
+        file.fault(where, f"[{table_title(where)}] lacks {ways}")
+        motion = None
     elif checked(file, where, {**table}, motion_keys()):
         motion = _read(file, where, table)
     else:

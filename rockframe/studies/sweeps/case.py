@@ -270,6 +270,7 @@ def unscaled_motions(
     kept: Store | None = None,
     *,
     needed: bool = True,
+    owner: str = _OWNER,
 ) -> dict[str, GroundMotion | None]:
     """Give motions of a sweep as they were before they were scaled; those that can be had."""
     every = json.loads(attributes["motion_names"]), json.loads(attributes["motions_json"])
@@ -291,7 +292,7 @@ def unscaled_motions(
         elif needed:
             has = "must be given, as motions=" if given is None else "is not among those given"
             digest = one["sha256"][:12]
-            msg = f"{_OWNER}: the record {one['name']!r} (sha256 {digest}...) {has}"
+            msg = f"{owner}: the record {one['name']!r} (sha256 {digest}...) {has}"
             raise StudyError(msg)
     return found
 

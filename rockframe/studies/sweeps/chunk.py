@@ -181,7 +181,7 @@ def run_chunk(job: SweepJob, stopped: Callable[[], bool] = lambda: False) -> Cas
     :meth:`rockframe.System.simulate` gives.
     """
     cases = CasesOfJob(job)
-    collected = _Collector(len(cases), job.histories)
+    collected = _Collector(len(cases), job)
     looks: dict[int, Look] = {}
     for run in each_run(cases, range(len(cases)), stopped, job.patience):
         collected.put(run)
@@ -215,9 +215,9 @@ def _told(run: Finished) -> tuple[list[str], Mapping[str, Generic | float]]:
 class _Collector(CollectedResults):
     """Collects what cases show as they are run."""
 
-    def __init__(self, count: int, histories: Histories | None) -> None:
+    def __init__(self, count: int, job: SweepJob) -> None:
         super().__init__(count)
-        self._kept = histories
+        self._kept, self._restrainers = job.histories, job.restrainers
 
     def put(self, run: Finished | FinishedTogether | Failed) -> None:
         """Note runs; of one without a verdict only what is said of it."""
@@ -237,6 +237,10 @@ class _Collector(CollectedResults):
         if self._status[case] != RunStatus.NOT_RUN:  # of a first run
             self._clear(case)
         cautions, scalars = _told(run)
+        if self._restrainers and "peak_restrainer_force" in scalars:
+            names = run.system.setting.link_names
+            if names != self._restrainers:
+                cautions = [*cautions, f"its restrainers are {', '.join(names)}, not as labelled"]
         self._say(case, "; ".join([*run.said, *cautions]) or NONE)
         self._status[case] = run.summary.status
         if run.summary.overturned is None:

@@ -54,7 +54,6 @@ def lazy_dataset(kept: Store) -> xr.Dataset:
     dataset = around_cases(labels, attributes).assign(columns)
     dataset = dataset.assign({_STATUS: variable(_STATUS, "i1", ())})
     dataset = with_coordinates(dataset, labels, variable(MESSAGE, "O", ()))
-    dataset.attrs |= kept.provenance()
     together = blocks(grid, max(_BLOCK, kept.chunk))
     if find_spec("dask") is not None:
         dataset = dataset.chunk(together, token=f"{kept.digest} {done}")

@@ -76,6 +76,12 @@ class SystemScene:
         if len(found) != 1:
             raise StudyError(self._not_one(name, parameter, [part for _, part, _ in found]))
         ((slot, part, declared),) = found
+        if not declared.single:
+            msg = (
+                f"axis {name!r} is neither a number nor a word; give a function of the axes that "
+                "returns a System"
+            )
+            raise StudyError(msg)
         if getattr(part, "members", ()):
             msg = (
                 f"axis {name!r}: this {type(part).__name__} was built from its members; give a "
@@ -190,7 +196,7 @@ class SystemScene:
                 f"There are {', '.join(known)}"
             )
         known = [*TARGETS, *_OPTIONS, *STARTS]
-        known += [one for part in parts for one in part.varied()]
+        known += [one for part in parts for one, each in part.varied().items() if each.single]
         listed = ", ".join(dict.fromkeys(known))
         question = suggestion(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"

@@ -74,6 +74,7 @@ class SweepJob:
     patience: float | None
     # whether each is run twice, and again by tolerance where its verdict is in doubt
     screened: bool
+    restrainers: tuple[str, ...]  # what results call those of all cases; nothing where unlike
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +109,7 @@ class Study:
             self.histories,
             self.patience,
             self.screened,
+            self.restrainers,
         )
 
     @property
@@ -132,7 +134,7 @@ class Study:
         ]
         return {"rockframe_version": __version__, **description_of(self), "scenes": scenes}
 
-    @property
+    @cached_property
     def restrainers(self) -> tuple[str, ...]:
         """What results call the restrainers; nothing where some of its scenes have others."""
         if isinstance(self.scene, SystemScene):

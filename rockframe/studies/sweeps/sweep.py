@@ -184,6 +184,7 @@ def sweep(
         overturning=overturning,
         kept=store is not None,
     )
+    remember(study)
     with bar_of(progress, owner=OWNER) as bar:
         others = [known] if isinstance(known, PathLike) else several(
             known, owner=OWNER, name="known", of="folders"
@@ -233,9 +234,7 @@ def open_study(path: str | PathLike[str], *, lazy: bool = False) -> xr.Dataset:
             ModelWarning,
         )
     later = truth(lazy, owner="open_study", name="lazy")
-    found = lazy_dataset(kept) if later else stored_dataset(kept)
-    found.encoding["source"] = str(kept.folder)  # as of a dataset that was read from a file
-    return found
+    return stored_dataset(kept, lazy=later)
 
 
 def run_study(
@@ -255,7 +254,6 @@ def run_study(
         chunk = study.chunk_size(workers, as_python=as_python)
     size = whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
     _say_how_long(study, workers, as_python=as_python, kept=store is not None)
-    remember(study)
     if store is None and known:
         msg = "known cases are copied into the store of the sweep; give store='a folder'"
         raise StudyError(msg)
@@ -268,7 +266,8 @@ def run_study(
         warn(f"{OWNER}: interrupted; {unfinished}", SolverWarning)
     if not study.lazy:
         dataset = not_screened(dataset) if study.handed_over else dataset
-        say_what_is_missing(dataset)
+        kept = study.histories
+        say_what_is_missing(dataset, () if kept is None else kept.names or ())
     return dataset
 
 
@@ -353,12 +352,11 @@ def _kept(
         claims.let_all_go()
     if whole:
         claims.clear()
-    if not study.lazy:
-        dataset = stored_dataset(kept)
+    dataset = stored_dataset(kept, lazy=study.lazy)
+    if whole or not study.lazy:
         return dataset, "" if whole else cases_verdict(dataset)
     run = sum(len(one.cases) for one in every if kept.has(one))
-    some = "" if whole else f"{run} of {study.grid.count} cases have been run, and are kept"
-    return lazy_dataset(kept), some
+    return dataset, f"{run} of {study.grid.count} cases have been run, and are kept"
 
 
 def _free(
@@ -388,10 +386,12 @@ def _free(
         missing = later
 
 
-def stored_dataset(kept: Store) -> xr.Dataset:
-    """Give what a folder holds as a dataset."""
-    dataset = sweep_dataset(kept.labels(), kept.found())
-    return dataset.assign_attrs(kept.provenance())
+def stored_dataset(kept: Store, *, lazy: bool) -> xr.Dataset:
+    """Give what a folder holds as a dataset, by which its motions are found again."""
+    dataset = lazy_dataset(kept) if lazy else sweep_dataset(kept.labels(), kept.found())
+    dataset = dataset.assign_attrs(kept.provenance())
+    dataset.encoding["source"] = str(kept.folder)  # as of a dataset that was read from a file
+    return dataset
 
 
 def folder_of(path: object, *, owner: str = "") -> Path:

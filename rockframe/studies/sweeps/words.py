@@ -126,8 +126,8 @@ def not_screened(runs: xr.Dataset) -> xr.Dataset:
     return runs.assign_attrs(verdict=f"{said}; {words}.")
 
 
-def say_what_is_missing(dataset: xr.Dataset) -> None:
-    """Warn of cases without a result, and of cautions."""
+def say_what_is_missing(dataset: xr.Dataset, histories: Iterable[str]) -> None:
+    """Warn of cases without a result, of cautions, and of histories that no scene has."""
     status = dataset["status"].to_numpy().ravel()
     message = dataset[MESSAGE].to_numpy().ravel()
     lacking = np.isnan(dataset["peak_rotation"].to_numpy().ravel())
@@ -144,6 +144,10 @@ def say_what_is_missing(dataset: xr.Dataset) -> None:
             said = "" if text == NONE else f"; of {those} of them it is said: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
             warn(f"{OWNER}: {count} {words} (status, message){said}", kind)
+    absent = [name for name in histories if name not in dataset]
+    if absent and not lacking.all():
+        named = ", ".join(map(repr, absent))
+        warn(f"{OWNER}: outputs names {named}, which no scene of the cases has", ModelWarning)
 
 
 def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], Generic]:

@@ -218,6 +218,10 @@ SCENES = {
     "a start": (f'{BLOCK}[run.initial]\nrotation = "3 m"\n', {6: "rotation needs an angle"}),
     "no record": (f'{BLOCK}[motion]\nfile = "none.AT2"\n', {5: "no such file"}),
     "no motion": (f'{BLOCK}[motion]\ncomponent = "NS"\n', {5: "lacks 'file'"}),
+    "a pulse of no kind": (
+        f'{BLOCK}[motion]\namplitude = "1 m/s^2"\n',
+        {5: "or 'constructor', one of sine_pulse, cosine_pulse"},
+    ),
     "a pulse": (
         f'{BLOCK}[motion]\nconstructor = "sine_pulse"\nfrequency = "1 s"\n',
         {7: "its frequency is '1 Hz'"},

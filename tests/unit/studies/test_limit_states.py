@@ -67,7 +67,7 @@ def test_a_dynamic_analysis_narrows_them_too():
 def test_what_is_missing_is_named(runs):
     for wrong, kind, match in (
         (("peak_slip", "5 cm"), SchemaError, "the runs have no 'peak_slip"),
-        (("peak_slip", "5 kg"), UnitsError, "peak_slip"),
+        (("peak_slip", "5 kg"), UnitsError, "peak_slip needs a limit in a unit such as m"),
         (
             ("girth", 1),
             ComponentError,

@@ -6,7 +6,7 @@ from plainly import plainly
 
 import rockframe as rf
 from rockframe.dynamics.events import LINK_BREAKS
-from rockframe.errors import ComponentError, SchemaError
+from rockframe.errors import ComponentError, ModelWarning, SchemaError
 
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
 STATUE = rf.Block(width="0.6 m", height="2.4 m", mass="800 kg")
@@ -118,6 +118,18 @@ def test_a_function_tells_the_names_of_restrainers_where_all_are_alike():
     kept = {"outputs": ["energy"], **FOUR}
     assert rf.sweep(alike, PULSE, strength=[1.0, 9.0], **kept).restrainer.values == ["upper"]
     assert rf.sweep(unlike, PULSE, number=[7, 8], **kept).restrainer.values == ["1"]
+
+
+def test_a_case_whose_restrainers_are_not_those_of_the_labels_says_so():
+    def scene(number: int) -> rf.System:  # of so many it is not looked at all beforehand
+        names = ("east", "west") if number == 5 else ("west", "east")
+        return rf.System(STATUE, PADS, *(tie(name, -1) for name in names))
+
+    asked = {"outputs": ["rotation"], "duration": "0.02 s", "accuracy": "fast"}
+    with plainly(), pytest.warns(ModelWarning, match="its restrainers are east, west, not as"):
+        runs = rf.sweep(scene, PULSE, number=range(40), **asked)
+    assert runs.restrainer.values.tolist() == ["west", "east"]
+    assert np.flatnonzero(runs.message != "none").tolist() == [5]
 
 
 @pytest.mark.parametrize("outputs", [None, [], ["energy"]])

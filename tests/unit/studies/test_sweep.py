@@ -343,6 +343,26 @@ def test_a_case_is_found_by_what_is_known_of_it(tmp_path, monkeypatch):
     assert alone.simulate().peak_rotation == made.peak_rotation[0, 0, 0]
 
 
+def test_a_history_that_no_scene_of_a_sweep_has_is_told():
+    asked = {"scale": [0.5, 1.0], "duration": "0.1 s", "accuracy": "fast"}
+    with pytest.warns(ModelWarning, match="outputs names 'slip', which no scene of the cases has"):
+        runs = rf.sweep(SYSTEM, PULSE, outputs=["slip", "rotation"], **asked)
+    assert runs.rotation.dims == ("scale", "motion", "time")
+    with pytest.raises(StudyError, match="a sweep keeps histories over time alone, and at points"):
+        rf.sweep(SYSTEM, PULSE, outputs=["body_rotation"], **asked)
+
+
+def test_further_rounds_of_an_analysis_leave_the_records_of_sweeps_at_hand(monkeypatch):
+    monkeypatch.setattr(of_cases, "_REMEMBERED", 2)
+    pulse = np.sin(np.linspace(0.0, 2.0 * np.pi, 51))
+    record, rigid = rf.GroundMotion.from_arrays((pulse, "m/s^2"), "0.02 s"), rf.System(BLOCK)
+    runs = rf.sweep(rigid, record, **FAST)
+    analysis = rf.incremental_dynamic_analysis(rigid, record, scale=[1.0, 20.0], **FAST)
+    assert analysis.capacity_scale.max() < 20.0  # found in further rounds
+    assert rf.case(runs).motion.sha256 == record.sha256
+    assert rf.case(analysis, scale=20.0).motion.sha256 == record.scaled(20.0).sha256
+
+
 def test_a_case_may_be_picked_from_a_part_of_a_sweep():
     motions = {"one": PULSE, "two": PULSE.scaled(1.5), "three": PULSE.scaled(2.0)}
     table = {"width": ["0.7 m", "0.8 m", "0.9 m"]}

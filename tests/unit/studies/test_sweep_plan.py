@@ -308,6 +308,14 @@ REFUSED = [
         ON_PADS, PULSE, {"scale": np.arange(1, 9999.0), "outputs": (), "output_step": "1 us"},
         ["histories of 1000001 times", "TB", "are available", "or keep none: outputs=None"],
     ),
+    (
+        rf.System(BLOCK, rf.Load(at=("0 m", "3 m"), vertical="1 kN")), PULSE, {"at": ["1 m"]},
+        ["axis 'at' is neither a number nor a word; give a function"],
+    ),
+    (
+        rf.System(rf.RockingFrame(BLOCK, columns=2, beam_mass="1 t")), PULSE, {"column": [BLOCK]},
+        ["axis 'column' is neither a number nor a word"],
+    ),
     (lambda width: None, PULSE, {"height": ["1 m"]}, ["do not fit the arguments of <lambda>"]),
     (lambda width: None, PULSE, {"width": ["1 K"]}, ["width has the unit 'K'"]),
     (lambda width: None, PULSE, {"width": [1.0, "a"]}, ["width needs values of one sort"]),

@@ -73,9 +73,10 @@ def test_it_can_be_read_while_it_runs(tmp_path):
 def test_a_case_comes_from_the_folder_alone(whole, monkeypatch):
     folder, runs = whole
     monkeypatch.setattr(of_cases, "_studies", type(of_cases._studies)())
-    found = rf.case(folder, scale=SCALES[17], height="3.6 m", motion="noise")
-    assert found.motion.sha256 == RECORD.scaled(SCALES[17]).sha256
-    assert found.simulate().peak_rotation.item() == runs.peak_rotation[17, 1, 0].item()
+    for place in (folder, runs):  # a sweep knows the folder in which it was kept
+        found = rf.case(place, scale=SCALES[17], height="3.6 m", motion="noise")
+        assert found.motion.sha256 == RECORD.scaled(SCALES[17]).sha256
+        assert found.simulate().peak_rotation.item() == runs.peak_rotation[17, 1, 0].item()
 
 
 def test_motions_with_a_vertical_component_are_kept_however_they_were_made(tmp_path, monkeypatch):
