@@ -149,8 +149,8 @@ class Setting(ABC):
     def without_small_motion(self) -> str:
         """Say why there are no such equations."""
         return (
-            "a block on rigid ground has no small motion: it stands still or rocks, with a "
-            "period that grows with the amplitude; put it on pads or soil"
+            "rigid ground has no small motion: a body stands still on it or rocks, with a "
+            "period that grows with the amplitude; a block on pads or soil has one"
         )
 
     @abstractmethod
