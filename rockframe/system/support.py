@@ -14,8 +14,7 @@ from rockframe.components import TwoSpringSupport, WinklerSoil
 from rockframe.components.bases import Separation
 from rockframe.dynamics.base_numbers import BaseNumbers, bed_numbers, pads_numbers
 from rockframe.dynamics.body import Body
-from rockframe.dynamics.equilibrium import of_base
-from rockframe.dynamics.standing import Stand, standing_body, uplift_rotation
+from rockframe.dynamics.standing import Stand, of_base, standing_body, uplift_rotation
 from rockframe.dynamics.statics import StandingChain
 from rockframe.many import sqrt
 from rockframe.system.bodies import (
