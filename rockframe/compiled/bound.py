@@ -106,8 +106,6 @@ class Bound:
 
     def __init__(self, source: Source, bundle: Any) -> None:
         self.source = source
-        if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):  # in one of its own
-            bundle = type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
         self._bundle = bundle
 
     def call(self, *arguments: Any) -> Any:
@@ -118,8 +116,13 @@ class Bound:
 def bound(
     functions: tuple[Callable[..., Any], ...], bundle: Any, *, seldom: bool = False
 ) -> tuple[Bound, ...]:
-    """Bind functions to the tuple that is their first argument; say if they are called seldom."""
+    """Bind functions to the tuple that is their first argument; say if they are called seldom.
+
+    They share a copy of an array with which it may end.
+    """
     structure = structure_of(bundle)
+    if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):
+        bundle = type(bundle)(*bundle[:-1], bundle[-1].copy())  # type: ignore[call-arg]
     return tuple(Bound(_source(one, structure, False, seldom), bundle) for one in functions)
 
 

@@ -165,9 +165,8 @@ class Job:
     @cached_property
     def calls(self) -> set[Any]:
         """All marked functions that are compiled for it."""
-        return called_by(
-            self.function, classes_of_structure(self.structure) if self.bound else set()
-        )
+        structure = self.structure if self.bound else ("arguments", *self.structure)
+        return called_by(self.function, classes_of_structure(structure))
 
     @property
     def seconds(self) -> float:

@@ -173,6 +173,15 @@ class EquationsWithPowers(Equations, Protocol):
         ...
 
 
+class CalledBySteps:
+    """Equations so long that steps call them; others are compiled into the loop of steps.
+
+    So that several kinds of them share that loop. They give powers. A mixin of named tuples.
+    """
+
+    __slots__ = ()
+
+
 class OnRigidGround:
     """What systems of one body on rigid ground answer alike. A mixin of named tuples."""
 

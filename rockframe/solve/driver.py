@@ -108,20 +108,6 @@ def span_of(h: float, progress: Progress) -> Span:
     )  # fmt: skip
 
 
-@inlined
-def make_steps(
-    equations: BoundEquations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
-    steps: StepTable, w: Workspace,
-) -> int:  # fmt: skip
-    """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
-    mode, count, contact, longest = known
-    return equations.march.call(
-        mode, count, int(contact == FLIGHT), longest, trial, pieces.x, pieces.y,
-        w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground, progress.controls,
-        progress.clock, progress.counters, steps.values, steps.codes, equations.numbers,
-    )  # fmt: skip
-
-
 @kernel
 def step_to_event(
     equations: BoundEquations, known: KnownMode, whole: float, tolerance: Vector, pieces: Pieces,
@@ -181,12 +167,12 @@ def correct_crossing(
     begins_positive = above > noise or w.before[rates + crossed] > 0.0
     has_root = h > 0.0 and begins_positive
     if has_root and negative < 1.0:
-        make_steps(equations, known, high, pieces, progress, steps, w)
+        equations.make_steps(known, high, pieces, progress, steps, w)
         below = w.after[crossed]
         has_root = below < 0.0
     for correction in range(1 + MOST_POLISHING):
         if h > 0.0:
-            make_steps(equations, known, h, pieces, progress, steps, w)
+            equations.make_steps(known, h, pieces, progress, steps, w)
         else:
             stand_still(w)
         guard, fall = w.after[crossed], w.after[rates + crossed]
@@ -322,7 +308,7 @@ def run_on(
         row = counters[at.OUTPUTS]  # that is stored at the end of a step
         more = row < len(output.mode)
         clock[at.NEXT_OUTPUT] = (row - ON_SAMPLE) * controls[at.OUTPUT_STEP] if more else math.inf
-        happened = make_steps(equations, known, 0.0, pieces, progress, steps, w)
+        happened = equations.make_steps(known, 0.0, pieces, progress, steps, w)
         if counters[at.HALF] != half:
             half = 1 - half
             w = swapped(w)

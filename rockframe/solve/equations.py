@@ -1,7 +1,8 @@
 """A system's equations as the integrator calls them: functions of arrays, of fixed types.
 
 So one integrator, compiled once, serves every system: it knows these functions by their
-addresses, and the system's numbers as a vector.
+addresses, and the system's numbers as a vector. Steps have most equations compiled into their
+loop. Those that take long to compile and to evaluate, which a call hardly delays, they call.
 """
 
 import math
@@ -15,16 +16,28 @@ from rockframe.compiled import (
     inlined,
     kernel,
     numbers_in,
+    part_of,
     put,
 )
-from rockframe.dynamics.protocol import Equations, Ground
+from rockframe.dynamics.events import FLIGHT
+from rockframe.dynamics.protocol import (
+    CalledBySteps,
+    Equations,
+    EquationsWithPowers,
+    Ground,
+    Slope,
+)
 from rockframe.solve.accuracy import STABLE
 from rockframe.solve.march import (
+    Scheme,
     guards_at,
+    march,
     march_by_tolerance,
     march_fixed,
     march_fixed_by_rates,
 )
+from rockframe.solve.schemes import FixedStepsByRates, StepsByTolerance
+from rockframe.solve.workspace import Pieces, Progress, StepTable, Workspace
 
 
 @kernel
@@ -67,6 +80,29 @@ def observed(
     put(system.observe(mode, state, slope, Ground(ground_x, ground_y), memory), 0, out)
 
 
+@kernel
+def powered(
+    system: EquationsWithPowers, mode: int, state: Vector, ground_x: float, ground_y: float,
+    out: Vector,
+) -> None:  # fmt: skip
+    """Write the powers at the rates of a state into the slope that was found at its place."""
+    powers = system.coordinates() + system.variables()
+    found = system.powers(mode, state, out, Ground(ground_x, ground_y))
+    out[powers], out[powers + 1] = found
+
+
+class KnownMode(NamedTuple):
+    """A mode, and what it means for steps: asked for when it begins, and kept as long as it lasts.
+
+    The contact state is that of the body that the scene is about.
+    """
+
+    mode: int
+    moving: int  # leading coordinates that move
+    contact: int  # rockframe.dynamics.events.ContactState
+    longest: float  # stable fixed step, where that is not for vibrations [s]
+
+
 class BoundEquations(NamedTuple):
     """A system, bound: its functions, its numbers, and how many there are of everything.
 
@@ -74,7 +110,7 @@ class BoundEquations(NamedTuple):
     events only is compiled when it is worth it.
     """
 
-    march: Bound
+    stepping: Bound  # what steps call: the march, with the equations in it
     slope: Bound
     observing: Bound
     switching: Bound
@@ -86,27 +122,151 @@ class BoundEquations(NamedTuple):
     variable_count: int
     guard_count: int
 
+    @inlined
+    def make_steps(
+        self, known: KnownMode, trial: float, pieces: Pieces, progress: Progress, steps: StepTable,
+        w: Workspace,
+    ) -> int:  # fmt: skip
+        """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
+        mode, count, contact, longest = known
+        return self.stepping.call(
+            mode, count, int(contact == FLIGHT), longest, trial, pieces.x, pieces.y,
+            w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground, progress.controls,
+            progress.clock, progress.counters, steps.values, steps.codes, self.numbers,
+        )  # fmt: skip
+
+
+class CalledEquations(BoundEquations):
+    """A system whose equations steps call."""
+
+    __slots__ = ()
+
+    @inlined
+    def step_by(
+        self, scheme: Scheme, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
+        steps: StepTable, w: Workspace,
+    ) -> int:  # fmt: skip
+        """Make steps in some way."""
+        return march(
+            scheme, Called(self), known.mode, known.moving, int(known.contact == FLIGHT), trial,
+            pieces.x, pieces.y, w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground,
+            progress.controls, progress.clock, progress.counters, steps.values, steps.codes,
+        )  # fmt: skip
+
+
+class CalledByTolerance(CalledEquations):
+    """The same in steps by a tolerance: `stepping` is the slope."""
+
+    __slots__ = ()
+
+    @kernel
+    def make_steps(
+        self, known: KnownMode, trial: float, pieces: Pieces, progress: Progress, steps: StepTable,
+        w: Workspace,
+    ) -> int:  # fmt: skip
+        """Make steps until something happens, or try one."""
+        scheme = StepsByTolerance(math.inf)
+        return self.step_by(scheme, known, trial, pieces, progress, steps, w)
+
+
+class CalledInFixedSteps(CalledEquations):
+    """The same in steps of fixed length: `stepping` writes powers into a slope."""
+
+    __slots__ = ()
+
+    @kernel
+    def make_steps(
+        self, known: KnownMode, trial: float, pieces: Pieces, progress: Progress, steps: StepTable,
+        w: Workspace,
+    ) -> int:  # fmt: skip
+        """Make steps until something happens, or try one."""
+        scheme = FixedStepsByRates(known.longest)
+        return self.step_by(scheme, known, trial, pieces, progress, steps, w)
+
+
+class Called(NamedTuple):
+    """Equations that steps call."""
+
+    equations: BoundEquations
+
+    @inlined
+    def coordinates(self) -> int:
+        """Give the number of coordinates."""
+        return self.equations.coordinate_count
+
+    @inlined
+    def variables(self) -> int:
+        """Give the number of variables of first order."""
+        return self.equations.variable_count
+
+    @inlined
+    def guards(self) -> int:
+        """Give the number of guards."""
+        return self.equations.guard_count
+
+    @inlined
+    def write_slope(
+        self, mode: int, state: Vector, ground: Ground, first: int, out: Vector
+    ) -> None:
+        """Write accelerations, rates of variables and powers, from an index on."""
+        one = self.equations
+        one.slope.call(mode, state, ground.x, ground.y, part_of(out, first), one.numbers)
+
+    @inlined
+    def write_guards(
+        self, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector, out: Vector
+    ) -> None:
+        """Write guards, then their rates."""
+        one = self.equations
+        one.guarding.call(mode, state, slope, ground.x, ground.y, limits, out, one.numbers)
+
+    @inlined
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Write the powers at the rates of a state into a slope, and give them."""
+        one = self.equations
+        powers = one.coordinate_count + one.variable_count
+        one.stepping.call(mode, state, ground.x, ground.y, slope, one.numbers)
+        return slope[powers], slope[powers + 1]
+
 
 def gives_powers(system: Equations) -> bool:
     """Whether equations are :class:`rockframe.dynamics.protocol.EquationsWithPowers`."""
     return hasattr(system, "powers")
 
 
+def is_called(system: Equations) -> bool:
+    """Whether steps call the equations, which then give powers, too."""
+    return isinstance(system, CalledBySteps)
+
+
 def equations_of(
     system: Equations, *, fixed_steps: bool, with_work: bool = False
 ) -> BoundEquations:
     """Bind a system's equations for the integrator; work at outputs is found from many slopes."""
-    march = march_by_tolerance
-    if fixed_steps:
-        march = march_fixed_by_rates if gives_powers(system) else march_fixed
-    moving, observing = bound((march, observed), system)
-    (sloping,) = bound((slope,), system, seldom=not (fixed_steps or with_work))
-    at_events = bound((switched, guards_at, energies, meaning), system, seldom=True)
-    return BoundEquations(
-        moving,
+    kind: type[BoundEquations] = BoundEquations
+    if is_called(system):
+        kind = CalledInFixedSteps if fixed_steps else CalledByTolerance
+        sloping, guarding, observing, *powering = bound(
+            (slope, guards_at, observed, *([powered] if fixed_steps else [])), system
+        )
+        (stepping,) = powering or [sloping]
+        switching, *rest = bound((switched, energies, meaning), system, seldom=True)
+    else:
+        steps = march_by_tolerance
+        if fixed_steps:
+            steps = march_fixed_by_rates if gives_powers(system) else march_fixed
+        stepping, observing = bound((steps, observed), system)
+        (sloping,) = bound((slope,), system, seldom=not (fixed_steps or with_work))
+        switching, guarding, *rest = bound(
+            (switched, guards_at, energies, meaning), system, seldom=True
+        )
+    return kind(
+        stepping,
         sloping,
         observing,
-        *at_events,  # type: ignore[call-arg]
+        switching,
+        guarding,
+        *rest,  # type: ignore[call-arg]
         numbers=numbers_in(system),
         coordinate_count=system.coordinates(),
         variable_count=system.variables(),
@@ -133,19 +293,7 @@ def call_nothing_back(equations: BoundEquations) -> None:
 
 def steps_as_machine_code(equations: BoundEquations) -> bool:
     """Whether what each step calls is there as machine code."""
-    return bool(equations.march.source.address)
-
-
-class KnownMode(NamedTuple):
-    """A mode, and what it means for steps: asked for when it begins, and kept as long as it lasts.
-
-    The contact state is that of the body that the scene is about.
-    """
-
-    mode: int
-    moving: int  # leading coordinates that move
-    contact: int  # rockframe.dynamics.events.ContactState
-    longest: float  # stable fixed step, where that is not for vibrations [s]
+    return bool(equations.stepping.source.address)
 
 
 @inlined

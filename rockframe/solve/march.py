@@ -5,12 +5,14 @@ the driver calls it by its address, and sees to all that is not a quiet step.
 """
 
 import math
-from typing import Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of, put
-from rockframe.dynamics.protocol import POWERS, Equations, Ground, Guards
+from rockframe.dynamics.protocol import POWERS, Equations, Ground, Guards, Slope
 from rockframe.solve import workspace as at
 from rockframe.solve.schemes import (
+    Counted,
+    Evaluated,
     FixedSteps,
     FixedStepsByRates,
     StepsByTolerance,
@@ -75,6 +77,46 @@ def put_guards(
     out[2 * last + 1] = rate if left else -rate
 
 
+class CompiledIn(NamedTuple):
+    """Equations that are compiled into the loop of steps."""
+
+    system: Any
+
+    @inlined
+    def coordinates(self) -> int:
+        """Give the number of coordinates."""
+        return self.system.coordinates()
+
+    @inlined
+    def variables(self) -> int:
+        """Give the number of variables of first order."""
+        return self.system.variables()
+
+    @inlined
+    def guards(self) -> int:
+        """Give the number of guards."""
+        return self.system.guards()
+
+    @inlined
+    def write_slope(
+        self, mode: int, state: Vector, ground: Ground, first: int, out: Vector
+    ) -> None:
+        """Write accelerations, rates of variables and powers, from an index on."""
+        put(self.system.accelerate(mode, state, ground), first, out)
+
+    @inlined
+    def write_guards(
+        self, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector, out: Vector
+    ) -> None:
+        """Write guards, then their rates, see :func:`guards_at`."""
+        guards_at(self.system, mode, state, slope, ground.x, ground.y, limits, out)
+
+    @inlined
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the powers at the rates of a state, of equations that give them."""
+        return self.system.powers(mode, state, slope, ground)
+
+
 @inlined
 def may_dip(start: float, change: float, end: float, end_change: float) -> bool:
     """Whether a guard with these rates, by its step, is negative at its end or may be inside it.
@@ -88,7 +130,7 @@ def may_dip(start: float, change: float, end: float, end_change: float) -> bool:
 
 
 @inlined
-def may_fall(system: Equations, h: float, before: Vector, after: Vector) -> bool:
+def may_fall(system: Counted, h: float, before: Vector, after: Vector) -> bool:
     """Whether some guard is negative after a step, or may have dipped below zero inside it."""
     found, guards = False, system.guards() + 1
     for i in range(guards):
@@ -199,7 +241,7 @@ def interval_length(index: int, intervals: int, controls: Vector) -> float:
 
 @inlined
 def march(
-    scheme: Scheme, system: Equations, mode: int, count: int, flies: int, trial: float,
+    scheme: Scheme, system: Evaluated, mode: int, count: int, flies: int, trial: float,
     pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
     counters: Integers, kept: Vector, codes: Integers,
@@ -210,7 +252,7 @@ def march(
     ----------
     scheme : Scheme
         Way to step.
-    system : Equations
+    system : Evaluated
         The equations.
     mode, count, flies : int
         Contact mode, how many leading coordinates move in it, and whether it is flight.
@@ -282,7 +324,7 @@ def march(
             system, mode, count, span, ground, state, first, new, last, stages, works
         )
         now = ground_in(1.0, span, ground)
-        guards_at(system, mode, new, last, now.x, now.y, limits, after)
+        system.write_guards(mode, new, last, now, limits, after)
         if trial > 0.0:
             return TRIED
         scale = max(clock[at.LARGEST_TERM], clock[at.DISSIPATED], abs(clock[at.SUPPLIED]))
@@ -343,8 +385,9 @@ def march_fixed(
 ) -> int:  # fmt: skip
     """Make steps of fixed length, see :func:`march`."""
     return march(
-        FixedSteps(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends, stages,
-        works, reference, limits, ground, controls, clock, counters, kept, codes,
+        FixedSteps(longest), CompiledIn(system), mode, count, flies, trial, pieces_x,
+        pieces_y, ends, stages, works, reference, limits, ground, controls, clock, counters, kept,
+        codes,
     )  # fmt: skip
 
 
@@ -357,8 +400,9 @@ def march_fixed_by_rates(
 ) -> int:  # fmt: skip
     """Make such steps, of equations that give powers at any rates; see :func:`march`."""
     return march(
-        FixedStepsByRates(longest), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
-        stages, works, reference, limits, ground, controls, clock, counters, kept, codes,
+        FixedStepsByRates(longest), CompiledIn(system), mode, count, flies, trial, pieces_x,
+        pieces_y, ends, stages, works, reference, limits, ground, controls, clock, counters, kept,
+        codes,
     )  # fmt: skip
 
 
@@ -371,6 +415,7 @@ def march_by_tolerance(
 ) -> int:  # fmt: skip
     """Make steps of the Dormand-Prince pair, see :func:`march`."""
     return march(
-        StepsByTolerance(math.inf), system, mode, count, flies, trial, pieces_x, pieces_y, ends,
-        stages, works, reference, limits, ground, controls, clock, counters, kept, codes,
+        StepsByTolerance(math.inf), CompiledIn(system), mode, count, flies, trial, pieces_x,
+        pieces_y, ends, stages, works, reference, limits, ground, controls, clock, counters, kept,
+        codes,
     )  # fmt: skip

@@ -5,10 +5,10 @@ A step of fixed length takes two evaluations, :eq:`eq-fixed-stages` and :eq:`eq-
 """
 
 import math
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple, Protocol, TypeAlias
 
-from rockframe.compiled import Vector, inlined, kernel, put, table
-from rockframe.dynamics.protocol import POWERS, Equations, Ground
+from rockframe.compiled import Vector, inlined, kernel, table
+from rockframe.dynamics.protocol import POWERS, Ground, Slope
 from rockframe.solve import workspace as at
 from rockframe.solve.workspace import ERRORS, Span, ground_in
 
@@ -38,12 +38,48 @@ ERROR_WEIGHTS: Final = table(
 """Weights of the fifth order less those of the fourth."""
 
 
+class Counted(Protocol):
+    """Equations, as far as it matters how many there are."""
+
+    def coordinates(self) -> int:
+        """Give the number of coordinates."""
+        ...
+
+    def variables(self) -> int:
+        """Give the number of variables of first order."""
+        ...
+
+    def guards(self) -> int:
+        """Give the number of guards."""
+        ...
+
+
+class Evaluated(Counted, Protocol):
+    """Equations as steps evaluate them."""
+
+    def write_slope(
+        self, mode: int, state: Vector, ground: Ground, first: int, out: Vector
+    ) -> None:
+        """Write accelerations, rates of variables and powers, from an index on."""
+        ...
+
+    def write_guards(
+        self, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector, out: Vector
+    ) -> None:
+        """Write guards, then their rates, behind each that of the limits of rotations."""
+        ...
+
+    def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
+        """Give the powers at the rates of a state, at the place of the slope found last."""
+        ...
+
+
 Weights: TypeAlias = Vector | tuple[float, ...]
 """Of the stages before one; of a tuple the number is known when it is compiled."""
 
 
 @inlined
-def begin_stages(system: Equations, state: Vector, first: Vector, stages: Vector) -> None:
+def begin_stages(system: Counted, state: Vector, first: Vector, stages: Vector) -> None:
     """Write the first stage: velocities and slope at the start of a step."""
     size = system.coordinates()
     slope, rates = size + system.variables() + POWERS, STAGES * size
@@ -55,7 +91,7 @@ def begin_stages(system: Equations, state: Vector, first: Vector, stages: Vector
 
 @inlined
 def stage_places(
-    system: Equations, count: int, h: float, weights: Weights, state: Vector, stages: Vector,
+    system: Counted, count: int, h: float, weights: Weights, state: Vector, stages: Vector,
     new: Vector,
 ) -> None:  # fmt: skip
     """Write the coordinates of a stage from the velocities of the stages before."""
@@ -70,7 +106,7 @@ def stage_places(
 
 @inlined
 def stage_rates(
-    system: Equations, count: int, h: float, weights: Weights, state: Vector, stages: Vector,
+    system: Counted, count: int, h: float, weights: Weights, state: Vector, stages: Vector,
     new: Vector,
 ) -> None:  # fmt: skip
     """Write the velocities and variables of a stage from the slopes of the stages before."""
@@ -88,7 +124,7 @@ def stage_rates(
 
 
 @inlined
-def end_works(system: Equations, h: float, stages: Vector, last: Vector, works: Vector) -> None:
+def end_works(system: Counted, h: float, stages: Vector, last: Vector, works: Vector) -> None:
     """Write the slope at the end of a step, and the works in it with their error."""
     size = system.coordinates()
     powers = size + system.variables()
@@ -105,7 +141,7 @@ def end_works(system: Equations, h: float, stages: Vector, last: Vector, works: 
 
 
 @inlined
-def errors_of_places(system: Equations, h: float, stages: Vector, works: Vector) -> None:
+def errors_of_places(system: Counted, h: float, stages: Vector, works: Vector) -> None:
     """Write the errors of the coordinates."""
     size = system.coordinates()
     for i in range(size):
@@ -116,7 +152,7 @@ def errors_of_places(system: Equations, h: float, stages: Vector, works: Vector)
 
 
 @inlined
-def errors_of_rates(system: Equations, h: float, stages: Vector, works: Vector) -> None:
+def errors_of_rates(system: Counted, h: float, stages: Vector, works: Vector) -> None:
     """Write the errors of velocities and variables."""
     size = system.coordinates()
     powers = size + system.variables()
@@ -150,7 +186,7 @@ def next_step(h: float, h_next: float, excess: float) -> float:
 
 @inlined
 def fixed_step(
-    scheme: "FixedSteps", system: Equations, mode: int, count: int, h: float, in_middle: Ground,
+    scheme: "FixedSteps", system: Evaluated, mode: int, count: int, h: float, in_middle: Ground,
     at_end: Ground, state: Vector, first: Vector, new: Vector, last: Vector, stage: Vector,
     works: Vector,
 ) -> bool:  # fmt: skip
@@ -170,7 +206,7 @@ def fixed_step(
         stage[j] = state[j] + own_half * first[i]
     for i in range(size, powers):
         stage[size + i] = state[size + i] + half * first[i]
-    put(system.accelerate(mode, stage, in_middle), 0, last)
+    system.write_slope(mode, stage, in_middle, 0, last)
     lost, put_in = scheme.powers_in_middle(
         system, mode, count, half, state, first, stage, last, in_middle
     )
@@ -188,7 +224,7 @@ def fixed_step(
         z, r1, r2 = state[size + i], first[i], last[i]
         new[size + i] = z + sixth * (r1 + 4.0 * r2)
         stage[size + i] = z + half * (3.0 * r2 - r1)
-    put(system.accelerate(mode, stage, at_end), 0, last)
+    system.write_slope(mode, stage, at_end, 0, last)
     total = 0.0
     for i in range(size):
         new[size + i] += (sixth if i < count else 0.0) * last[i]
@@ -224,7 +260,7 @@ class FixedSteps(NamedTuple):
 
     @inlined
     def powers_in_middle(
-        self, system: Equations, mode: int, count: int, half: float, state: Vector, first: Vector,
+        self, system: Evaluated, mode: int, count: int, half: float, state: Vector, first: Vector,
         stage: Vector, slope: Vector, ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
         """Give the powers dissipated and put in, as the slope of the stage has them."""
@@ -233,7 +269,7 @@ class FixedSteps(NamedTuple):
 
     @inlined
     def powers_at_end(
-        self, system: Equations, mode: int, new: Vector, stage: Vector, slope: Vector,
+        self, system: Evaluated, mode: int, new: Vector, stage: Vector, slope: Vector,
         ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
         """Give the same at the end of the step."""
@@ -242,7 +278,7 @@ class FixedSteps(NamedTuple):
 
     @inlined
     def make_step(
-        self, system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
+        self, system: Evaluated, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
         """Make a step; give whether it has ended in numbers."""
@@ -254,7 +290,7 @@ class FixedSteps(NamedTuple):
 
     @inlined
     def excess_of(
-        self, system: Equations, count: int, done: bool, scale: float, new: Vector, works: Vector,
+        self, system: Counted, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
         """Give 0, or infinity where the step has not ended in numbers."""
@@ -268,7 +304,7 @@ class FixedStepsByRates(FixedSteps):
 
     @inlined
     def powers_in_middle(
-        self, system: Any, mode: int, count: int, half: float, state: Vector,
+        self, system: Evaluated, mode: int, count: int, half: float, state: Vector,
         first: Vector, stage: Vector, slope: Vector, ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
         """Give the powers at the place of the stage and the rates :eq:`eq-fixed-powers`."""
@@ -280,7 +316,7 @@ class FixedStepsByRates(FixedSteps):
 
     @inlined
     def powers_at_end(
-        self, system: Any, mode: int, new: Vector, stage: Vector, slope: Vector,
+        self, system: Evaluated, mode: int, new: Vector, stage: Vector, slope: Vector,
         ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
         """Give the same at the place of the last stage and the rates at the end of the step."""
@@ -297,7 +333,7 @@ class StepsByTolerance(NamedTuple):
 
     @inlined
     def make_step(
-        self, system: Equations, mode: int, count: int, span: Span, ground: Vector, state: Vector,
+        self, system: Evaluated, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
         """Step the first `count` coordinates and all variables of first order.
@@ -315,8 +351,8 @@ class StepsByTolerance(NamedTuple):
             weights = STAGE_WEIGHTS[before : before + s]
             stage_places(system, count, span.h, weights, state, stages, new)
             stage_rates(system, count, span.h, weights, state, stages, new)
-            found = system.accelerate(mode, new, ground_in(NODES[s], span, ground))
-            put(found, STAGES * size + s * slope, stages)
+            now = ground_in(NODES[s], span, ground)
+            system.write_slope(mode, new, now, STAGES * size + s * slope, stages)
         end_works(system, span.h, stages, last, works)
         errors_of_places(system, span.h, stages, works)
         errors_of_rates(system, span.h, stages, works)
@@ -324,7 +360,7 @@ class StepsByTolerance(NamedTuple):
 
     @inlined
     def excess_of(
-        self, system: Equations, count: int, done: bool, scale: float, new: Vector, works: Vector,
+        self, system: Counted, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
         """Give the largest error of a step, of the state or of its works, over the error allowed.

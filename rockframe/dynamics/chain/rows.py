@@ -18,7 +18,7 @@ from rockframe.dynamics.chain.any_base import BASE_NUMBERS, ON_BED, ON_PADS, ON_
 from rockframe.dynamics.on_base import BODY_GUARDS, Mode, OnBase
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
-from rockframe.dynamics.protocol import POWERS
+from rockframe.dynamics.protocol import POWERS, CalledBySteps
 
 # a row: the body's numbers in their order in `Body`, among them
 INERTIA: Final = 3
@@ -136,7 +136,7 @@ class Lists(NamedTuple):
     rows: Vector  # of all bodies; then room to work in
 
 
-class Rows(InState, Lists):
+class Rows(InState, CalledBySteps, Lists):
     """What stands in the lists. A mixin of systems."""
 
     __slots__ = ()

@@ -83,7 +83,7 @@ def equations_in(batch: Batch, row: Vector) -> BoundEquations:
     """Give the equations of a row's system."""
     one, shape = batch.equations, batch.shape
     return BoundEquations(
-        march=one.march, slope=one.slope, observing=one.observing, switching=one.switching,
+        stepping=one.stepping, slope=one.slope, observing=one.observing, switching=one.switching,
         guarding=one.guarding, stored=one.stored, meaning=one.meaning,
         numbers=stretch(row, shape.numbers, shape.number_count),
         coordinate_count=one.coordinate_count, variable_count=one.variable_count,

@@ -24,7 +24,14 @@ from rockframe.solve import workspace as at
 from rockframe.solve.equations import gives_powers
 from rockframe.solve.lanes import fields
 from rockframe.solve.lanes.fields import Places, enter_intervals, evaluate_ground, places_of
-from rockframe.solve.march import SHORTEST, fit_step, may_fall, put_guards, rotation_in_step
+from rockframe.solve.march import (
+    SHORTEST,
+    CompiledIn,
+    fit_step,
+    may_fall,
+    put_guards,
+    rotation_in_step,
+)
 from rockframe.solve.schemes import (
     NODES,
     STAGE_1,
@@ -155,7 +162,7 @@ def make_step(scheme: FixedSteps, system: Equations, room: Vector, lane: int) ->
     mode = system.without_sliding(lane_of(whole, fields.COUNTERS, lane)[at.MODE])
     count = lane_of(whole, fields.OWN_WHOLE, lane)[fields.ACTIVE]
     return fixed_step(
-        scheme, system, mode, count, own[fields.STEP],
+        scheme, CompiledIn(system), mode, count, own[fields.STEP],
         Ground(own[fields.MIDDLE_X], own[fields.MIDDLE_Y]),
         Ground(own[fields.NOW_X], own[fields.NOW_Y]),
         lane_of(room, there.state, lane), lane_of(room, there.first, lane),
