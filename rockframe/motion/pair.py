@@ -265,7 +265,7 @@ class HorizontalPair(metaclass=Proposing):
         # the second axis of the turned pair is that of the second component, turned back
         mirrored = self.first.scaled(-1.0)
         across = self.second.rotated(mirrored, angle)
-        return HorizontalPair(_without_azimuth(along), _without_azimuth(across), self.vertical)
+        return HorizontalPair(along, across, self.vertical)
 
 
 def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
@@ -280,11 +280,6 @@ def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
 
 def _intensity(signal: Signal) -> float:
     return float(arias_history(signal, STANDARD_GRAVITY)[-1])
-
-
-def _without_azimuth(motion: GroundMotion) -> GroundMotion:
-    known: dict[str, Any] = {k: v for k, v in motion.metadata.items() if k != "azimuth"}
-    return GroundMotion(motion.si, name=motion.name, metadata=known, history=motion.history)
 
 
 def _check_alike(first: GroundMotion, other: GroundMotion, name: str, owner: str) -> None:

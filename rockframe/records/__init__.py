@@ -25,7 +25,7 @@ from rockframe.records.components import (
 from rockframe.records.files import PathLike, RecordLike, Unread, files_of, read_source
 from rockframe.records.known_formats import formats, register, unregister
 from rockframe.records.netcdf import LONG_NAMES, is_netcdf, stored_motion
-from rockframe.records.numbers import epoch_seconds, same_start, uniform_step
+from rockframe.records.numbers import epoch_seconds, same_start, time_after, uniform_step
 from rockframe.records.peer import Known, peer_table
 from rockframe.records.read import Reading, read_components, read_record, read_traces, request_of
 from rockframe.records.reader import (
@@ -77,6 +77,7 @@ __all__ = [
     "request_of",
     "same_start",
     "stored_motion",
+    "time_after",
     "uniform_step",
     "unregister",
 ]
