@@ -13,6 +13,7 @@ files of a folder or an archive. What a reader of another format needs is here, 
 :func:`register`.
 """
 
+from rockframe.records.checks import USUAL_TIME_STEPS
 from rockframe.records.components import (
     DOWNWARDS,
     SENSE,
@@ -45,6 +46,7 @@ __all__ = [
     "MAXIMUM_SAMPLES",
     "SENSE",
     "UPWARDS",
+    "USUAL_TIME_STEPS",
     "VERTICAL",
     "Component",
     "FileComponent",

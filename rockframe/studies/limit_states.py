@@ -18,7 +18,7 @@ from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME, unit_behind
 from rockframe.studies.confidence import SHARE
-from rockframe.units import Condition, Measure, Unit, to_ratio, to_si
+from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
 OVERTURNING: Final = "overturning"
@@ -115,7 +115,7 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
     row, least = SCHEMA[name], math.nan
     if value is not None:
         unit = str(row.unit or Unit.ONE)
-        least = read_in_unit(value, unit, "a limit", owner=owner, name=name)
+        least = read_in_unit(value, unit, "a limit", owner=owner, name=name, condition=NOT_NEGATIVE)
     return LimitState(math.nan, name, least, "" if label is None else str(label))
 
 

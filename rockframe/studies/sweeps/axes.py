@@ -16,7 +16,16 @@ from numpy.typing import NDArray
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.units import Measure, Unit, to_ratio, to_si, to_si_values
+from rockframe.units import (
+    Measure,
+    Unit,
+    check_own_unit,
+    own_unit,
+    products,
+    to_ratio,
+    to_si,
+    to_si_values,
+)
 
 OWNER: Final = "sweep"
 
@@ -65,10 +74,12 @@ class Axis:
 
 def numbers_of(given: object, measure: Measure, name: str) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
+    given = _beside_own_unit(given)
     if measure.unit == Unit.ONE:
         if (pair := _with_unit(given)) is not None:
+            check_own_unit(*pair, owner=OWNER, name=name)
             factor = to_ratio(f"1 {pair[1]}", owner=OWNER, name="unit")
-            given = [factor * float(one) for one in items_of(pair[0])]
+            given = products([float(one) for one in items_of(pair[0])], factor)
         found = items_of(_as_python(given))
         if not all(type(one) is float and math.isfinite(one) for one in found):
             example = measure.example
@@ -77,6 +88,12 @@ def numbers_of(given: object, measure: Measure, name: str) -> Generic:
         _refuse_bare(given, measure, name)
         found = to_si_values(_as_python(given), measure, owner=OWNER, name=name)
     return np.array(found, dtype=np.float64)
+
+
+def _beside_own_unit(given: object) -> object:
+    """Give an array with an attribute ``units`` beside it, as values and their unit are given."""
+    own = None if isinstance(given, pint.Quantity | tuple) else own_unit(given)
+    return given if own in (None, "", str(Unit.ONE)) else (given, own)
 
 
 def _refuse_bare(given: object, measure: Measure, name: str) -> None:
@@ -98,6 +115,7 @@ def words_of(given: object, read: Callable[[object], object]) -> Generic:
 
 def free_values(given: object, name: str) -> tuple[Generic, str | None]:
     """Read values for an argument of which only the user knows what it is."""
+    given = _beside_own_unit(given)
     unit = _unit_in(given)
     if unit is not None:
         measure = _measure_of(unit, name)

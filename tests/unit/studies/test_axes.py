@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -124,3 +125,39 @@ def test_a_case_without_its_unit_is_answered_by_one_with_it():
     words = r"got '1' \(no unit\); write for example width='1 m'"
     with pytest.raises(rf.errors.UnitsError, match=words):
         rf.case(runs, width="1")
+
+
+def test_an_array_is_in_the_unit_that_it_tells() -> None:
+    """Of ratios it was left out, and 70 % were 70."""
+    system = rf.System(BLOCK, PADS)
+    percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
+    runs = rf.sweep(system, PULSE, scale=percent, duration="2 s")
+    assert runs.scale.values.tolist() == [0.2, 0.7]
+    runs = rf.sweep(system, PULSE, scale=runs.scale, damping_ratio=percent, duration="2 s")
+    assert runs.damping_ratio.values.tolist() == [0.2, 0.7]
+    widths = xr.DataArray([60.0, 70.0], attrs={"units": "cm"})
+    narrow = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
+    for given in ({"width": widths}, {"cases": {"width": widths}}):
+        assert rf.sweep(narrow, PULSE, **given, duration="2 s").width.values.tolist() == [0.6, 0.7]
+
+    def tower(base: object) -> rf.System:
+        return rf.System(rf.Block(width=base, height="3 m", mass="2 t"))  # pyright: ignore[reportArgumentType]
+
+    assert rf.sweep(tower, PULSE, base=widths, duration="2 s").base.values.tolist() == [0.6, 0.7]
+
+
+def test_seventy_per_cent_is_a_label_of_one_digit() -> None:
+    runs = rf.sweep(rf.System(BLOCK, PADS), PULSE, scale=([20, 70.0], "%"), duration="2 s")
+    assert runs.scale.values.tolist() == [0.2, 0.7]
+
+
+def test_one_array_has_one_unit() -> None:
+    system = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
+    widths = xr.DataArray([60.0, 70.0], attrs={"units": "cm"})
+    percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
+    wrong = "is in '(cm|%)' itself, and '(m|1)' is given beside it"
+    for given in (
+        {"width": (widths, "m")}, {"cases": {"width [m]": widths}}, {"scale": (percent, "1")}
+    ):  # fmt: skip
+        with pytest.raises(StudyError, match=wrong):
+            rf.sweep(system, PULSE, **given, duration="2 s")

@@ -68,6 +68,7 @@ def test_what_is_missing_is_named(runs):
     for wrong, kind, match in (
         (("peak_slip", "5 cm"), SchemaError, "the runs have no 'peak_slip"),
         (("peak_slip", "5 kg"), UnitsError, "peak_slip needs a limit in a unit such as m"),
+        (("peak_rotation", "-1 deg"), ComponentError, "peak_rotation must be zero or more"),
         (
             ("girth", 1),
             ComponentError,

@@ -9,7 +9,13 @@ import xarray as xr
 from unit.suites.downloads import STATIONS, download, packed
 
 import rockframe as rf
-from rockframe.errors import ComponentError, RecordError, SchemaError, UnitsError
+from rockframe.errors import (
+    ComponentError,
+    RecordError,
+    RecordWarning,
+    SchemaError,
+    UnitsError,
+)
 
 SUITE = rf.read_suite(packed(download()))
 PULSES = [rf.GroundMotion.sine_pulse("1 m/s^2", f"{f} Hz") for f in (1, 2, 4)]
@@ -227,3 +233,13 @@ def test_runs_over_a_suite():
         [system.simulate(motion, outputs=None) for motion in SUITE.values()], "motion", list(SUITE)
     )
     assert runs.sizes["motion"] == len(SUITE)
+
+
+def test_a_suite_without_vertical_components_says_that_nothing_shakes_vertically():
+    target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
+    scaled = SUITE.scaled_to(target, bounds=None)
+    with pytest.warns(RecordWarning, match="no motion has a vertical component; set them beside"):
+        scaled.with_verticals()
+    before = SUITE.with_verticals().scaled_to(target, bounds=None)
+    assert before[labels(6)[0]].vertical_acceleration is not None
+    assert before.with_verticals()[labels(6)[0]] == before[labels(6)[0]]
