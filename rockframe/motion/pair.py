@@ -38,7 +38,7 @@ class HorizontalPair(metaclass=Proposing):
     first, second : GroundMotion
         The horizontal components, of the same time step and, where their files tell it, of the
         same start, to a tenth of the time step; the shorter one is taken as padded with zeros.
-        Vertical components in them are not looked at.
+        Vertical components in them stay beside them.
     vertical : GroundMotion, optional
         The vertical component, upwards.
 
@@ -47,6 +47,12 @@ class HorizontalPair(metaclass=Proposing):
     ComponentError
         Not motions, of different time steps or starts, or not at a right angle by their
         azimuths.
+
+    Warns
+    -----
+    RecordWarning
+        One of the two has a vertical component beside it and the other has none, so that only
+        one of them shakes vertically.
 
     Examples
     --------
@@ -82,6 +88,13 @@ class HorizontalPair(metaclass=Proposing):
                     "which are not at a right angle"
                 )
                 raise ComponentError(msg)
+        upwards = [motion.si.vertical is not None for motion in (self.first, self.second)]
+        if self.vertical is None and upwards[0] != upwards[1]:
+            words = (
+                f"{owner}: only the {'first' if upwards[0] else 'second'} component has a vertical "
+                "one beside it; give it as vertical="
+            )
+            warn(words, RecordWarning)
 
     @classmethod
     def read(cls, path: RecordLike, format: str | None = None) -> HorizontalPair:  # noqa: A002

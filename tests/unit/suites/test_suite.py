@@ -243,3 +243,22 @@ def test_a_suite_without_vertical_components_says_that_nothing_shakes_vertically
     before = SUITE.with_verticals().scaled_to(target, bounds=None)
     assert before[labels(6)[0]].vertical_acceleration is not None
     assert before.with_verticals()[labels(6)[0]] == before[labels(6)[0]]
+
+
+def test_a_stored_suite_keeps_its_target():
+    wanted = rf.TargetSpectrum.eurocode_8("0.2 g_0", "B", damping_ratio=0.03)
+    periods = (np.geomspace(0.2, 3.0, 12), "s")
+    scaled = SUITE.scaled_to(wanted.with_deviation(0.3), bounds=None, periods=periods)
+    formula = rf.MotionSuite(PULSES, target=wanted)
+    for suite in (scaled, formula):
+        again = rf.MotionSuite.from_dataset(suite.to_dataset()).target
+        assert (again.name, again.damping_ratio) == (suite.target.name, 0.03)
+        assert again.at(periods) == pytest.approx(suite.target.at(periods), rel=1e-3)
+        assert (
+            again.deviations_at(periods[0]).tolist()
+            == suite.target.deviations_at(periods[0]).tolist()
+        )
+    again = rf.MotionSuite.from_dataset(scaled.to_dataset()).target
+    assert again.limits == pytest.approx((0.2, 3.0))
+    assert again.at(periods) == pytest.approx(scaled.target.at(periods), rel=1e-14)
+    assert rf.MotionSuite.from_dataset(SUITE.to_dataset()).target is None
