@@ -11,6 +11,7 @@ from typing import Any, Final, cast
 
 import numpy as np
 import pint
+import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, UnitsError, shown
@@ -196,6 +197,22 @@ def _as_python(given: Any) -> Any:
         items = cast("list[Any]", given)
         return [one.item() if isinstance(one, np.generic) else one for one in items]
     return given
+
+
+def in_unit(labels: xr.DataArray, unit: str | None) -> xr.DataArray:
+    """Give the labels of an axis in its unit, where a user has put them into another one."""
+    own = labels.attrs.get("units")
+    if unit is None or own in (None, unit):
+        return labels
+    name = str(labels.name)
+    if unit == Unit.ONE:
+        factor = to_ratio(f"1 {own}", owner=OWNER, name=name)
+    else:
+        measure = Measure("a value", Unit(unit), f"1 {unit}")
+        factor = to_si(f"1 {own}", measure, owner=OWNER, name=name)
+    found = np.reshape(products(np.ravel(labels).astype(float).tolist(), factor), labels.shape)
+    attributes = {**labels.attrs, "units": unit}
+    return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)
 
 
 def faults_of_values(name: str, values: Generic) -> list[str]:

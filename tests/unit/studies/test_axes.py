@@ -161,3 +161,33 @@ def test_one_array_has_one_unit() -> None:
     ):  # fmt: skip
         with pytest.raises(StudyError, match=wrong):
             rf.sweep(system, PULSE, **given, duration="2 s")
+
+
+def test_labels_that_were_put_into_another_unit() -> None:
+    """For a figure, say; they were taken for SI units, in which cases and measures are."""
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("1 m/s^2", f"{f} Hz") for f in (1, 2, 3)}
+    size = {"height": ["2 m", "2.4 m"], "PGA": ["3 m/s^2", "6 m/s^2", "12 m/s^2"]}
+    runs = rf.sweep(system, motions, axes=size, free_vibration="3 s")
+    shown = runs.assign_coords(
+        height=("height", runs.height.values * 1e3, {"units": "mm"}),
+        peak_ground_acceleration=(
+            "peak_ground_acceleration", runs.peak_ground_acceleration.values / 9.80665,
+            {"units": "g_0"},
+        ),
+    )  # fmt: skip
+    for part, labels in (
+        (shown, {"height": "2.4 m", "PGA": "6 m/s^2"}),
+        (shown, {"height": 2400, "PGA": 6 / 9.80665}),
+        (shown.isel(height=1, peak_ground_acceleration=1), {}),
+    ):
+        case = rf.case(part, motion="2 Hz", **labels)
+        assert case.system.parts.block.height.m == 2.4
+        assert case.motion is not None
+        assert case.motion.si.peak == pytest.approx(6.0, rel=1e-12)
+    limits = {"limits": [0.3], "pooled": ["height"]}
+    one, other = (rf.fragility(each, "PGV", **limits) for each in (runs, shown))
+    np.testing.assert_allclose(other.median_intensity, one.median_intensity, rtol=1e-9)
+    one, other = (rf.fragility(each, "PGA", **limits) for each in (runs, shown))
+    np.testing.assert_allclose(9.80665 * other.median_intensity, one.median_intensity, rtol=1e-9)
+    assert other.median_intensity.units == "g_0"
