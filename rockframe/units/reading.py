@@ -291,6 +291,9 @@ def check_own_unit(values: object, unit: str, *, owner: str, name: str) -> None:
 
 def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> float:
     """Convert one of several values whose unit is given for all."""
+    if getattr(number, "ndim", None) == 0 and bool(getattr(number, "mask", False)):
+        msg = f"{owner}: {name} has masked values; fill them in first"
+        raise ComponentError(msg)
     if getattr(number, "ndim", None) == 0:
         number = number.item()
     if isinstance(number, str):

@@ -694,3 +694,13 @@ def test_accelerations_and_times_have_one_unit():
     times = xr.DataArray([0.0, 10.0], dims="x", attrs={"units": "ms"})
     with pytest.raises(UnitsError, match="times is in 'ms' itself, and 's' is given"):
         rf.GroundMotion.from_times((times, "s"), array, "0.01 s")
+
+
+def test_a_masked_value_is_not_zero():
+    held = np.ma.array([0.5, 0.7], mask=[False, True])
+    with pytest.raises(ComponentError, match="x has masked values; fill them in first"):
+        to_si_values((held, "m"), LENGTH, owner="one", name="x")
+    assert to_si_values((np.ma.array([0.5, 0.7]), "cm"), LENGTH, owner="one", name="x") == [
+        0.005,
+        0.007,
+    ]

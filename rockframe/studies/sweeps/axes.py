@@ -80,6 +80,9 @@ def numbers_of(given: object, measure: Measure, name: str) -> Generic:
         if (pair := _with_unit(given)) is not None:
             check_own_unit(*pair, owner=OWNER, name=name)
             factor = to_ratio(f"1 {pair[1]}", owner=OWNER, name="unit")
+            if np.ma.isMaskedArray(pair[0]) and np.ma.getmaskarray(pair[0]).any():
+                msg = f"{OWNER}: {name} has masked values; fill them in first"
+                raise ComponentError(msg)
             given = products([float(one) for one in items_of(pair[0])], factor)
         found = items_of(_as_python(given))
         if not all(type(one) is float and math.isfinite(one) for one in found):

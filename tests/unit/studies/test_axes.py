@@ -163,6 +163,15 @@ def test_one_array_has_one_unit() -> None:
             rf.sweep(system, PULSE, **given, duration="2 s")
 
 
+@pytest.mark.parametrize("name", ["width [m]", "scale [%]"])
+def test_masked_columns_are_refused(name: str) -> None:
+    """What is behind the mask took its place."""
+    system = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
+    column = np.ma.array([0.5, 0.6], mask=[False, True])
+    with pytest.raises(StudyError, match="has masked values; fill them in first"):
+        rf.sweep(system, PULSE, cases={name: column}, duration="1 s")
+
+
 def test_labels_that_were_put_into_another_unit() -> None:
     """For a figure, say; they were taken for SI units, in which cases and measures are."""
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
