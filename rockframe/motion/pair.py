@@ -38,7 +38,7 @@ class HorizontalPair(metaclass=Proposing):
     first, second : GroundMotion
         The horizontal components, of the same time step and, where their files tell it, of the
         same start, to a tenth of the time step; the shorter one is taken as padded with zeros.
-        Vertical components in them are not looked at.
+        Vertical components in them stay beside them.
     vertical : GroundMotion, optional
         The vertical component, upwards.
 
@@ -47,6 +47,12 @@ class HorizontalPair(metaclass=Proposing):
     ComponentError
         Not motions, of different time steps or starts, or not at a right angle by their
         azimuths.
+
+    Warns
+    -----
+    RecordWarning
+        One of the two has a vertical component beside it and the other has none, so that only
+        one of them shakes vertically.
 
     Examples
     --------
@@ -82,6 +88,13 @@ class HorizontalPair(metaclass=Proposing):
                     "which are not at a right angle"
                 )
                 raise ComponentError(msg)
+        upwards = [motion.si.vertical is not None for motion in (self.first, self.second)]
+        if self.vertical is None and upwards[0] != upwards[1]:
+            words = (
+                f"{owner}: only the {'first' if upwards[0] else 'second'} component has a vertical "
+                "one beside it; give it as vertical="
+            )
+            warn(words, RecordWarning)
 
     @classmethod
     def read(cls, path: RecordLike, format: str | None = None) -> HorizontalPair:  # noqa: A002
@@ -265,7 +278,7 @@ class HorizontalPair(metaclass=Proposing):
         # the second axis of the turned pair is that of the second component, turned back
         mirrored = self.first.scaled(-1.0)
         across = self.second.rotated(mirrored, angle)
-        return HorizontalPair(_without_azimuth(along), _without_azimuth(across), self.vertical)
+        return HorizontalPair(along, across, self.vertical)
 
 
 def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
@@ -280,11 +293,6 @@ def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
 
 def _intensity(signal: Signal) -> float:
     return float(arias_history(signal, STANDARD_GRAVITY)[-1])
-
-
-def _without_azimuth(motion: GroundMotion) -> GroundMotion:
-    known: dict[str, Any] = {k: v for k, v in motion.metadata.items() if k != "azimuth"}
-    return GroundMotion(motion.si, name=motion.name, metadata=known, history=motion.history)
 
 
 def _check_alike(first: GroundMotion, other: GroundMotion, name: str, owner: str) -> None:

@@ -12,7 +12,15 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.records import acceleration_unit
-from rockframe.units import ACCELERATION, TIME, Measure, Quantity, foreign_quantity, to_si
+from rockframe.units import (
+    ACCELERATION,
+    TIME,
+    Measure,
+    Quantity,
+    check_own_unit,
+    foreign_quantity,
+    to_si,
+)
 
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
@@ -48,6 +56,7 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
         factor = to_si(type(given)(1.0, given.units), ACCELERATION, owner=owner, name=name)
         return _scaled(given.magnitude, factor, owner, name)
     if _has_unit(value):
+        check_own_unit(value[0], value[1], owner=owner, name=name)
         return _scaled(value[0], _unit_factor(value[1], owner, name), owner, name)
     if isinstance(value, str):
         found = f"{shown(value)}, which is one value"
@@ -77,6 +86,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
         factor = to_si(type(given)(1.0, given.units), TIME, owner=owner, name=name)
         values = given.magnitude
     elif _has_unit(value):
+        check_own_unit(value[0], value[1], owner=owner, name=name)
         factor = to_si(f"1 {value[1]}", TIME, owner=owner, name=name)
         values = value[0]
     else:
@@ -138,12 +148,14 @@ def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
 
 def declared_times(value: object) -> Array | None:
     """Give the times that an array carries itself: a time axis, or the index of a Series."""
-    if isinstance(value, xr.DataArray):
-        if value.dims != ("time",) or "time" not in value.coords:
-            return None
-        axis = value["time"]
-        return relative_seconds(axis.values, axis.attrs.get("units", "s"))
     held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
+    if isinstance(held, xr.DataArray):
+        if held.dims != ("time",) or "time" not in held.coords:
+            return None
+        axis = held["time"]
+        whole = axis.dtype.kind in "iu" and "units" in axis.attrs  # without a unit they may count
+        times = axis.values.astype(np.float64) if whole else axis.values
+        return relative_seconds(times, axis.attrs.get("units", "s"))
     if _is_quantity(held):
         held = cast("Any", held).magnitude
     index = getattr(held, "index", None)

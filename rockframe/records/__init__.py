@@ -13,6 +13,7 @@ files of a folder or an archive. What a reader of another format needs is here, 
 :func:`register`.
 """
 
+from rockframe.records.checks import USUAL_TIME_STEPS
 from rockframe.records.components import (
     DOWNWARDS,
     SENSE,
@@ -25,7 +26,7 @@ from rockframe.records.components import (
 from rockframe.records.files import PathLike, RecordLike, Unread, files_of, read_source
 from rockframe.records.known_formats import formats, register, unregister
 from rockframe.records.netcdf import LONG_NAMES, is_netcdf, stored_motion
-from rockframe.records.numbers import epoch_seconds, same_start, uniform_step
+from rockframe.records.numbers import epoch_seconds, same_start, time_after, uniform_step
 from rockframe.records.peer import Known, peer_table
 from rockframe.records.read import Reading, read_components, read_record, read_traces, request_of
 from rockframe.records.reader import (
@@ -45,6 +46,7 @@ __all__ = [
     "MAXIMUM_SAMPLES",
     "SENSE",
     "UPWARDS",
+    "USUAL_TIME_STEPS",
     "VERTICAL",
     "Component",
     "FileComponent",
@@ -77,6 +79,7 @@ __all__ = [
     "request_of",
     "same_start",
     "stored_motion",
+    "time_after",
     "uniform_step",
     "unregister",
 ]

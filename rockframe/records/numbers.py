@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -333,6 +333,16 @@ def epoch_seconds(time: object) -> float | None:
         return None
     zoned = moment if moment.tzinfo is not None else moment.replace(tzinfo=UTC)
     return (zoned - _EPOCH).total_seconds()
+
+
+def time_after(time: object, seconds: float) -> str | None:
+    """Give the time so many seconds after one in ISO 8601; None of another one."""
+    text = str(time).strip()
+    try:
+        moved = datetime.fromisoformat(text) + timedelta(seconds=seconds)
+    except (ValueError, OverflowError):
+        return None
+    return moved.isoformat().replace("+00:00", "Z" if text.endswith("Z") else "+00:00")
 
 
 def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:

@@ -15,6 +15,7 @@ from rockframe.results.schema import SCHEMA, dated, without_fill_values
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import AFTER_END, EVENT, TIME
+from rockframe.units import own_unit
 
 OF_ONE_RUN: Final = frozenset(
     {
@@ -266,7 +267,12 @@ def _labelled(
     if isinstance(labels, str) or not several:
         msg = f"{_OWNER}: labels must be a list of values, one for each run, got {shown(labels)}"
         raise SchemaError(msg)
-    values = labels.to_numpy() if isinstance(labels, xr.DataArray) else np.asarray(list(labels))
+    each = labels.to_numpy() if isinstance(labels, xr.DataArray) else list(labels)
+    if any(own_unit(one) for one in each):
+        example = "xr.DataArray([1, 2], attrs={'units': 'm s^-2'})"
+        msg = f"{_OWNER}: labels with a unit come as {example}, got {shown(labels)}"
+        raise SchemaError(msg)
+    values = np.asarray(each)
     if values.shape != (joined.sizes[dim],):
         found = f"{len(values)} labels" if values.ndim == 1 else f"labels of shape {values.shape}"
         msg = f"{_OWNER}: found {found} for {joined.sizes[dim]} runs along {dim!r}"

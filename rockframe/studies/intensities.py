@@ -17,6 +17,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
+from rockframe.studies.sweeps.axes import in_unit
 from rockframe.studies.sweeps.case import store_of, unscaled_motions
 from rockframe.studies.sweeps.motions import ABBREVIATIONS, SPECTRAL, motion_of_case, named_motions
 from rockframe.units import (
@@ -261,12 +262,13 @@ def of_motions(
 
 def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion]) -> xr.DataArray:
     """Give the factor by which the motion of each case was multiplied."""
-    axes = [one["name"] for one in json.loads(runs.attrs["axes_json"]) if one["changes"] == MOTION]
+    axes = [one for one in json.loads(runs.attrs["axes_json"]) if one["changes"] == MOTION]
     if not axes:
         return xr.DataArray(1.0)
-    (name,) = axes
+    name = axes[0]["name"]
+    labels = in_unit(runs[name], axes[0]["unit"])
     if name == "scale":
-        return runs[name]
+        return labels
 
     def of_unit(motion: GroundMotion) -> float:
         """Give the factor that reaches the unit of the target."""
@@ -274,7 +276,7 @@ def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion]) -> xr.DataAr
         at = int(np.argmax(np.abs(motion.si.horizontal.samples)))
         return abs(float(one.si.horizontal.samples[at] / motion.si.horizontal.samples[at]))
 
-    return runs[name] * of_motions(runs, motions, of_unit)
+    return labels * of_motions(runs, motions, of_unit)
 
 
 _OF_THE_BLOCK: Final = ("overturning_angle", "uplift_acceleration")

@@ -18,7 +18,7 @@ from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME, unit_behind
 from rockframe.studies.confidence import SHARE
-from rockframe.units import Condition, Measure, Unit, to_ratio, to_si
+from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
 OVERTURNING: Final = "overturning"
@@ -29,6 +29,10 @@ _OF_SAMPLES: Final = {"residual_displacement", *(row.name for row in FORCE_SCALA
 }
 """What a run has that was looked at along its steps, as those with histories are."""
 _AT_POINTS: Final = {row.name for row in POINT_PEAKS}
+_UP_TO_OVERTURNING: Final = {
+    name for name in (*_OF_SAMPLES, *_AT_POINTS) if name.startswith("peak_")
+}
+"""What is told of a run up to the overturning angle."""
 _NEEDED: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
 _TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
 """Attributes of a sweep."""
@@ -115,7 +119,7 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
     row, least = SCHEMA[name], math.nan
     if value is not None:
         unit = str(row.unit or Unit.ONE)
-        least = read_in_unit(value, unit, "a limit", owner=owner, name=name)
+        least = read_in_unit(value, unit, "a limit", owner=owner, name=name, condition=NOT_NEGATIVE)
     return LimitState(math.nan, name, least, "" if label is None else str(label))
 
 
@@ -169,7 +173,7 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     overturned = overturns(runs)
     if state.rotation == 1.0:
         return overturned
-    known, fell = runs["peak_relative_rotation"].notnull(), runs["overturned"] == 1
+    known, fell = runs["peak_relative_rotation"].notnull(), _beyond_all(runs, state)
     if state.variable:
         values = scalar_of(runs, state.variable, state.label, owner="limits")
         beyond = values.notnull()
@@ -183,13 +187,23 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     return (beyond | fell).astype(float).where(known)
 
 
+def _beyond_all(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
+    """Tell which runs exceed a limit state whatever its variable is.
+
+    A block that passed the overturning angle and stands in the end has not overturned; but what is
+    told up to overturning says nothing of what followed.
+    """
+    followed = state.variable and state.variable not in _UP_TO_OVERTURNING
+    return (overturns(runs) if followed else runs["overturned"]) == 1
+
+
 def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     """Give the response over its limit, infinite where the block overturned.
 
     From 1 on it exceeds; overturning, where it is infinite. NaN where `exceeds` tells nothing.
     """
     beyond = exceeds(runs, state)
-    fell = beyond if state.rotation == 1.0 else runs["overturned"]
+    fell = beyond if state.rotation == 1.0 else _beyond_all(runs, state)
     if state.variable:
         size = abs(scalar_of(runs, state.variable, state.label, owner="limits")) / state.value
     else:

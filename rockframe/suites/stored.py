@@ -22,6 +22,7 @@ from rockframe.results.schema import build_dataset
 from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import COEFFICIENTS, VERTICAL
 from rockframe.suites.columns import known_columns
+from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
 from rockframe.units import Unit
 
@@ -35,6 +36,10 @@ _TITLE: Final = "Suite of ground motions"
 _EXPECTED: Final = "a suite as MotionSuite.to_dataset().to_netcdf(...) writes it"
 _MOST_NUMBERS: Final = 20_000_000
 _NAME: Final = "motion_name"
+_TARGET: Final = "target"
+_BAND: Final = (0.01, 20.0)
+"""Periods at which a target is kept that has no bounds of its own [s]."""
+_PERIODS: Final = 501
 _TEXTS: Final = {
     "motion_sha256": "digest of time step and samples",
     "metadata": "what is known of the motion, as JSON",
@@ -66,6 +71,7 @@ def suite_dataset(suite: LabelledMotions) -> xr.Dataset:
             "verticals": len(suite.verticals),
             "unread": json.dumps(dict(suite.unread)),
             "remarks": json.dumps(list(suite.remarks)),
+            **({} if suite.target is None else {_TARGET: json.dumps(_table_of(suite.target))}),
         },
         over=(MOTION,),
         title=_TITLE,
@@ -110,17 +116,41 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
         raise SchemaError(msg)
     try:
         motions = _motions(dataset)
-        attributes = {
+        attributes: dict[str, Any] = {
             "verticals": int(dataset.attrs["verticals"]),
             "unread": dict(json.loads(dataset.attrs["unread"])),
             "remarks": tuple(json.loads(dataset.attrs["remarks"])),
         }
+        if _TARGET in dataset.attrs:
+            attributes[_TARGET] = _target_of(_mapping(dataset.attrs[_TARGET]))
     except (KeyError, TypeError, ValueError, ComponentError, AttributeError) as problem:
         if isinstance(problem, SchemaError):
             raise
         msg = f"found a suite that cannot be read ({problem}); expected {_EXPECTED}"
         raise SchemaError(msg) from problem
     return motions, attributes
+
+
+def _table_of(target: TargetSpectrum) -> dict[str, Any]:
+    """Give a target as a table: at its own periods, or at many where it is a formula."""
+    own = getattr(getattr(target.shape, "logarithm", None), "logarithms", None)
+    low, high = np.clip(target.limits, *_BAND)
+    seconds = np.geomspace(low, high, _PERIODS) if own is None else np.exp(np.array(own))
+    values = target.at_seconds(seconds, owner=_TARGET)
+    spread = None if target.deviation is None else target.deviations_at(seconds).tolist()
+    table = {"periods": seconds.tolist(), "accelerations": values.tolist()}
+    return {
+        **table, "standard_deviations": spread, "damping_ratio": target.damping_ratio,
+        "name": target.name,
+    }  # fmt: skip
+
+
+def _target_of(table: Mapping[str, Any]) -> TargetSpectrum:
+    """Read a target from its table."""
+    given = dict(table)
+    periods = given.pop("periods"), str(Unit.SECOND)
+    values = given.pop("accelerations"), str(Unit.METRE_PER_SECOND_SQUARED)
+    return TargetSpectrum.from_table(periods, values, **given)
 
 
 def is_stored_suite(source: "Source") -> bool:

@@ -7,7 +7,7 @@ from typing import Any, Final, Self, cast
 import pandas as pd
 
 from rockframe.arguments import by_names, by_words, function_of, several, truth
-from rockframe.errors import ComponentError, LabelError, nearest, shown
+from rockframe.errors import ComponentError, LabelError, RecordWarning, nearest, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
 from rockframe.proposals import Proposing, proposing
@@ -278,6 +278,12 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         ComponentError
             A vertical component has another time step.
 
+        Warns
+        -----
+        RecordWarning
+            No motion has one, so that nothing shakes vertically: scaling each motion by itself,
+            and matching, leave vertical components out.
+
         Examples
         --------
         >>> import rockframe as rf
@@ -295,6 +301,12 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         for label, motion in self._motions.items():
             upwards = by_record.get(motion.metadata.get("record"))
             motions[label] = motion if upwards is None else motion.with_vertical(upwards)
+        if all(motion.si.vertical is None for motion in motions.values()):
+            words = (
+                f"{type(self).__name__}.with_verticals: no motion has a vertical component; set "
+                "them beside the motions before these are scaled one by one, or matched"
+            )
+            warn(words, RecordWarning)
         return self._with(motions)
 
     def _with(self, motions: Mapping[str, GroundMotion]) -> Self:

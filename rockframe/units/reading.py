@@ -242,6 +242,7 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
         items: list[Any] = list(value)
         alone = isinstance(items[0], str | pint.Quantity | None) if items else True
         if len(items) == 2 and isinstance(items[1], str) and not alone:
+            check_own_unit(items[0], items[1], owner=owner, name=name)
             factor = to_si(f"1 {items[1]}", measure, owner=owner, name=name)
             numbers: Any = items[0]
             single = getattr(numbers, "ndim", 1) == 0 or not isinstance(items[0], Iterable)
@@ -249,9 +250,9 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
                 numbers = [numbers] if single else list(numbers)
             floats: list[Any] = numbers if isinstance(numbers, list) else numbers.tolist()
             if all(type(number) is float for number in floats):
-                products = _products(floats, factor)
-                if all(map(math.isfinite, products)):
-                    return products
+                read = products(floats, factor)
+                if all(map(math.isfinite, read)):
+                    return read
             return [  # of other values, which may be wrong
                 _times(number, factor, items[1], owner=owner, name=name) for number in numbers
             ]
@@ -259,8 +260,40 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
     return [to_si(value, measure, owner=owner, name=name)]
 
 
+def own_unit(values: object) -> str | None:
+    """Give the unit that an array has itself: a Quantity, or one with an attribute ``units``."""
+    held: Any = values
+    for one in (held, getattr(held, "data", None)):
+        if isinstance(one, pint.Quantity):
+            return f"{one.units:~}"
+    unit = (getattr(held, "attrs", None) or {}).get("units")
+    return unit if isinstance(unit, str) else None
+
+
+def check_own_unit(values: object, unit: str, *, owner: str, name: str) -> None:
+    """Refuse an array that has another unit itself than the one that is given beside it."""
+    own = own_unit(values)
+    if own is None or own == unit:
+        return
+    units: Any = pint.get_application_registry()
+    try:  # powers as UDUNITS writes them
+        both = [units.Quantity(1.0, re.sub(r"(?<=[A-Za-z])(?=-?\d)", "^", u)) for u in (own, unit)]
+        same = bool(both[0].is_compatible_with(both[1]) and both[0] == both[1])
+    except Exception:  # whatever pint makes of it
+        same = False
+    if not same:
+        msg = (
+            f"{owner}: {name} is in {own!r} itself, and {unit!r} is given beside it; give bare "
+            "values beside a unit"
+        )
+        raise UnitsError(msg)
+
+
 def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> float:
     """Convert one of several values whose unit is given for all."""
+    if getattr(number, "ndim", None) == 0 and bool(getattr(number, "mask", False)):
+        msg = f"{owner}: {name} has masked values; fill them in first"
+        raise ComponentError(msg)
     if getattr(number, "ndim", None) == 0:
         number = number.item()
     if isinstance(number, str):
@@ -304,7 +337,7 @@ def _product(number: float, factor: float) -> float:
     return float(_EXACT.multiply(Decimal(repr(number)), Decimal(written))) + 0.0
 
 
-def _products(numbers: Sequence[float], factor: float) -> list[float]:
+def products(numbers: Sequence[float], factor: float) -> list[float]:
     """Give the products of many numbers; of a power of ten it moves the point of each."""
     if factor == 1.0:
         return [number + 0.0 for number in numbers]

@@ -9,7 +9,7 @@ from scipy.signal import StateSpace, lsim
 
 import rockframe as rf
 from rockframe.compiled import COMPILED
-from rockframe.errors import ComponentError, RecordError
+from rockframe.errors import ComponentError, RecordError, RecordWarning
 from rockframe.signals import spectra
 
 pytestmark = [
@@ -298,6 +298,17 @@ def test_azimuths_and_starts_must_fit():
         rf.HorizontalPair(told(azimuth=10), told(azimuth=90))
     with pytest.raises(ComponentError, match="first starts at 10:00, second at 10:01"):
         rf.HorizontalPair(told(record_time="10:00"), told(record_time="10:01"))
+
+
+def test_components_of_which_one_alone_shakes_vertically_are_warned_about():
+    one, other, upwards = (noise(seed) for seed in (1, 2, 3))
+    with pytest.warns(RecordWarning, match="only the second component has a vertical one"):
+        rf.HorizontalPair(one, other.with_vertical(upwards))
+    for pair in (
+        rf.HorizontalPair(one.with_vertical(upwards), other, upwards),
+        rf.HorizontalPair(one.with_vertical(upwards), other.with_vertical(upwards)),
+    ):
+        assert all(each.si.vertical is not None for each in pair.components)
 
 
 def test_a_file_without_two_horizontals_is_no_pair():

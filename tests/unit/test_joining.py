@@ -3,6 +3,7 @@
 import itertools
 
 import numpy as np
+import pint
 import pytest
 import xarray as xr
 from plainly import plainly
@@ -158,6 +159,13 @@ def test_motions_that_differ_are_named_along_the_dimension(runs, tmp_path):
         xr.testing.assert_identical(again.load(), grid)
         for name, values in rf.concat([again, again], "case").isel(case=0).data_vars.items():
             xr.testing.assert_identical(values, grid[name])
+
+
+def test_labels_of_quantities_are_refused(runs):
+    labels = pint.get_application_registry().Quantity([3.0, 9.0], "m/s^2")
+    for given in (labels, list(labels)):
+        with pytest.raises(SchemaError, match=r"labels with a unit come as xr\.DataArray"):
+            rf.concat(row(runs, STANDS, FALLS), "amplitude", given)
 
 
 def test_labels_may_have_a_unit(runs):

@@ -53,7 +53,9 @@ def rows_of(path, section):
 
 def test_motions_that_fit_a_target_carry_it(suite):
     seconds = np.geomspace(0.1, 4.0, 40)
-    for one in (suite, suite.only(["record 1"]), suite.sort("station"), suite.with_verticals()):
+    with pytest.warns(RecordWarning, match="no motion has a vertical component"):
+        level = suite.with_verticals()
+    for one in (suite, suite.only(["record 1"]), suite.sort("station"), level):
         assert one.target.name == TARGET.name
         assert one.target.limits == pytest.approx((0.1, 4.0))
         wanted = TARGET.at((seconds, "s"))

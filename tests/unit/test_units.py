@@ -11,9 +11,10 @@ from fractions import Fraction
 import numpy as np
 import pint
 import pytest
+import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import ComponentError, RockframeError
+from rockframe.errors import ComponentError, RockframeError, UnitsError
 from rockframe.units import LENGTH, to_si, to_si_values
 from rockframe.units.shown import reader_units
 
@@ -659,3 +660,47 @@ def test_two_values_of_which_one_is_a_quantity_are_no_number_and_its_unit():
     assert to_si_values((np.array(7.0), "cm"), LENGTH, owner="here", name="width") == [0.07]
     with pytest.raises(rf.errors.UnitsError, match="got None"):
         to_si_values([None, "20 cm"], LENGTH, owner="here", name="width")
+
+
+QUANTITY = pint.get_application_registry().Quantity
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "read"),
+    [
+        (xr.DataArray([50.0, 70.0], attrs={"units": "cm"}), "m", None),
+        (xr.DataArray([50.0, 70.0], attrs={"units": "cm"}), "cm", [0.5, 0.7]),
+        (xr.DataArray([50.0, 70.0], attrs={"units": "cm"}), "centimetre", [0.5, 0.7]),
+        (xr.DataArray([50.0, 70.0], attrs={"units": "whatever"}), "m", None),
+        (xr.DataArray([50.0, 70.0], attrs={"long_name": "width"}), "cm", [0.5, 0.7]),
+        (xr.DataArray(QUANTITY(np.array([50.0, 70.0]), "cm")), "m", None),
+    ],
+)
+def test_a_unit_beside_an_array_that_has_another_is_refused(values, unit, read):
+    if read is None:
+        with pytest.raises(UnitsError, match=r"x is in '\w+' itself, and 'm' is given beside it"):
+            to_si_values((values, unit), LENGTH, owner="one", name="x")
+    else:
+        assert to_si_values((values, unit), LENGTH, owner="one", name="x") == read
+
+
+def test_accelerations_and_times_have_one_unit():
+    array = xr.DataArray([0.0, 1.0], dims="x", attrs={"units": "m s-2"})
+    for given in (array, (array, "m/s^2")):
+        assert rf.GroundMotion.from_arrays(given, "0.01 s").si.peak == 1.0
+    for own in (array, QUANTITY(np.array([0.0, 1.0]), "cm/s^2")):
+        with pytest.raises(UnitsError, match=r"acceleration is in .* itself, and 'g' is given"):
+            rf.GroundMotion.from_arrays((own, "g"), "0.01 s")
+    times = xr.DataArray([0.0, 10.0], dims="x", attrs={"units": "ms"})
+    with pytest.raises(UnitsError, match="times is in 'ms' itself, and 's' is given"):
+        rf.GroundMotion.from_times((times, "s"), array, "0.01 s")
+
+
+def test_a_masked_value_is_not_zero():
+    held = np.ma.array([0.5, 0.7], mask=[False, True])
+    with pytest.raises(ComponentError, match="x has masked values; fill them in first"):
+        to_si_values((held, "m"), LENGTH, owner="one", name="x")
+    assert to_si_values((np.ma.array([0.5, 0.7]), "cm"), LENGTH, owner="one", name="x") == [
+        0.005,
+        0.007,
+    ]

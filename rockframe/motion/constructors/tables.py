@@ -23,6 +23,7 @@ from rockframe.records import (
     DOWNWARDS,
     MAXIMUM_SAMPLES,
     SENSE,
+    USUAL_TIME_STEPS,
     Metadata,
     argument_unit,
     orientation_of,
@@ -205,6 +206,11 @@ def from_frame(
         contradict it or are uneven (see :meth:`from_times`), or samples that are no
         finite numbers.
 
+    Warns
+    -----
+    RecordWarning
+        Times with an unusual step, as those in milliseconds have.
+
     Examples
     --------
     >>> import pandas as pd
@@ -294,6 +300,10 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
     if requested is not None and not np.isclose(requested, step, rtol=_SAME_STEP, atol=0.0):
         msg = f"{owner}: the times have the step {step:.9g} s, but time_step is {requested:.9g} s"
         raise ComponentError(msg)
+    short, long = USUAL_TIME_STEPS
+    if requested is None and not short <= step <= long:
+        words = f"the times have the step {step:.6g} s (usual: {short:g} s to {long:g} s)"
+        warn(f"{owner}: {words}; are they in seconds?", RecordWarning)
     return step
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, cast
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning, warn
-from rockframe.motion.operations.following import following, other_motion
+from rockframe.motion.operations.following import following, other_motion, say_other_start
 from rockframe.motion.operations.scaling import times
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.value import Made, MotionValue
@@ -51,7 +51,8 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     Warns
     -----
     RecordWarning
-        The file of `other` does not say whether it is positive upwards or downwards.
+        The file of `other` does not say whether it is positive upwards or downwards; or the
+        files tell of other starts.
 
     Examples
     --------
@@ -69,9 +70,10 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
         of_it = {key: None for key in motion.metadata if key.startswith("vertical_")}
         return following(
             motion, Motion(si.horizontal, None), "vertical component left out",
-            operation={"with_vertical": {"other": None}}, metadata=of_it,
+            operation={"with_vertical": {"other": None}}, metadata=of_it, same_spectrum=True,
         )  # fmt: skip
     theirs = other_motion(other, si, owner).si
+    say_other_start(motion, other, owner)
     count = max(len(motion), len(other))
     upwards = replace(padded(theirs.horizontal, count), time_step=si.time_step, name=VERTICAL)
     verb = "vertical component" if si.vertical is None else "vertical component replaced:"
@@ -96,7 +98,9 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
         added[f"vertical_{SENSE}"] = UPWARDS
     known = None if other.recipe is None else dict(other.recipe)
     operation = None if known is None else {"with_vertical": {"other": known}}
-    return following(motion, result, *steps, operation=operation, metadata=added)
+    return following(
+        motion, result, *steps, operation=operation, metadata=added, same_spectrum=True
+    )
 
 
 @hinted()
@@ -134,6 +138,11 @@ def rotated(
         step; an azimuth that a component lacks, or components that are not at a right
         angle.
 
+    Warns
+    -----
+    RecordWarning
+        The files of both tell of other starts.
+
     Notes
     -----
     ``a cos(angle) + a_other sin(angle)``.
@@ -150,13 +159,19 @@ def rotated(
     if (angle is None) == (azimuth is None):
         msg = f"{owner}: give either angle or azimuth, for example angle='30 deg'"
         raise ComponentError(msg)
-    metadata: dict[str, str | float] = {}
+    say_other_start(motion, other, owner)
+    own, clockwise = _azimuths(motion, other, owner)
+    metadata: dict[str, str | float | None] = {}
     if azimuth is None:
         turn = to_si(cast("QuantityLike", angle), ANGLE, owner=owner, name="angle")
+        target = math.radians(own) + clockwise * turn
     else:
         target = to_si(azimuth, ANGLE, owner=owner, name="azimuth")
-        turn = _turn_to(motion, target, other, owner)
-        metadata["azimuth"] = math.degrees(target) % 360.0
+        if math.isnan(own):
+            msg = f"{owner}: the metadata of both components must tell their azimuth; give angle"
+            raise ComponentError(msg)
+        turn = clockwise * (target - math.radians(own))
+    metadata["azimuth"] = None if math.isnan(own) else math.degrees(target) % 360.0
     count = max(len(motion), len(other))
     mine, partner = padded(si.horizontal, count), padded(theirs.horizontal, count)
     along, across = _direction(turn)
@@ -184,17 +199,20 @@ def rotated(
     return following(motion, result, *steps, operation=operation, metadata=metadata)
 
 
-def _turn_to(motion: MotionValue, target: float, other: MotionValue, owner: str) -> float:
+def _azimuths(motion: MotionValue, other: MotionValue, owner: str) -> tuple[float, float]:
+    """Give the azimuth [degrees], and 1 where the other component is clockwise from it, else -1.
+
+    NaN where a component does not tell its own.
+    """
     known = [one.metadata.get("azimuth") for one in (motion, other)]
-    degrees = [value for value in known if isinstance(value, int | float)]
+    degrees = [float(value) for value in known if isinstance(value, int | float)]
     if len(degrees) < len(known):
-        msg = f"{owner}: the metadata of both components must tell their azimuth; give angle"
-        raise ComponentError(msg)
+        return math.nan, 1.0
     own, theirs = degrees
     apart = (theirs - own) % 360.0
     for right, sign in ((90.0, 1.0), (270.0, -1.0)):
         if abs(apart - right) <= _RIGHT_ANGLE_TOLERANCE:
-            return sign * (target - math.radians(own))
+            return own, sign
     msg = f"{owner}: azimuths of {own:.6g} and {theirs:.6g} degrees are not at a right angle"
     raise ComponentError(msg)
 

@@ -7,7 +7,12 @@ from typing import Final
 
 from rockframe.arguments import one_of_words, truth, whole_number
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.following import following, lost_pieces, with_samples
+from rockframe.motion.operations.following import (
+    following,
+    lost_pieces,
+    starting_later,
+    with_samples,
+)
 from rockframe.motion.processing.samples import (
     butterworth,
     padding_samples,
@@ -141,7 +146,8 @@ def filtered(
     operation = {
         "filtered": {**named, "order": order, "causal": causal, "keep_padding": keep_padding}
     }
-    return following(motion, result, step, *lost_pieces(si), operation=operation)
+    start = starting_later(motion, -before * si.time_step if keep_padding else 0.0)
+    return following(motion, result, step, *lost_pieces(si), operation=operation, metadata=start)
 
 
 @hinted()

@@ -6,8 +6,9 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, RecordWarning, warn
 from rockframe.motion.value import MotionValue
+from rockframe.records import same_start, time_after
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -19,6 +20,13 @@ if TYPE_CHECKING:
 SAME_STEP: Final = 1e-9
 """Relative difference up to which two time steps are the same."""
 
+_OF_ITS_SPECTRUM: Final = (
+    "spectral_misfit", "largest_spectral_misfit", "mean_spectral_misfit", "target_reached",
+)  # fmt: skip
+"""Metadata that tell how far a spectrum is from its target, and of no other spectrum."""
+
+_START: Final = "record_time"
+
 _DROPPED: Final = "the analytic pieces between samples are replaced by straight lines"
 
 
@@ -28,13 +36,16 @@ def following(
     *steps: str,
     operation: Mapping[str, Any] | None = None,
     metadata: Mapping[str, Any] | None = None,
+    same_spectrum: bool = False,
 ) -> Made:
     """Give the motion that an operation leads to; metadata that are None are left out."""
     recipe = None
     if motion.recipe is not None and operation is not None:
         done = [*motion.recipe.get("operations", ()), dict(operation)]
         recipe = {**motion.recipe, "operations": done}
-    told = {**motion.metadata, **(metadata or {})}
+    lost = () if same_spectrum else _OF_ITS_SPECTRUM
+    told: dict[str, Any] = {k: value for k, value in motion.metadata.items() if k not in lost}
+    told |= metadata or {}
     return type(motion)(
         si,
         name=motion.name,
@@ -74,3 +85,20 @@ def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
         )
         raise ComponentError(msg)
     return other
+
+
+def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | None]:
+    """Give the times of the first sample, where they are known, after one that is so much later."""
+    known = [key for key in (_START, f"vertical_{_START}") if key in motion.metadata]
+    return {key: time_after(motion.metadata[key], seconds) for key in known if seconds != 0.0}
+
+
+def say_other_start(motion: MotionValue, other: MotionValue, owner: str) -> None:
+    """Warn of a motion beside another one that its file says was recorded at another time."""
+    starts = motion.metadata.get(_START), other.metadata.get(_START)
+    if not same_start(*starts, motion.si.time_step):
+        words = (
+            f"{owner}: {motion.name} starts at {starts[0]}, {other.name} at {starts[1]}; their "
+            "first samples are set beside one another: cut both with window() to one start"
+        )
+        warn(words, RecordWarning)

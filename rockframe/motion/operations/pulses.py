@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.following import following, lost_pieces
+from rockframe.motion.operations.following import following, lost_pieces, starting_later
 from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.quantities import with_quantity
 from rockframe.motion.value import Made
@@ -99,6 +99,7 @@ def velocity_pulse(
         f"{len(wavelets)} Daubechies wavelets (Baker 2007)",
     )
     residual = Motion.of_samples(dt, rest - pulse, upwards)
+    start = starting_later(motion, -before * dt)
     return VelocityPulse(
         period=with_quantity(place.period, TIME),
         time=with_quantity(place.sample * dt, TIME),
@@ -108,8 +109,10 @@ def velocity_pulse(
         indicator=found.indicator,
         pulse_start=with_quantity(found.pulse_start, TIME),
         motion_start=with_quantity(found.motion_start, TIME),
-        extracted=following(motion, Motion.of_samples(dt, pulse), *steps, "the pulse alone"),
-        residual=following(motion, residual, *steps, "the pulse taken out"),
+        extracted=following(
+            motion, Motion.of_samples(dt, pulse), *steps, "the pulse alone", metadata=start
+        ),
+        residual=following(motion, residual, *steps, "the pulse taken out", metadata=start),
         lead=with_quantity(before * dt, TIME),
     )
 

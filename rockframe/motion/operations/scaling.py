@@ -159,12 +159,20 @@ def times(signal: Signal, ratio: float) -> Signal:
 
 
 def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
-    added: dict[str, str] = {}
-    sense = motion.metadata.get(SENSE)
+    added: dict[str, str | float] = {}
+    sense, azimuth = motion.metadata.get(SENSE), motion.metadata.get("azimuth")
     if ratio < 0.0 and sense in _OPPOSITE:  # mirrored: what was positive upwards is so downwards
         added[SENSE] = _OPPOSITE[str(sense)]
-    result = multiplied(motion.si, ratio)
-    return following(motion, result, step, operation={"scaled": given}, metadata=added)
+    if ratio < 0.0 and isinstance(azimuth, int | float):  # and what was so to the north, southwards
+        added["azimuth"] = (azimuth + 180.0) % 360.0
+    for name in ("scale_factor", "vertical_scale_factor"):
+        factor = motion.metadata.get(name)
+        if isinstance(factor, int | float):
+            added[name] = factor * ratio
+    return following(
+        motion, multiplied(motion.si, ratio), step, operation={"scaled": given}, metadata=added,
+        same_spectrum=abs(ratio) == 1.0,
+    )  # fmt: skip
 
 
 def _pseudo_acceleration(across: Signal, seconds: float, damping: float, owner: str) -> float:

@@ -13,6 +13,7 @@ from rockframe.motion.operations.following import (
     SAME_STEP,
     following,
     lost_pieces,
+    starting_later,
     with_samples,
 )
 from rockframe.motion.processing.samples import (
@@ -123,7 +124,8 @@ def window(
         given["taper"] = f"{length!r} {TIME.unit}"
         steps += [f"tapered over {length!r} s at both ends, half a cosine", *lost_pieces(si)]
         part = with_samples(part, lambda signal: tapered(signal.samples, length / si.time_step))
-    return following(motion, part, *steps, operation={"window": given})
+    told = starting_later(motion, first * si.time_step)
+    return following(motion, part, *steps, operation={"window": given}, metadata=told)
 
 
 def _between(signal: Signal, first: int, final: int) -> Signal:
@@ -185,7 +187,7 @@ def resampled(
     operation = {"resampled": given}
     if math.isclose(step, si.time_step, rel_tol=SAME_STEP):
         same = f"resampled to {step!r} s: the time step that it had"
-        return following(motion, si, same, operation=operation)
+        return following(motion, si, same, operation=operation, same_spectrum=True)
     finer = step < si.time_step
 
     def anew(signal: Signal) -> Array:
@@ -209,4 +211,6 @@ def resampled(
     rest = si.duration - result.duration
     if rest > _SNAP * step:
         steps.append(f"the last {rest:.6g} s, less than one new time step, are left out")
-    return following(motion, result, *steps, *lost_pieces(si), operation=operation)
+    return following(
+        motion, result, *steps, *lost_pieces(si), operation=operation, same_spectrum=True
+    )

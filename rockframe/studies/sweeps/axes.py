@@ -11,12 +11,22 @@ from typing import Any, Final, cast
 
 import numpy as np
 import pint
+import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
-from rockframe.units import Measure, Unit, to_ratio, to_si, to_si_values
+from rockframe.units import (
+    Measure,
+    Unit,
+    check_own_unit,
+    own_unit,
+    products,
+    to_ratio,
+    to_si,
+    to_si_values,
+)
 
 OWNER: Final = "sweep"
 
@@ -65,10 +75,15 @@ class Axis:
 
 def numbers_of(given: object, measure: Measure, name: str) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
+    given = _beside_own_unit(given)
     if measure.unit == Unit.ONE:
         if (pair := _with_unit(given)) is not None:
+            check_own_unit(*pair, owner=OWNER, name=name)
             factor = to_ratio(f"1 {pair[1]}", owner=OWNER, name="unit")
-            given = [factor * float(one) for one in items_of(pair[0])]
+            if np.ma.isMaskedArray(pair[0]) and np.ma.getmaskarray(pair[0]).any():
+                msg = f"{OWNER}: {name} has masked values; fill them in first"
+                raise ComponentError(msg)
+            given = products([float(one) for one in items_of(pair[0])], factor)
         found = items_of(_as_python(given))
         if not all(type(one) is float and math.isfinite(one) for one in found):
             example = measure.example
@@ -77,6 +92,12 @@ def numbers_of(given: object, measure: Measure, name: str) -> Generic:
         _refuse_bare(given, measure, name)
         found = to_si_values(_as_python(given), measure, owner=OWNER, name=name)
     return np.array(found, dtype=np.float64)
+
+
+def _beside_own_unit(given: object) -> object:
+    """Give an array with an attribute ``units`` beside it, as values and their unit are given."""
+    own = None if isinstance(given, pint.Quantity | tuple) else own_unit(given)
+    return given if own in (None, "", str(Unit.ONE)) else (given, own)
 
 
 def _refuse_bare(given: object, measure: Measure, name: str) -> None:
@@ -98,6 +119,7 @@ def words_of(given: object, read: Callable[[object], object]) -> Generic:
 
 def free_values(given: object, name: str) -> tuple[Generic, str | None]:
     """Read values for an argument of which only the user knows what it is."""
+    given = _beside_own_unit(given)
     unit = _unit_in(given)
     if unit is not None:
         measure = _measure_of(unit, name)
@@ -178,6 +200,22 @@ def _as_python(given: Any) -> Any:
         items = cast("list[Any]", given)
         return [one.item() if isinstance(one, np.generic) else one for one in items]
     return given
+
+
+def in_unit(labels: xr.DataArray, unit: str | None) -> xr.DataArray:
+    """Give the labels of an axis in its unit, where a user has put them into another one."""
+    own = labels.attrs.get("units")
+    if unit is None or own in (None, unit):
+        return labels
+    name = str(labels.name)
+    if unit == Unit.ONE:
+        factor = to_ratio(f"1 {own}", owner=OWNER, name=name)
+    else:
+        measure = Measure("a value", Unit(unit), f"1 {unit}")
+        factor = to_si(f"1 {own}", measure, owner=OWNER, name=name)
+    found = np.reshape(products(np.ravel(labels).astype(float).tolist(), factor), labels.shape)
+    attributes = {**labels.attrs, "units": unit}
+    return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)
 
 
 def faults_of_values(name: str, values: Generic) -> list[str]:

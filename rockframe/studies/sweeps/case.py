@@ -21,7 +21,7 @@ from rockframe.proposals import hinted, proposing
 from rockframe.results.variables.studies import MOTION, REPEATED
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import LEVELS, Accuracy
-from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes
+from rockframe.studies.sweeps.axes import OF_SCENES, Axis, Changes, in_unit
 from rockframe.studies.sweeps.chunk import AGAIN
 from rockframe.studies.sweeps.motions import full_name, motion_number, motion_of_case, named_motions
 from rockframe.studies.sweeps.scenes import FunctionScene, SweptScene, SystemScene, scene_of
@@ -143,10 +143,12 @@ def case(
         )
         raise SchemaError(msg)
     full = {name if name in dataset.dims else full_name(name): one for name, one in labels.items()}
-    place = _place(dataset, full)
+    axes = json.loads(attributes["axes_json"])
+    units = {axis["name"]: axis["unit"] for axis in axes}
+    place = _place(dataset, full, units)
     values: dict[Axis, Any] = {}
-    for described in json.loads(attributes["axes_json"]):
-        value = _value(dataset, described["name"], place)
+    for described in axes:
+        value = _value(dataset, described["name"], place, described["unit"])
         values[Axis.from_dict(described, np.array([value]))] = value
     name = _value(dataset, MOTION, place)
     motion = unscaled_motions(attributes, [name], motions, kept)[name]
@@ -182,7 +184,9 @@ def remember(study: Study) -> None:
         _studies.popitem(last=False)
 
 
-def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
+def _place(
+    dataset: xr.Dataset, labels: dict[str, Any], units: Mapping[str, str | None]
+) -> dict[str, int]:
     """Find where the case stands along each dimension."""
     dims = [str(dim) for dim in dataset["status"].dims]
     fixed = [str(name) for name in dataset.coords if not dataset[name].dims]
@@ -196,26 +200,31 @@ def _place(dataset: xr.Dataset, labels: dict[str, Any]) -> dict[str, int]:
     if faults:
         msg = f"{_OWNER}: {'; '.join(faults)}"
         raise StudyError(msg)
-    found = {name: _position_of(dataset[name], name, value) for name, value in labels.items()}
+    found = {
+        name: _position_of(dataset[name], name, value, units.get(name))
+        for name, value in labels.items()
+    }
     return {name: found.get(name, 0) for name in dims}
 
 
-def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
+def _position_of(labels: xr.DataArray, name: str, wanted: Any, unit: str | None) -> int:
     values = np.atleast_1d(labels.to_numpy())
     if name == MOTION:
         return motion_number(wanted, values.tolist(), owner=_OWNER)
     near = ""
     if values.dtype.kind == "f":
-        unit = Unit(labels.attrs["units"])
         if isinstance(wanted, int | float | np.number):
             number = math.inf
             with suppress(OverflowError):  # of a whole number larger than any float
                 number = float(wanted)
-        elif unit == Unit.ONE:
-            number = to_ratio(wanted, owner=_OWNER, name=name)
         else:
-            measure = Measure("a value", unit, f"{values[0]:g} {unit}")
-            number = to_si(wanted, measure, owner=_OWNER, name=name)
+            own = Unit(labels.attrs["units"] if unit is None else unit)
+            values = np.atleast_1d(in_unit(labels, own).to_numpy())
+            if own == Unit.ONE:
+                number = to_ratio(wanted, owner=_OWNER, name=name)
+            else:
+                measure = Measure("a value", own, f"{values[0]:g} {own}")
+                number = to_si(wanted, measure, owner=_OWNER, name=name)
         nearest = int(np.argmin(np.abs(values - number)))
         if np.isclose(values[nearest], number, rtol=1e-9, atol=0.0):
             return nearest
@@ -231,12 +240,14 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any) -> int:
     raise StudyError(msg)
 
 
-def _value(dataset: xr.Dataset, name: str, place: Mapping[str, int]) -> Any:
+def _value(
+    dataset: xr.Dataset, name: str, place: Mapping[str, int], unit: str | None = None
+) -> Any:
     """Give the value of a coordinate in the case, also of one that has been picked out."""
     if name not in dataset.coords:
         msg = f"{_OWNER}: found a sweep without its coordinate {name!r}; expected it, or its case"
         raise SchemaError(msg)
-    return _value_of(dataset[name], place)
+    return _value_of(in_unit(dataset[name], unit), place)
 
 
 def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:

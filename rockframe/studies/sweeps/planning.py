@@ -51,7 +51,7 @@ from rockframe.studies.sweeps.scenes import (
 from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.system.alone import AloneSetting
 from rockframe.system.assembly import Assembly
-from rockframe.units import PERIOD, POSITIVE, QuantityLike, to_si
+from rockframe.units import PERIOD, POSITIVE, QuantityLike, own_unit, to_si
 
 _FLOAT: Final = 8.0
 """Size of a number [bytes]."""
@@ -312,7 +312,8 @@ def _table(cases: object) -> dict[str, object]:
         if name in table:
             msg = f"column {name!r} is given twice in cases"
             raise StudyError(msg)
-        table[name] = (np.asarray(values), unit.removesuffix("]")) if bracket else values
+        plain = values if own_unit(values) else np.asanyarray(values)  # masks stay
+        table[name] = (plain, unit.removesuffix("]")) if bracket else values
     return table
 
 

@@ -42,13 +42,19 @@ class TestTimesOfAnArray:
 
     @pytest.mark.parametrize(
         ("axis", "attributes"),
-        [(TIMES, {}), (1e3 * TIMES, {"units": "ms"}), (DATES.values, {})],
+        [
+            (TIMES, {}),
+            (1e3 * TIMES, {"units": "ms"}),
+            (10 * np.arange(COUNT), {"units": "ms"}),
+            (DATES.values, {}),
+        ],
     )
     def test_a_time_axis_of_any_kind(self, axis, attributes):
         array = xr.DataArray(VALUES, {"time": ("time", axis, attributes)}, attrs={"units": "m/s^2"})
-        assert len(GroundMotion.from_arrays(array, "0.01 s")) == COUNT
-        with pytest.raises(ComponentError, match=r"has the step 0\.01 s"):
-            GroundMotion.from_arrays(array, "0.02 s")
+        for given in (array, (array, "m/s^2")):
+            assert len(GroundMotion.from_arrays(given, "0.01 s")) == COUNT
+            with pytest.raises(ComponentError, match=r"has the step 0\.01 s"):
+                GroundMotion.from_arrays(given, "0.02 s")
 
 
 class TestFromTimes:
@@ -131,6 +137,15 @@ class TestFromFrame:
         motion = GroundMotion.from_frame(FRAME, "gal", "N", "DWN", time="t")
         np.testing.assert_allclose(motion.si.vertical.samples, -0.03 * VALUES, rtol=1e-14)
         assert motion.history[-1] == "component DWN turned over: positive upwards"
+
+    @pytest.mark.parametrize("factor", [1e3, 1e-3])
+    def test_times_that_are_hardly_in_seconds_are_warned_about(self, factor):
+        frame = pd.DataFrame({"t": factor * TIMES, "acc": VALUES})
+        with pytest.warns(RecordWarning, match=r"are they in seconds\?"):
+            GroundMotion.from_frame(frame, "gal", "acc", time="t")
+        meant = f"{factor * STEP!r} s"
+        motion = GroundMotion.from_frame(frame, "gal", "acc", time="t", time_step=meant)
+        assert motion.si.time_step == pytest.approx(factor * STEP)
 
     def test_times_in_the_index_or_a_time_step(self):
         only = pd.DataFrame({"acc": VALUES}, index=TIMES)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import StudyError
@@ -124,3 +125,78 @@ def test_a_case_without_its_unit_is_answered_by_one_with_it():
     words = r"got '1' \(no unit\); write for example width='1 m'"
     with pytest.raises(rf.errors.UnitsError, match=words):
         rf.case(runs, width="1")
+
+
+def test_an_array_is_in_the_unit_that_it_tells() -> None:
+    """Of ratios it was left out, and 70 % were 70."""
+    system = rf.System(BLOCK, PADS)
+    percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
+    runs = rf.sweep(system, PULSE, scale=percent, duration="2 s")
+    assert runs.scale.values.tolist() == [0.2, 0.7]
+    runs = rf.sweep(system, PULSE, scale=runs.scale, damping_ratio=percent, duration="2 s")
+    assert runs.damping_ratio.values.tolist() == [0.2, 0.7]
+    widths = xr.DataArray([60.0, 70.0], attrs={"units": "cm"})
+    narrow = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
+    for given in ({"width": widths}, {"cases": {"width": widths}}):
+        assert rf.sweep(narrow, PULSE, **given, duration="2 s").width.values.tolist() == [0.6, 0.7]
+
+    def tower(base: object) -> rf.System:
+        return rf.System(rf.Block(width=base, height="3 m", mass="2 t"))  # pyright: ignore[reportArgumentType]
+
+    assert rf.sweep(tower, PULSE, base=widths, duration="2 s").base.values.tolist() == [0.6, 0.7]
+
+
+def test_seventy_per_cent_is_a_label_of_one_digit() -> None:
+    runs = rf.sweep(rf.System(BLOCK, PADS), PULSE, scale=([20, 70.0], "%"), duration="2 s")
+    assert runs.scale.values.tolist() == [0.2, 0.7]
+
+
+def test_one_array_has_one_unit() -> None:
+    system = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
+    widths = xr.DataArray([60.0, 70.0], attrs={"units": "cm"})
+    percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
+    wrong = "is in '(cm|%)' itself, and '(m|1)' is given beside it"
+    for given in (
+        {"width": (widths, "m")}, {"cases": {"width [m]": widths}}, {"scale": (percent, "1")}
+    ):  # fmt: skip
+        with pytest.raises(StudyError, match=wrong):
+            rf.sweep(system, PULSE, **given, duration="2 s")
+
+
+@pytest.mark.parametrize("name", ["width [m]", "scale [%]"])
+def test_masked_columns_are_refused(name: str) -> None:
+    """What is behind the mask took its place."""
+    system = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
+    column = np.ma.array([0.5, 0.6], mask=[False, True])
+    with pytest.raises(StudyError, match="has masked values; fill them in first"):
+        rf.sweep(system, PULSE, cases={name: column}, duration="1 s")
+
+
+def test_labels_that_were_put_into_another_unit() -> None:
+    """For a figure, say; they were taken for SI units, in which cases and measures are."""
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    motions = {f"{f} Hz": rf.GroundMotion.sine_pulse("1 m/s^2", f"{f} Hz") for f in (1, 2, 3)}
+    size = {"height": ["2 m", "2.4 m"], "PGA": ["3 m/s^2", "6 m/s^2", "12 m/s^2"]}
+    runs = rf.sweep(system, motions, axes=size, free_vibration="3 s")
+    shown = runs.assign_coords(
+        height=("height", runs.height.values * 1e3, {"units": "mm"}),
+        peak_ground_acceleration=(
+            "peak_ground_acceleration", runs.peak_ground_acceleration.values / 9.80665,
+            {"units": "g_0"},
+        ),
+    )  # fmt: skip
+    for part, labels in (
+        (shown, {"height": "2.4 m", "PGA": "6 m/s^2"}),
+        (shown, {"height": 2400, "PGA": 6 / 9.80665}),
+        (shown.isel(height=1, peak_ground_acceleration=1), {}),
+    ):
+        case = rf.case(part, motion="2 Hz", **labels)
+        assert case.system.parts.block.height.m == 2.4
+        assert case.motion is not None
+        assert case.motion.si.peak == pytest.approx(6.0, rel=1e-12)
+    limits = {"limits": [0.3], "pooled": ["height"]}
+    one, other = (rf.fragility(each, "PGV", **limits) for each in (runs, shown))
+    np.testing.assert_allclose(other.median_intensity, one.median_intensity, rtol=1e-9)
+    one, other = (rf.fragility(each, "PGA", **limits) for each in (runs, shown))
+    np.testing.assert_allclose(9.80665 * other.median_intensity, one.median_intensity, rtol=1e-9)
+    assert other.median_intensity.units == "g_0"

@@ -6,6 +6,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, UnitsError
+from rockframe.studies.limit_states import demands, exceeds, limit_states
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 SUITE = [rf.GroundMotion.stochastic(6.5, "10 km", seed=k) for k in range(6)]
@@ -68,6 +69,7 @@ def test_what_is_missing_is_named(runs):
     for wrong, kind, match in (
         (("peak_slip", "5 cm"), SchemaError, "the runs have no 'peak_slip"),
         (("peak_slip", "5 kg"), UnitsError, "peak_slip needs a limit in a unit such as m"),
+        (("peak_rotation", "-1 deg"), ComponentError, "peak_rotation must be zero or more"),
         (
             ("girth", 1),
             ComponentError,
@@ -166,3 +168,28 @@ def test_a_dynamic_analysis_narrows_limit_states_at_points():
     assert narrowed >= 2
     curves = rf.fragility(found, trials="capacities")
     assert curves.sizes["limit_state"] == 3
+
+
+def test_a_block_that_comes_back_from_beyond_the_angle_exceeds_what_it_reached():
+    """It has not overturned; but peaks that are told up to the angle say nothing of the rest."""
+    walled = rf.System(BLOCK, rf.RearWall(side="left", restitution=-0.3))
+    pulse = rf.GroundMotion.sine_pulse("-6 m/s^2", "1 Hz")
+    found = rf.sweep(
+        walled, pulse, scale=[1.0], overturning="continue", free_vibration="8 s",
+        points={"top": ("0 m", "2 m")}, **HOW,
+    )  # fmt: skip
+    assert (found.overturned == 1).all()
+    assert found.verdict == "Of 1 case of the sweep 0 overturned and 1 did not."
+    count = int(found.impact_count.item())
+    for limit, exceeded in (
+        (("impact_count", count), 1.0),
+        (("impact_count", count + 1), 0.0),
+        (("peak_rotation", "30 deg"), 0.0),
+        (("peak_point_horizontal_acceleration", "1e6 m/s^2"), 1.0),
+        (0.5, 1.0),
+        ("overturning", 0.0),
+    ):
+        state = limit_states([limit], owner="one")[0]
+        assert exceeds(found, state).item() == exceeded
+        least = np.inf if limit == "overturning" else 1.0
+        assert (demands(found, state).item() >= least) == bool(exceeded)

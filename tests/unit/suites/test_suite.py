@@ -9,7 +9,13 @@ import xarray as xr
 from unit.suites.downloads import STATIONS, download, packed
 
 import rockframe as rf
-from rockframe.errors import ComponentError, RecordError, SchemaError, UnitsError
+from rockframe.errors import (
+    ComponentError,
+    RecordError,
+    RecordWarning,
+    SchemaError,
+    UnitsError,
+)
 
 SUITE = rf.read_suite(packed(download()))
 PULSES = [rf.GroundMotion.sine_pulse("1 m/s^2", f"{f} Hz") for f in (1, 2, 4)]
@@ -227,3 +233,32 @@ def test_runs_over_a_suite():
         [system.simulate(motion, outputs=None) for motion in SUITE.values()], "motion", list(SUITE)
     )
     assert runs.sizes["motion"] == len(SUITE)
+
+
+def test_a_suite_without_vertical_components_says_that_nothing_shakes_vertically():
+    target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
+    scaled = SUITE.scaled_to(target, bounds=None)
+    with pytest.warns(RecordWarning, match="no motion has a vertical component; set them beside"):
+        scaled.with_verticals()
+    before = SUITE.with_verticals().scaled_to(target, bounds=None)
+    assert before[labels(6)[0]].vertical_acceleration is not None
+    assert before.with_verticals()[labels(6)[0]] == before[labels(6)[0]]
+
+
+def test_a_stored_suite_keeps_its_target():
+    wanted = rf.TargetSpectrum.eurocode_8("0.2 g_0", "B", damping_ratio=0.03)
+    periods = (np.geomspace(0.2, 3.0, 12), "s")
+    scaled = SUITE.scaled_to(wanted.with_deviation(0.3), bounds=None, periods=periods)
+    formula = rf.MotionSuite(PULSES, target=wanted)
+    for suite in (scaled, formula):
+        again = rf.MotionSuite.from_dataset(suite.to_dataset()).target
+        assert (again.name, again.damping_ratio) == (suite.target.name, 0.03)
+        assert again.at(periods) == pytest.approx(suite.target.at(periods), rel=1e-3)
+        assert (
+            again.deviations_at(periods[0]).tolist()
+            == suite.target.deviations_at(periods[0]).tolist()
+        )
+    again = rf.MotionSuite.from_dataset(scaled.to_dataset()).target
+    assert again.limits == pytest.approx((0.2, 3.0))
+    assert again.at(periods) == pytest.approx(scaled.target.at(periods), rel=1e-14)
+    assert rf.MotionSuite.from_dataset(SUITE.to_dataset()).target is None

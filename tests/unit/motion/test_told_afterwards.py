@@ -1,0 +1,117 @@
+"""What the metadata of a motion tell holds after each operation: azimuth, start, misfit."""
+
+import numpy as np
+import pytest
+
+import rockframe as rf
+from rockframe.errors import ComponentError, RecordWarning
+from rockframe.motion import GroundMotion
+
+RNG = np.random.default_rng(7)
+NORTH, EAST = RNG.normal(size=(2, 400)) * np.sin(np.pi * np.arange(400) / 399.0)
+STEP = 0.01
+START = "2020-02-03T04:05:06"
+
+
+def motion(values, name="one", **metadata):
+    made = GroundMotion.from_arrays((values, "m/s^2"), f"{STEP} s")
+    return GroundMotion(made.si, name=name, metadata=metadata)
+
+
+@pytest.mark.parametrize(("own", "theirs", "sign"), [(0, 90, 1), (90, 0, -1), (360, 270, -1)])
+def test_the_azimuth_of_a_turned_component(own, theirs, sign):
+    one, other = motion(NORTH, azimuth=own), motion(EAST, azimuth=theirs)
+    turned = one.rotated(other, "30 deg")
+    assert turned.metadata["azimuth"] == pytest.approx((own + sign * 30.0) % 360.0)
+    axes = rf.HorizontalPair(one, other).in_axes("30 deg")
+    found = [each.metadata["azimuth"] for each in (axes.first, axes.second)]
+    assert found == pytest.approx([(each + sign * 30.0) % 360.0 for each in (own, theirs)])
+    back = axes.rotated(azimuth=f"{own} deg").si.horizontal.samples
+    assert back == pytest.approx(NORTH, abs=1e-13)
+
+
+def test_an_azimuth_that_cannot_be_known_is_left_out():
+    assert "azimuth" not in motion(NORTH, azimuth=0).rotated(motion(EAST), "30 deg").metadata
+
+
+def test_components_that_are_not_at_a_right_angle_are_not_turned_by_an_angle_either():
+    with pytest.raises(ComponentError, match="are not at a right angle"):
+        motion(NORTH, azimuth=0).rotated(motion(EAST, azimuth=45), "30 deg")
+
+
+def test_a_mirrored_component_points_the_other_way():
+    southwards = motion(NORTH, azimuth=0).scaled(-2)
+    assert southwards.metadata["azimuth"] == 180.0
+    pair = rf.HorizontalPair(southwards, motion(EAST, azimuth=90))
+    north_east = pair.rotated(azimuth="45 deg").si.horizontal.samples
+    assert north_east == pytest.approx((2.0 * NORTH + EAST) / np.sqrt(2.0), abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("start", "later"),
+    [
+        (START, "2020-02-03T04:05:07.500000"),
+        ("2020-02-03T04:05:06.000Z", "2020-02-03T04:05:07.500000Z"),
+        ("2020-02-03T04:05:06+00:00", "2020-02-03T04:05:07.500000+00:00"),
+        ("2020/02/03 04:05:06 (GMT+08)", None),
+    ],
+)
+def test_a_window_starts_later(start, later):
+    whole = motion(NORTH, record_time=start, vertical_record_time=start)
+    part = whole.window("1.5 s", "3 s")
+    assert part.metadata.get("record_time") == later
+    assert part.metadata.get("vertical_record_time") == later
+    assert whole.window(None, "3 s").metadata["record_time"] == start
+
+
+def test_a_window_and_the_whole_make_no_pair():
+    one, other = motion(NORTH, record_time=START), motion(EAST, record_time=START)
+    with pytest.raises(ComponentError, match="first starts at 2020-02-03T04:05:08, second at"):
+        rf.HorizontalPair(one.window("2 s"), other)
+    assert rf.HorizontalPair(one.window("2 s"), other.window("2 s")).first.duration.m == 1.99
+
+
+def test_padding_that_is_kept_starts_earlier():
+    filtered = motion(NORTH, record_time=START).filtered(low="2 Hz", keep_padding=True)
+    assert len(filtered) == 400 + 2 * 300
+    assert filtered.metadata["record_time"] == "2020-02-03T04:05:03"
+    cut = motion(NORTH, record_time=START).filtered(low="2 Hz")
+    assert cut.metadata["record_time"] == START
+
+
+def test_the_motions_of_a_velocity_pulse_start_as_much_earlier_as_they_are_longer():
+    pulse = GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
+    record = GroundMotion(pulse.si, metadata={"record_time": START})
+    found = record.velocity_pulse()
+    lead = np.timedelta64(round(found.lead.m_as("us")), "us")
+    assert lead > np.timedelta64(0, "us")
+    for each in (found.extracted, found.residual):
+        assert np.datetime64(START) - np.datetime64(each.metadata["record_time"]) == lead
+
+
+def test_other_starts_are_warned_about():
+    one, other = motion(NORTH, "a", record_time=START), motion(EAST, "b", record_time=START)
+    for joined in (one.with_vertical, lambda late: one.rotated(late, "10 deg")):
+        joined(other)
+        with pytest.warns(RecordWarning, match=r"a starts at .*:06, b at .*:07; their first"):
+            joined(other.window("1 s"))
+
+
+def test_scaling_and_misfit():
+    target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
+    scaled = rf.MotionSuite({"a": motion(NORTH)}).scaled_to(target, bounds=None)["a"]
+    factor = scaled.metadata["scale_factor"]
+    doubled = scaled.scaled(-2)
+    assert doubled.metadata["scale_factor"] == pytest.approx(-2.0 * factor)
+    assert doubled.si.horizontal.samples == pytest.approx(-2.0 * factor * NORTH)
+    assert "spectral_misfit" not in doubled.metadata
+    for changed in (
+        scaled.filtered(low="1 Hz"),
+        scaled.window("1 s"),
+        scaled.baseline_corrected(),
+        scaled.through_storeys(periods=["0.5 s"], time_step="0.01 s"),
+    ):
+        assert "spectral_misfit" not in changed.metadata
+        assert changed.metadata["scale_factor"] == factor
+    for same in (scaled.scaled(-1), scaled.resampled("0.005 s"), scaled.with_vertical(scaled)):
+        assert same.metadata["spectral_misfit"] == scaled.metadata["spectral_misfit"]
