@@ -42,6 +42,23 @@ SCENES = {
     "fast, coupled": (MOTION, (PADS, CAP, SOIL), {"accuracy": "fast"}),
     "fast, cascade": (MOTION, (PADS, CAP, SOIL), {"coupling": "cascade", "accuracy": "fast"}),
 }  # fmt: skip
+STACKS = {
+    f"{accuracy}, {name}": (rf.Stack(BLOCK, BLOCK, interfaces=[base]), base, accuracy)
+    for name, base in {"pads": PADS, "rigid joints": rf.RigidGround(friction=0.3)}.items()
+    for accuracy in ("fast", "standard")
+}
+
+
+@pytest.mark.parametrize("name", STACKS)
+def test_stacks_are_the_same_whose_steps_call_their_equations(name):
+    stack, base, accuracy = STACKS[name]
+    system = rf.System(stack, base)
+    compiled = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
+    with plainly():
+        plain = system.simulate(SHORT, accuracy=accuracy, outputs=["energy"])
+    for variable, values in compiled.variables.items():
+        np.testing.assert_array_equal(values, plain.variables[variable], err_msg=variable)
+    assert compiled.sizes["event"] > 1
 
 
 @pytest.mark.parametrize("name", SCENES)
