@@ -296,6 +296,10 @@ def _import(file: TomlFile, name: str) -> None:
     path = file.path_beside(name)
     stem = path.stem
     if stem in sys.modules:
+        found = getattr(sys.modules[stem], "__file__", None)
+        if found is None or not path.samefile(found):
+            msg = f"{stem} is another module already, {found or 'a built-in one'}: rename the file"
+            raise ImportError(msg)
         return
     spec = spec_from_file_location(stem, path)
     if spec is None or spec.loader is None:

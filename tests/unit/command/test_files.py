@@ -251,6 +251,12 @@ def test_faults_of_scenes_have_their_line(name, file):
             assert line in found, found
 
 
+def test_a_module_that_has_the_name_of_another_is_not_passed_over(file):
+    file("raise RuntimeError\n", "json.py")
+    found = faults(read_scene, file(f'modules = ["json.py"]\n{BLOCK}'))
+    assert "json is another module already" in found[1]
+
+
 def test_all_faults_are_told_at_once(file):
     text = BLOCK.replace('"1 m"', "1").replace('"5 t"', '"5 m"') + "[pads]\nstifness = 3\n"
     assert set(faults(read_scene, file(text))) == {2, 4, 6}
