@@ -65,6 +65,10 @@ class Bodies(Protocol):
         """Change the velocities."""
         ...
 
+    def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
+        """Note the impulse that a body has got from its base, as an end of it landed."""
+        ...
+
     def velocities(self, state: Vector) -> tuple[float, ...] | Vector:
         """Give all velocities."""
         ...
@@ -139,6 +143,10 @@ class InState:
         i = self.coordinates() + BEFORE_HORIZONTAL * k
         state[i + ROTATION] += response.rotation
         state[i + VERTICAL] += response.vertical
+
+    @inlined
+    def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
+        """Note the impulse of a base on a body that has landed: none has to be taken back here."""
 
     @kernel
     def blend_velocities(

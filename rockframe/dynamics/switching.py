@@ -139,6 +139,7 @@ def strike(
     moment = on_left * line.left_lever + on_right * line.right_lever
     response = system.response(k, mode, on_left + on_right, moment, 0.0, state)
     system.respond(k, mode, response, state)
+    system.note_blow(k, on_left + on_right, moment, 0.0)
     # work of the impulses, at the mean of each end's speeds before and after
     after = part.body.base_line_at(system.state_of(k, state))
     memory[IMPACT_LOSS] -= 0.5 * (

@@ -1,5 +1,6 @@
 """Histories, forces and points of a run, as far as they are asked for."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, TypeVar
@@ -93,13 +94,15 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     values |= relative_histories(values, setting)
     values |= ground_histories(ground, has_vertical_motion=plan.has_vertical_motion)
     values["time"] = run.time
-    along, upright = _along(system, plan, run, columns, events, whole), events
+    fell = run.overturning_time <= run.end_time
+    until = run.overturning_time if fell else math.inf
+    along, upright = _along(system, plan, run, columns, events, whole, until), events
     if not along.steps.complete:
         missing.append(
             f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
             "made more steps than are kept"
         )
-    if run.overturning_time <= run.end_time:  # how a block falls is another matter
+    if fell:  # how a block falls is another matter
         upright = events.those(events.time <= run.overturning_time)
     found = slidings(system, along)
     of_forces, of_settlement = peaks_along(along, upright, load)
@@ -108,8 +111,9 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         **of_settlement,
     }  # fmt: skip
     if model.shows_bodies:
-        rotations = rotations_of(model.system.bodies())
-        scalars["peak_body_rotation"] = _peaks_of(rotations, along)
+        # as the peak rotation of the highest one, those of the whole run
+        every = _along(system, plan, run, columns, events, whole, math.inf) if fell else along
+        scalars["peak_body_rotation"] = _peaks_of(rotations_of(model.system.bodies()), every)
     places: dict[str, Generic] = {}
     if model.links:
         forces = forces_of_links(model.links)
@@ -216,14 +220,14 @@ def _along(
     columns: dict[str, Generic],
     events: EventStates,
     whole: bool,
+    until: float,
 ) -> AlongSteps:
-    """Give what is shown along the steps, up to overturning, by what is shown along all.
+    """Give what is shown along the steps up to a time, by what is shown along all.
 
     Without those in which friction stops what an impact or a new held point has left: bases that
     hold need an impulse there, which is no force either.
     """
     slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
-    until = run.overturning_time if run.overturning_time <= run.end_time else np.inf
     steps = run.kept_steps.until(until)
     shown = {name: each[: len(steps.time)] for name, each in columns.items()}
     if STICK in run.events.kind:

@@ -319,3 +319,30 @@ def test_several_sets_at_a_change_of_slip_are_no_modes_of_an_impact():
     told = "and there are 2 ways to bear and to slip then: taken is one with body 1 in full"
     assert told in found.attrs["cautions"]
     assert found.attrs["impacts_of_several_modes"] == 0
+
+
+@pytest.mark.parametrize(
+    ("plate", "ground", "joint", "rule"),
+    [  # height [m] and mass [kg] of a plate, friction below and above it
+        ((0.6, 14.0), 0.27, None, "centre"),
+        ((0.5, 3.0), None, 0.6, "leading-corner"),
+        ((0.5, 20.0), 0.76, None, "leading-corner"),
+    ],
+)
+def test_no_landing_on_pads_upon_a_light_body_gives_energy(plate, ground, joint, rule):
+    """What would stop the body that lands is more than the light one can hand on to the ground."""
+    height, mass = plate
+    lower = rf.Block(width="0.6 m", height=f"{height} m", mass=f"{mass} kg")
+    pads = rf.TwoSpringSupport(
+        frequency_ratio=40, damping_ratio=0.0, restitution=0.001, friction=joint
+    )
+    stack = rf.Stack(STATUE, lower, interfaces=[pads])
+    system = rf.System(stack, rf.RigidGround(friction=ground), restraint=rule)
+    rng = np.random.default_rng(2)
+    across = 4.0 * np.convolve(rng.normal(size=100), np.ones(6) / 6.0**0.5, "same")
+    upwards = 2.0 * rng.normal(size=100)
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "0.02 s", vertical=(upwards, "m/s^2"))
+    run = system.simulate(motion, outputs=["energy"], output_step="1 ms")
+    taken = (run.impact_energy + run.repinning_energy).to_numpy()
+    assert np.diff(taken).min() > -1e-9 * float(np.abs(run.input_energy).max())
+    assert run.energy_residual < 1e-6

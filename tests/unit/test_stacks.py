@@ -276,3 +276,11 @@ def test_bodies_of_masses_that_are_nothing_to_one_another_vibrate(masses):
     # of the body above by itself, whose pads bear it alone
     alone = rf.System(blocks[0], pads).setting.compile()
     assert alone.fastest_frequency * (1.0 - 1e-9) <= model.fastest_frequency < np.inf
+
+
+def test_peaks_of_bodies_are_those_of_the_whole_run():
+    push = rf.GroundMotion.sine_pulse(amplitude="-6 m/s^2", frequency="1 Hz")
+    found = rf.System(STACK, GROUND).simulate(push, overturning="continue", **PLAN)
+    assert float(found.peak_rotation) > 1.2 * float(found.overturning_angle)
+    assert float(found.peak_body_rotation[0]) == pytest.approx(float(found.peak_rotation), rel=1e-4)
+    assert (found.peak_body_rotation >= np.abs(found.body_rotation).max("time") - 1e-15).all()

@@ -9,24 +9,19 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION
 from rockframe.dynamics.body import REST_AMPLITUDE
 from rockframe.dynamics.chain import rows as at
-from rockframe.dynamics.chain.corners import OPENING, PULLED, RigidCorners
+from rockframe.dynamics.chain.corners import OPENING, PULLED
 from rockframe.dynamics.chain.impact import (
     BOTH,
     LEFT_ONLY,
     NEARLY_ZERO,
-    NOISE,
     RIGHT_ONLY,
     ROUNDING,
-    attempt,
     bearing_corners,
     write_corners,
 )
-from rockframe.dynamics.chain.motion import (
-    load_bodies,
-    place_bodies,
-    write_relative,
-)
-from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
+from rockframe.dynamics.chain.impulses import RigidImpulses
+from rockframe.dynamics.chain.motion import load_bodies
+from rockframe.dynamics.chain.rows import GUARDS
 from rockframe.dynamics.events import FULL, IMPACT, REST, SEPARATION, SILENT, UPLIFT
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER_GUARDS, REENGAGE
@@ -37,7 +32,6 @@ from rockframe.dynamics.protocol import (
     REPINNING_LOSS,
     Ground,
 )
-from rockframe.dynamics.sliding import blend
 from rockframe.dynamics.switching import comes_back, end_speed, lift_by_slip, stay_if_small
 
 # memory, behind the held places and the body of the last event
@@ -48,7 +42,7 @@ KEPT: Final = ("admissible_sets", "set_taken", "other_set")
 """Names of these."""
 
 
-class RigidChain(RigidCorners):
+class RigidChain(RigidImpulses):
     """Bodies upon one another of which some stand on rigid bases: a system."""
 
     __slots__ = ()
@@ -63,67 +57,6 @@ class RigidChain(RigidCorners):
     def behind_events(self) -> int:
         """Give the place behind what is remembered of the last event."""
         return HELD_PLACE + self.body_count + 1 + len(KEPT)
-
-    @kernel
-    def take_answer(self, state: Vector) -> None:
-        """Change the velocities by the last answer, and keep the impulses of rigid bases."""
-        self.add_slopes(state)
-        room, rows = self.places(), self.constraints()
-        for j in range(self.body_count):
-            i, last = j * PLACES, -1
-            for side in range(2):
-                which = int(room[i + at.LEFT_CORNER + side])
-                if which >= 0:
-                    room[i + at.LEFT_IMPULSE + side] += rows[which * CONSTRAINT + at.FORCE]
-                    self.keep_impulse(j, which, room, rows)
-                    last = which
-            # the hold along the base stands behind its corners
-            if last >= 0 and self.slip_sense(j) == 0.0:
-                self.keep_impulse(j, last + 1, room, rows)
-
-    @kernel
-    def keep_impulse(self, k: int, which: int, room: Vector, rows: Vector) -> None:
-        """Add the impulse of a constraint of a rigid base to those that bodies have got."""
-        first = which * CONSTRAINT
-        force, holds = rows[first + at.FORCE], first + at.HOLDS
-        for body in range(k, min(k + 2, self.body_count)):
-            i = body * PLACES + at.IMPULSE_X
-            for j in range(3):
-                room[i + j] += force * rows[holds + j]
-            holds += 3
-
-    @kernel
-    def scale_impulses(self, share: float) -> None:
-        """Keep a share of the impulses of rigid bases."""
-        room = self.places()
-        for k in range(self.body_count):
-            for j in range(at.IMPULSES):
-                room[k * PLACES + at.LEFT_IMPULSE + j] *= share
-
-    @kernel
-    def blend_velocities(
-        self, before: tuple[float, ...] | Vector, share: float, state: Vector
-    ) -> None:
-        """Take back all but a share of what has changed the velocities since."""
-        n = self.coordinates()
-        for i in range(n):
-            state[n + i] = blend(before[i], state[n + i], share)
-        self.scale_impulses(share)
-
-    @inlined
-    def must_meet_anew(self) -> bool:
-        """Whether what rigid bases did in an event beside them is more than they can."""
-        return self.some_pull()
-
-    @kernel
-    def some_pull(self) -> bool:
-        """Whether a corner on a rigid base would have had to pull in an event beside it."""
-        room, least, all_of_them = self.places(), 0.0, 0.0
-        for k in range(self.body_count):
-            for side in range(2):
-                impulse = room[k * PLACES + at.LEFT_IMPULSE + side]
-                least, all_of_them = min(least, impulse), all_of_them + abs(impulse)
-        return least < -NOISE * all_of_them
 
     @inlined
     def switch_body(
@@ -163,7 +96,8 @@ class RigidChain(RigidCorners):
             # a change of a held point is the rule's, and no blow: contacts stay as they are
             if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew():
                 return new
-            new = self.meet_anew(new, state, ground, memory)
+            ends = self.landed(k, left, mode, new)
+            new = self.meet_anew(k, ends, new, state, ground, memory)
             stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
         struck = memory[LAST_EVENT] in (IMPACT, REST)
         for other in range(count):
@@ -332,20 +266,18 @@ class RigidChain(RigidCorners):
         return new
 
     @kernel
-    def meet_anew(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Take back what rigid bases did in an event beside them, and let them press only."""
-        room, free = self.places(), self.let_all_go(mode, state, memory)
+    def meet_anew(
+        self, k: int, ends: int, mode: int, state: Vector, ground: Ground, memory: Vector
+    ) -> int:
+        """Take back what rigid bases did in an event beside them, and let them press only.
+
+        And what of the blow of a body's ends that have landed would throw these up then.
+        """
+        free = self.let_all_go(mode, state, memory)
         self.write_contacts(free, state, memory)
         had, before = self.energies(free, state).kinetic, self.bearing(free)
         flying = self.with_bearing(free, 0, 0)
-        place_bodies(self, flying, state, room)
-        for k in range(self.body_count):
-            i = k * PLACES
-            room[i + at.LOAD_X] = -room[i + at.IMPULSE_X]
-            room[i + at.LOAD_Y] = -room[i + at.IMPULSE_Y]
-            room[i + at.LOAD_MOMENT] = -room[i + at.IMPULSE_MOMENT]
-        attempt(self, flying, 0, 0, False, True, 0.0, state)
-        self.change_velocities(state)
+        self.take_back(k, self.shares_of_blow(k, ends, flying, before, state), flying, state)
         memory[IMPACT_LOSS] += had - self.energies(flying, state).kinetic
         event = memory[LAST_EVENT]
         new = self.let_bear(free, before, before, 0, state, ground, memory)
@@ -387,16 +319,6 @@ class RigidChain(RigidCorners):
         memory[kept + ADMISSIBLE] = found.admissible
         memory[kept + TAKEN], memory[kept + OTHER] = taken, found.other
         return new
-
-    @kernel
-    def change_velocities(self, state: Vector) -> None:
-        """Change the velocities by what impulses have done, which stands in the rooms."""
-        room = self.places()
-        for k in range(self.body_count):
-            i = k * PLACES
-            room[i + at.RISE] = room[i + at.SWAY] = room[i + at.FRAME_RATE] = 0.0
-        write_relative(self, room, self.slopes())
-        self.add_slopes(state)
 
     @inlined
     def rest_where_small(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:

@@ -148,8 +148,9 @@ class SlippingRigidChain(TriedSlips):
             return new
         if memory[LAST_EVENT] == IMPACT:
             if self.must_meet_anew():
-                new = self.meet_anew(new, state, ground, memory)
                 part, left = self.on_base(k), which < CORNER_GUARDS
+                ends = self.landed(k, left, mode, new)
+                new = self.meet_anew(k, ends, new, state, ground, memory)
                 stay_if_small(self, part, k, left, new, state, ground, memory)
             for other in range(self.body_count):
                 if not self.is_slippery(other):

@@ -64,7 +64,8 @@ ROTATION: Final = 18
 THRUST: Final = 19
 PRESS: Final = 20
 # constraints of the corners on a rigid base, and their impulses in an event; impulses of all such
-# bases on the body
+# bases on the body; those of its own base that gives way, where an end has landed: normal to it,
+# their moment, and along it
 LEFT_CORNER: Final = 21
 RIGHT_CORNER: Final = 22
 LEFT_IMPULSE: Final = 23
@@ -72,34 +73,37 @@ RIGHT_IMPULSE: Final = 24
 IMPULSE_X: Final = 25
 IMPULSE_Y: Final = 26
 IMPULSE_MOMENT: Final = 27
-IMPULSES: Final = 5
+BLOW: Final = 28
+BLOW_MOMENT: Final = 29
+BLOW_ALONG: Final = 30
+IMPULSES: Final = 8
 # of bodies that may slip on rigid bases: the sense that is tried, that in which a slip starts, and
 # the force along the base over that normal to it
-SLIPS: Final = 28
-STARTS: Final = 29
-RUBS: Final = 30
+SLIPS: Final = 31
+STARTS: Final = 32
+RUBS: Final = 33
 # of bodies that may slip at all: their friction among the loads, on a base that gives way; and the
 # constraint that holds a body along its base, as that is tried
-DRAG: Final = 31
-HOLDS_ALONG: Final = 32
+DRAG: Final = 34
+HOLDS_ALONG: Final = 35
 # of the left and the right corner on a rigid base, as sets of them are tried: the lever, the
 # acceleration at which it rests, or change of its speed, and both along the base, held there
-LEVERS: Final = 33
-RESTS: Final = 35
-REACHES: Final = 37
-STAYS: Final = 39
+LEVERS: Final = 36
+RESTS: Final = 38
+REACHES: Final = 40
+STAYS: Final = 42
 # how the body stands in the mode that was read last, and that mode, in two numbers
-CONTACT: Final = 41
-PIVOT: Final = 42
-SLIDES: Final = 43
-HIGH_BITS: Final = 44
-LOW_BITS: Final = 45
+CONTACT: Final = 44
+PIVOT: Final = 45
+SLIDES: Final = 46
+HIGH_BITS: Final = 47
+LOW_BITS: Final = 48
 # sine, cosine and rise of its rotation on its base
-ATTITUDE: Final = 46
+ATTITUDE: Final = 49
 # how it is tried with a set of corners, a number, and how many constraints it and those below have
-TRIED: Final = 49
-CONSTRAINTS: Final = 50
-PLACES: Final = 51
+TRIED: Final = 52
+CONSTRAINTS: Final = 53
+PLACES: Final = 54
 
 # constraints, at most so many of each body; of each
 MOST_CONSTRAINTS: Final = 3

@@ -113,6 +113,7 @@ class SlipperyBases(SlippingBodies):
         )  # fmt: skip
         self.answers(k, normal, normal * lever, along, mode, state)
         self.take_answer(state)
+        self.note_blow(k, normal, normal * lever, along)
         after, noise = self.slip_rate(k, mode, state)
         if abs(after) <= noise + 2.0 * NOISE * abs(slip):
             self.end_slip(k, mode, state)

@@ -1,0 +1,213 @@
+"""Impulses in an event: those of rigid bases, and the blow of an end that lands beside them.
+
+Rigid bases answer a blow as they stand. What they cannot do, to pull or to hold beyond friction, is
+taken back, and bodies meet anew; the blow then ends where its end has the speed that restitution
+leaves it.
+"""
+
+from typing import Final, NamedTuple
+
+from rockframe.compiled import Vector, inlined, kernel
+from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.corners import RigidCorners
+from rockframe.dynamics.chain.impact import (
+    BOTH,
+    LEFT_ONLY,
+    NOISE,
+    RIGHT_ONLY,
+    attempt,
+    bearing_corners,
+)
+from rockframe.dynamics.chain.motion import (
+    load_along,
+    load_bodies,
+    place_bodies,
+    press_at,
+    write_relative,
+)
+from rockframe.dynamics.chain.rows import CONSTRAINT, PLACES
+from rockframe.dynamics.sliding import blend
+from rockframe.dynamics.switching import end_speed
+
+MOST_SHARES: Final = 60
+"""Shares of a blow that are tried, by halves: as many as a number has digits, and some."""
+
+
+SLIGHT: Final = 1e-9
+"""Share of the velocities along a base that is no slip: what is left of one that friction ends."""
+
+
+class Shares(NamedTuple):
+    """How much of a blow acts, and of its friction then."""
+
+    press: float
+    along: float
+
+
+class RigidImpulses(RigidCorners):
+    """Bodies upon one another that rigid bases give impulses in an event. A mixin of systems."""
+
+    __slots__ = ()
+
+    @kernel
+    def take_answer(self, state: Vector) -> None:
+        """Change the velocities by the last answer, and keep the impulses of rigid bases."""
+        self.add_slopes(state)
+        room, rows = self.places(), self.constraints()
+        for j in range(self.body_count):
+            i, last = j * PLACES, -1
+            for side in range(2):
+                which = int(room[i + at.LEFT_CORNER + side])
+                if which >= 0:
+                    room[i + at.LEFT_IMPULSE + side] += rows[which * CONSTRAINT + at.FORCE]
+                    self.keep_impulse(j, which, room, rows)
+                    last = which
+            # the hold along the base stands behind its corners
+            if last >= 0 and self.slip_sense(j) == 0.0:
+                self.keep_impulse(j, last + 1, room, rows)
+
+    @kernel
+    def keep_impulse(self, k: int, which: int, room: Vector, rows: Vector) -> None:
+        """Add the impulse of a constraint of a rigid base to those that bodies have got."""
+        first = which * CONSTRAINT
+        force, holds = rows[first + at.FORCE], first + at.HOLDS
+        for body in range(k, min(k + 2, self.body_count)):
+            i = body * PLACES + at.IMPULSE_X
+            for j in range(3):
+                room[i + j] += force * rows[holds + j]
+            holds += 3
+
+    @kernel
+    def scale_impulses(self, share: float) -> None:
+        """Keep a share of the impulses of rigid bases."""
+        room = self.places()
+        for k in range(self.body_count):
+            for j in range(at.IMPULSES):
+                room[k * PLACES + at.LEFT_IMPULSE + j] *= share
+
+    @kernel
+    def blend_velocities(
+        self, before: tuple[float, ...] | Vector, share: float, state: Vector
+    ) -> None:
+        """Take back all but a share of what has changed the velocities since."""
+        n = self.coordinates()
+        for i in range(n):
+            state[n + i] = blend(before[i], state[n + i], share)
+        self.scale_impulses(share)
+
+    @inlined
+    def must_meet_anew(self) -> bool:
+        """Whether what rigid bases did in an event beside them is more than they can."""
+        return self.some_pull()
+
+    @kernel
+    def some_pull(self) -> bool:
+        """Whether a corner on a rigid base would have had to pull in an event beside it."""
+        room, least, all_of_them = self.places(), 0.0, 0.0
+        for k in range(self.body_count):
+            for side in range(2):
+                impulse = room[k * PLACES + at.LEFT_IMPULSE + side]
+                least, all_of_them = min(least, impulse), all_of_them + abs(impulse)
+        return least < -NOISE * all_of_them
+
+    @kernel
+    def change_velocities(self, state: Vector) -> None:
+        """Change the velocities by what impulses have done, which stands in the rooms."""
+        room = self.places()
+        for k in range(self.body_count):
+            i = k * PLACES
+            room[i + at.RISE] = room[i + at.SWAY] = room[i + at.FRAME_RATE] = 0.0
+        write_relative(self, room, self.slopes())
+        self.add_slopes(state)
+
+    @inlined
+    def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
+        """Add to the impulses that a body has got from its base that gives way, as it landed."""
+        room, i = self.places(), k * PLACES
+        room[i + at.BLOW] += press
+        room[i + at.BLOW_MOMENT] += moment
+        room[i + at.BLOW_ALONG] += along
+
+    @inlined
+    def landed(self, k: int, left: bool, mode: int, new: int) -> int:
+        """Give the ends, as a set, that an event has brought down on a base that gives way.
+
+        Of one that flew both may have come down at once.
+        """
+        part = self.on_base(k)
+        both = part.flies(self.part_mode(mode, k).contact)
+        both &= part.base.is_held(self.part_mode(new, k).contact, not left)
+        return BOTH if both else LEFT_ONLY if left else RIGHT_ONLY
+
+    @kernel
+    def take_back(self, k: int, blow: Shares, mode: int, state: Vector) -> None:
+        """Take back what rigid bases did, and what is no share of the blow of a body."""
+        room = self.places()
+        place_bodies(self, mode, state, room)
+        for j in range(self.body_count):
+            i = j * PLACES
+            room[i + at.LOAD_X] = -room[i + at.IMPULSE_X]
+            room[i + at.LOAD_Y] = -room[i + at.IMPULSE_Y]
+            room[i + at.LOAD_MOMENT] = -room[i + at.IMPULSE_MOMENT]
+        i, off = k * PLACES, blow.press - 1.0
+        press_at(self, k, off * room[i + at.BLOW], off * room[i + at.BLOW_MOMENT], room)
+        load_along(self, k, (blow.press * blow.along - 1.0) * room[i + at.BLOW_ALONG], room)
+        attempt(self, mode, 0, 0, False, True, 0.0, state)
+        self.change_velocities(state)
+
+    @kernel
+    def shares_of_blow(self, k: int, ends: int, mode: int, closed: int, state: Vector) -> Shares:
+        """Give how much of a blow acts as bodies meet anew.
+
+        So much of its friction that it turns no slip round, and then of all of it that it throws no
+        end up: the less there is of it the less they rise.
+        """
+        blow = Shares(1.0, 1.0)
+        if self.places()[k * PLACES + at.BLOW] <= 0.0:
+            return blow
+        for phase in range(2):
+            low, high, share = 0.0, 1.0, 1.0
+            for tries in range(MOST_SHARES):
+                blow = Shares(share, blow.along) if phase == 1 else Shares(1.0, share)
+                if not self.is_too_much(k, ends if phase == 1 else 0, blow, mode, closed, state):
+                    low = share
+                    if tries == 0:
+                        break
+                else:
+                    high = share
+                share = 0.5 * (low + high)
+            blow = Shares(low, blow.along) if phase == 1 else Shares(1.0, low)
+        return blow
+
+    @kernel
+    def is_too_much(
+        self, k: int, ends: int, blow: Shares, mode: int, closed: int, state: Vector
+    ) -> bool:
+        """Whether a blow throws ends up, or turns a slip round, as bodies meet anew."""
+        part, n, before = self.on_base(k), self.coordinates(), self.velocities(state)
+        left, noise_left = end_speed(part, True, self.state_of(k, state))
+        right, noise_right = end_speed(part, False, self.state_of(k, state))
+        drives = self.drives_slip(k, mode, state)
+        self.take_back(k, blow, mode, state)
+        place_bodies(self, mode, state, self.places())
+        load_bodies(self, 0.0, 0.0, self.places())
+        bearing_corners(self, mode, closed, 0, closed, 0, state)
+        self.change_velocities(state)
+        left_after, more_left = end_speed(part, True, self.state_of(k, state))
+        right_after, more_right = end_speed(part, False, self.state_of(k, state))
+        found = self.drives_slip(k, mode, state) and not drives
+        found |= ends & LEFT_ONLY != 0 and left_after > left + noise_left + more_left
+        found |= ends & RIGHT_ONLY != 0 and right_after > right + noise_right + more_right
+        for i in range(n):
+            state[n + i] = before[i]
+        return bool(found)
+
+    @kernel
+    def drives_slip(self, k: int, mode: int, state: Vector) -> bool:
+        """Whether a body slips to where the friction of its blow has pushed it."""
+        part, body = self.on_base(k), self.state_of(k, state)
+        pin = part.body.pin(self.part_mode(mode, k).pivot)
+        reach = part.body.reach(pin, part.body.attitude(body.rotation))
+        about, sway = reach.rate * body.angular_velocity, body.horizontal_velocity
+        slip, along = sway - about, self.places()[k * PLACES + at.BLOW_ALONG]
+        return bool(along * slip > 0.0 and abs(slip) > SLIGHT * (abs(sway) + abs(about)))
