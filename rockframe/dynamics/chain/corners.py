@@ -17,7 +17,7 @@ from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.any_base import ON_RIGID
 from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, RIGHT_ONLY, Attempt, attempt
 from rockframe.dynamics.chain.motion import add_constraint, coriolis_normal
-from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
+from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES, SOLVED_FOR
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
@@ -252,9 +252,24 @@ class RigidCorners(Chain):
         return float(self.constraints()[int(which) * CONSTRAINT + at.FORCE])
 
     @inlined
+    def note_solved(self, mode: int, state: Vector, ground: Ground) -> None:
+        """Note for what forces were solved for: guards are often asked for the same."""
+        note = self.solved_room()
+        note[0], note[1], note[2] = mode, ground.x, ground.y
+        for i in range(2 * self.coordinates()):
+            note[SOLVED_FOR + i] = state[i]
+        self.places()[(self.body_count - 1) * PLACES + at.SOLVED] = 1.0
+
+    @kernel
     def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:
-        """Find the forces of corners on rigid bases."""
-        self.accelerate(mode, state, ground)
+        """Find the forces of corners on rigid bases, unless they stand."""
+        note = self.solved_room()
+        stands = self.places()[(self.body_count - 1) * PLACES + at.SOLVED] != 0.0
+        stands &= (note[0] == mode) & (note[1] == ground.x) & (note[2] == ground.y)
+        for i in range(2 * self.coordinates()):
+            stands &= note[SOLVED_FOR + i] == state[i]
+        if not stands:
+            self.accelerate(mode, state, ground)
 
     @inlined
     def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
@@ -267,7 +282,7 @@ class RigidCorners(Chain):
     def guards_of_bodies(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
         """Write the guards of each body in turn, and their rates."""
         values, changes = self.guard_room(0), self.guard_room(1)
-        self.accelerate(mode, state, ground)
+        self.find_corner_forces(mode, state, ground)
         for k in range(self.body_count):
             if self.is_rigid(k):
                 self.write_corner_guards(k, self.part_mode(mode, k), state, values, changes)

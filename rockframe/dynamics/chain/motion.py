@@ -23,8 +23,9 @@ UNKNOWN: Final = -1.0
 
 @inlined
 def forget_trial(system: Rows, room: Vector) -> None:
-    """Let the next set of corners that is tried be solved from the lowest body on."""
-    room[(system.body_count - 1) * PLACES + at.TRIED] = UNKNOWN
+    """Let the next set of corners that is tried, or forces, be solved for from the beginning."""
+    i = (system.body_count - 1) * PLACES
+    room[i + at.TRIED], room[i + at.SOLVED] = UNKNOWN, 0.0
 
 
 @kernel

@@ -175,7 +175,12 @@ class MovingBodies(Rows):
                 dissipated -= room[i + at.THRUST] * slip
         powers = DEGREES * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
+        self.note_solved(mode, state, ground)
         return out
+
+    @inlined
+    def note_solved(self, mode: int, state: Vector, ground: Ground) -> None:
+        """Note for what forces were solved for: none of those here are asked for again."""
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:

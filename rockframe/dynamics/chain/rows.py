@@ -103,7 +103,9 @@ ATTITUDE: Final = 49
 # how it is tried with a set of corners, a number, and how many constraints it and those below have
 TRIED: Final = 52
 CONSTRAINTS: Final = 53
-PLACES: Final = 54
+# whether the forces stand that were solved for last, for a mode, a state and a ground acceleration
+SOLVED: Final = 54
+PLACES: Final = 55
 
 # constraints, at most so many of each body; of each
 MOST_CONSTRAINTS: Final = 3
@@ -114,7 +116,7 @@ KEEPS: Final = 3  # the combination of accelerations, of the body and of the one
 HOLDS: Final = 9  # that of forces
 LEFT: Final = 15  # of the value, by elimination
 CONSTRAINT: Final = 16
-# then their matrix, slopes, guards and their rates, velocities, and columns
+# then their matrix, slopes, guards and their rates, velocities, columns, and what was solved for
 
 GUARDS: Final = 2 * CORNER_GUARDS + BODY_GUARDS
 """Guards of each body."""
@@ -131,6 +133,17 @@ HALF_OF_BITS: Final = 32
 PAD_MODES: Final = 2 * PIVOTS * CORNERS * CORNERS
 BED_MODES: Final = 2 * PIVOTS * ENDS
 RIGID_MODES: Final = 2 * 2 * ENDS  # what is held follows from the corners that bear
+
+
+SOLVED_FOR: Final = 3
+"""Mode and ground acceleration, before a state."""
+
+
+@kernel
+def room_of(count: int) -> int:
+    """Give the size of the room behind the rows of some bodies."""
+    each = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 4 * DEGREES + 2 * GUARDS + COLUMNS
+    return count * each + POWERS + (MOST_CONSTRAINTS * count) ** 2 + SOLVED_FOR
 
 
 class Lists(NamedTuple):
@@ -202,11 +215,15 @@ class Rows(InState, CalledBySteps, Lists):
         return stretch(self.rows, first, (MOST_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
+    def solved_room(self) -> Vector:
+        """Give the room for mode, ground acceleration and state that forces were solved for."""
+        first = self.behind_chain() - SOLVED_FOR - 2 * DEGREES * self.body_count
+        return part_of(self.rows, first)
+
+    @inlined
     def behind_chain(self) -> int:
         """Give the place behind all these rooms."""
-        room = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 2 * DEGREES + 2 * GUARDS + COLUMNS
-        count = self.body_count
-        return count * (ROW + room) + POWERS + (MOST_CONSTRAINTS * count) ** 2
+        return self.body_count * ROW + room_of(self.body_count)
 
     @inlined
     def on_base(self, k: int) -> OnBase:
@@ -295,6 +312,4 @@ def lists_of(rows: Sequence[Vector]) -> Lists:
     for row in rows:
         row[PLACE_VALUE] = value
         value *= int(row[MODE_COUNT])
-    room = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 2 * DEGREES + 2 * GUARDS + COLUMNS
-    size = count * room + POWERS + (MOST_CONSTRAINTS * count) ** 2
-    return Lists(count, np.concatenate([*rows, np.zeros(size)]))
+    return Lists(count, np.concatenate([*rows, np.zeros(room_of(count))]))
