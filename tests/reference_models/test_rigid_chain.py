@@ -189,7 +189,7 @@ def changes():
         "press": lambda system, state, room: press_at(system, 0, 1.0, 0.1, room),
         "friction": lambda system, state, room: load_along(system, 0, 1.0, room),
         "levers": lambda system, state, room: write_corners(system, True, state),
-        "forces": lambda system, state, room: system.solve(0, room),
+        "forces": lambda system, state, room: system.solve(system.body_count, 0, room),
     }
 
 

@@ -251,6 +251,16 @@ class RigidCorners(Chain):
             return 0.0
         return float(self.constraints()[int(which) * CONSTRAINT + at.FORCE])
 
+    @kernel
+    def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
+        """Give accelerations and powers; bodies that rest on the ground need no forces for it."""
+        moving, bearing = self.body_count, self.bearing(mode)
+        while moving > 0 and bearing >> 2 * (moving - 1) & BOTH == BOTH:
+            if self.part_mode(mode, moving - 1).slides:
+                break
+            moving -= 1
+        return self.accelerate_first(moving, mode, state, ground)
+
     @inlined
     def note_solved(self, mode: int, state: Vector, ground: Ground) -> None:
         """Note for what forces were solved for: guards are often asked for the same."""
@@ -269,7 +279,7 @@ class RigidCorners(Chain):
         for i in range(2 * self.coordinates()):
             stands &= note[SOLVED_FOR + i] == state[i]
         if not stands:
-            self.accelerate(mode, state, ground)
+            self.find_forces(mode, state, ground)
 
     @inlined
     def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:

@@ -90,7 +90,7 @@ class SlippingChain(SlipperyBases):
         """
         most, near = TRIES * self.body_count, NEARLY_ZERO
         for tries in range(2 * most):
-            slope = self.accelerate(mode, state, ground)
+            slope = self.find_forces(mode, state, ground)
             self.forces_from(mode, state, slope, ground)
             holding = STATIC if tries < most else KINETIC
             found, push = self.held_in_vain(lets_go, holding, mode)

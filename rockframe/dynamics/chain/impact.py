@@ -175,7 +175,9 @@ def attempt(
         else:
             count = bear(system, k, count, bears, holds, sense, impulsive, room, rows)
         room[i + at.CONSTRAINTS] = count
-    solve_motion(system, start, count, system.band(), room, rows, system.matrix())
+    solve_motion(
+        system, system.body_count, start, count, system.band(), room, rows, system.matrix()
+    )
     loss = pressing = 0.0
     for which in range(count):
         first = which * CONSTRAINT
@@ -240,7 +242,7 @@ def free_rise(system: Any, k: int, side: int) -> float:
     room, rows, i = system.places(), system.constraints(), k * PLACES + side
     keeps = (MOST_CONSTRAINTS * system.body_count - 1) * CONSTRAINT + at.KEEPS  # there is room
     write_direction(system, k, 0.0, 1.0, room[i + at.LEVERS], keeps, room, rows)
-    return float(of_both(system, k, keeps, room, rows) - room[i + at.RESTS])
+    return float(of_both(system.body_count, k, keeps, room, rows) - room[i + at.RESTS])
 
 
 @kernel

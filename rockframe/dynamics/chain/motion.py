@@ -194,15 +194,15 @@ def add_constraint(
 
 
 @inlined
-def of_both(system: Rows, k: int, direction: int, room: Vector, rows: Vector) -> float:
-    """Give a combination of the accelerations of a body and of the one below."""
+def of_both(moving: int, k: int, direction: int, room: Vector, rows: Vector) -> float:
+    """Give a combination of the accelerations of a body and of the one below, if that moves."""
     i = k * PLACES
     found = (
         rows[direction] * room[i + at.X]
         + rows[direction + 1] * room[i + at.Y]
         + rows[direction + 2] * room[i + at.ROTATION]
     )
-    if k + 1 < system.body_count:
+    if k + 1 < moving:
         j = i + PLACES
         found += (
             rows[direction + 3] * room[j + at.X]
@@ -221,14 +221,14 @@ def through(system: Rows, k: int, one: int, other: int, rows: Vector) -> float:
 
 
 @inlined
-def answer(system: Rows, kept: int, force: int, rows: Vector) -> float:
+def answer(system: Rows, moving: int, kept: int, force: int, rows: Vector) -> float:
     """Give what a unit force of one constraint does to what another keeps; 0 if far apart."""
     a, b = kept * CONSTRAINT, force * CONSTRAINT
     one, other = int(rows[a + at.BODY]), int(rows[b + at.BODY])
     keeps, holds, found = a + at.KEEPS, b + at.HOLDS, 0.0
     if one == other:
         found = through(system, one, keeps, holds, rows)
-        if one + 1 < system.body_count:
+        if one + 1 < moving:
             found += through(system, one + 1, keeps + 3, holds + 3, rows)
     elif one == other + 1:
         found = through(system, one, keeps, holds + 3, rows)
@@ -238,11 +238,11 @@ def answer(system: Rows, kept: int, force: int, rows: Vector) -> float:
 
 
 @inlined
-def push(system: Rows, which: int, room: Vector, rows: Vector) -> None:
+def push(system: Rows, moving: int, which: int, room: Vector, rows: Vector) -> None:
     """Add what a constraint's force does to the accelerations."""
     first = which * CONSTRAINT
     k, force, holds = int(rows[first + at.BODY]), rows[first + at.FORCE], first + at.HOLDS
-    for body in range(k, min(k + 2, system.body_count)):
+    for body in range(k, min(k + 2, moving)):
         i, per_mass = body * PLACES, force * system.number(body, at.PER_MASS)
         room[i + at.X] += rows[holds] * per_mass
         room[i + at.Y] += rows[holds + 1] * per_mass
@@ -251,15 +251,15 @@ def push(system: Rows, which: int, room: Vector, rows: Vector) -> None:
 
 
 @inlined
-def eliminate(system: Rows, r: int, band: int, rows: Vector, matrix: Vector) -> None:
+def eliminate(system: Rows, moving: int, r: int, band: int, rows: Vector, matrix: Vector) -> None:
     """Add a constraint to those before it, whose elimination stands.
 
     Below the diagonal of the matrix stand the factors, on it what one is divided by.
     """
     stride, low, first = MOST_CONSTRAINTS * system.body_count, max(0, r - band), r * CONSTRAINT
-    own, left = answer(system, r, r, rows), rows[first + at.LEFT]
+    own, left = answer(system, moving, r, r, rows), rows[first + at.LEFT]
     for c in range(low, r):
-        above, factor = answer(system, c, r, rows), answer(system, r, c, rows)
+        above, factor = answer(system, moving, c, r, rows), answer(system, moving, r, c, rows)
         for i in range(low, c):
             above -= matrix[c * stride + i] * matrix[i * stride + r]
             factor -= matrix[r * stride + i] * matrix[i * stride + c]
@@ -272,17 +272,22 @@ def eliminate(system: Rows, r: int, band: int, rows: Vector, matrix: Vector) -> 
 
 @kernel
 def solve_motion(
-    system: Rows, start: int, count: int, band: int, room: Vector, rows: Vector, matrix: Vector
-) -> None:
+    system: Rows, moving: int, start: int, count: int, band: int, room: Vector, rows: Vector,
+    matrix: Vector,
+) -> None:  # fmt: skip
     """Write the forces of `count` constraints, sorted by body, and the accelerations of all bodies.
 
     Equation :eq:`eq-chain-solution`.
 
     Elimination in the band about the diagonal, on which there is no zero. That of constraints
-    before `start` stands from the last time.
+    before `start` stands from the last time. Bodies from `moving` on rest on the ground, and have
+    no constraints here.
     """
     for k in range(system.body_count):
         i = k * PLACES
+        if k >= moving:
+            room[i + at.X] = room[i + at.Y] = room[i + at.ROTATION] = 0.0
+            continue
         per_mass = system.number(k, at.PER_MASS)
         room[i + at.X], room[i + at.Y] = (
             room[i + at.LOAD_X] * per_mass, room[i + at.LOAD_Y] * per_mass,
@@ -290,9 +295,9 @@ def solve_motion(
         room[i + at.ROTATION] = room[i + at.LOAD_MOMENT] * system.number(k, at.PER_INERTIA)
     for r in range(start, count):
         first = r * CONSTRAINT
-        kept = of_both(system, int(rows[first + at.BODY]), first + at.KEEPS, room, rows)
+        kept = of_both(moving, int(rows[first + at.BODY]), first + at.KEEPS, room, rows)
         rows[first + at.LEFT] = rows[first + at.VALUE] - kept
-        eliminate(system, r, band, rows, matrix)
+        eliminate(system, moving, r, band, rows, matrix)
     stride = MOST_CONSTRAINTS * system.body_count
     for r in range(count - 1, -1, -1):
         force = rows[r * CONSTRAINT + at.LEFT]
@@ -300,4 +305,4 @@ def solve_motion(
             force -= matrix[r * stride + c] * rows[c * CONSTRAINT + at.FORCE]
         rows[r * CONSTRAINT + at.FORCE] = force * matrix[r * stride + r]
     for r in range(count):
-        push(system, r, room, rows)
+        push(system, moving, r, room, rows)

@@ -63,10 +63,10 @@ class MovingBodies(Rows):
         return 2 * DEGREES * self.body_count
 
     @kernel
-    def constrain(self, mode: int, state: Vector, room: Vector) -> int:
-        """Write the constraints of a mode; give how many there are."""
+    def constrain(self, moving: int, mode: int, state: Vector, room: Vector) -> int:
+        """Write the constraints of bodies that move in a mode; give how many there are."""
         count, rows = 0, self.constraints()
-        for k in range(self.body_count):
+        for k in range(moving):
             standing = self.part_mode(mode, k)
             count = self.add_corners(k, count, mode, state, True, room, rows)
             count = self.hold_or_slide(k, count, standing, state, room, rows)
@@ -137,11 +137,11 @@ class MovingBodies(Rows):
         write_direction(self, k, 1.0, 0.0, -room[i + at.REACH], holds, room, rows)
 
     @kernel
-    def solve(self, count: int, room: Vector) -> None:
+    def solve(self, moving: int, count: int, room: Vector) -> None:
         """Write forces and accelerations, in the ground's axes and of all coordinates."""
         rows = self.constraints()
         forget_trial(self, room)
-        solve_motion(self, 0, count, self.band(), room, rows, self.matrix())
+        solve_motion(self, moving, 0, count, self.band(), room, rows, self.matrix())
         for which in range(count):  # the last one of each body is along what it stands on
             first = which * CONSTRAINT
             room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]
@@ -151,6 +151,18 @@ class MovingBodies(Rows):
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Give the accelerations of all coordinates, and the powers."""
+        return self.accelerate_first(self.body_count, mode, state, ground)
+
+    @kernel
+    def find_forces(self, mode: int, state: Vector, ground: Ground) -> Vector:
+        """Give the same, and leave the forces on all bodies in the rooms."""
+        found = self.accelerate_first(self.body_count, mode, state, ground)
+        self.note_solved(mode, state, ground)
+        return found
+
+    @kernel
+    def accelerate_first(self, moving: int, mode: int, state: Vector, ground: Ground) -> Vector:
+        """Give accelerations and powers where bodies from a number on rest on the ground."""
         room, out = self.places(), self.slopes()
         place_bodies(self, mode, state, room)
         load_bodies(self, ground.x, self.number(0, at.GRAVITY) + ground.y, room)
@@ -167,7 +179,7 @@ class MovingBodies(Rows):
             self.load_by_friction(k, mode, room)
             supplied -= mass * (ground.x * room[i + at.SPEED_X] + ground.y * room[i + at.SPEED_Y])
         dissipated += self.pull(mode, state, room)
-        self.solve(self.constrain(mode, state, room), room)
+        self.solve(moving, self.constrain(moving, mode, state, room), room)
         for k in range(self.body_count):
             i = k * PLACES
             if self.part_mode(mode, k).slides:
@@ -175,7 +187,6 @@ class MovingBodies(Rows):
                 dissipated -= room[i + at.THRUST] * slip
         powers = DEGREES * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
-        self.note_solved(mode, state, ground)
         return out
 
     @inlined
@@ -320,7 +331,7 @@ class MovingBodies(Rows):
                 count += 1
             else:
                 room[i + at.THRUST] = 0.0
-        self.solve(count, room)
+        self.solve(self.body_count, count, room)
 
     @kernel
     def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
@@ -356,7 +367,7 @@ class MovingBodies(Rows):
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
         """Give the accelerations of the ends of a base in a mode, seen from what it stands on."""
-        slope, first = self.accelerate(mode, state, ground), BEFORE_HORIZONTAL * k
+        slope, first = self.find_forces(mode, state, ground), BEFORE_HORIZONTAL * k
         body = self.state_of(k, state)
         return self.on_base(k).end_rises(body, slope[first + VERTICAL], slope[first + ROTATION])
 

@@ -175,7 +175,7 @@ class RigidChain(RigidImpulses):
             return mode
         now = part.standing(part.base.held(was.contact, left), body)
         now = Mode(now.contact, now.pivot, True)
-        self.accelerate(self.with_part(mode, k, now), state, ground)
+        self.find_forces(self.with_part(mode, k, now), state, ground)
         corners = self.bearing(mode)
         for corner in range(2 * self.body_count):
             least = NEARLY_ZERO * self.number(corner // 2, at.FORCE_SIZE)
@@ -216,7 +216,7 @@ class RigidChain(RigidImpulses):
             return mode
         closed, pulled = self.bearing(mode) | corner, self.pulled(mode)
         held = self.let_stand(closed, pulled, mode, state, memory)
-        self.accelerate(held, state, ground)
+        self.find_forces(held, state, ground)
         if self.corner_force(k, left) < 0.0:
             held = self.with_bearing(mode, closed, pulled | corner)
         return held
@@ -243,7 +243,7 @@ class RigidChain(RigidImpulses):
         held = self.with_bearing(new, corners, pulled | corners & ~self.bearing(new))
         self.write_contacts(new, state, memory)
         self.hold_contacts(held, state, memory)
-        self.accelerate(held, state, ground)
+        self.find_forces(held, state, ground)
         if self.corner_force(k, left) < 0.0:
             return held
         self.write_contacts(held, state, memory)
@@ -301,7 +301,7 @@ class RigidChain(RigidImpulses):
         if leaving == 0:
             load_bodies(self, 0.0, 0.0, self.places())
         else:
-            self.accelerate(flying, state, ground)
+            self.find_forces(flying, state, ground)
         pulled = 0 if leaving == 0 else self.pulled(mode)
         found = bearing_corners(self, flying, closed & ~pulled, pulled, before, leaving, state)
         taken, pulled = found.taken, pulled | found.held
@@ -332,7 +332,7 @@ class RigidChain(RigidImpulses):
     def rest_if_small(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
         """Let bodies whose rebound is below all that counts come to rest, together or alone."""
         n, corners, small, count = self.coordinates(), self.bearing(mode), 0, 0
-        slope = self.accelerate(mode, state, ground)
+        slope = self.find_forces(mode, state, ground)
         for k in range(self.body_count):
             first, bears = BEFORE_HORIZONTAL * k, corners >> 2 * k & BOTH
             if bears in (LEFT_ONLY, RIGHT_ONLY):
@@ -357,7 +357,7 @@ class RigidChain(RigidImpulses):
         before, lost = self.velocities(state), memory[IMPACT_LOSS]
         all_of_them = self.bearing(mode) | corners
         resting = self.let_stand(all_of_them, 0, mode, state, memory)
-        self.accelerate(resting, state, ground)
+        self.find_forces(resting, state, ground)
         least = 0.0
         for k in range(self.body_count):
             if corners >> 2 * k & BOTH != 0:

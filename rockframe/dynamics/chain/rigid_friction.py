@@ -60,7 +60,7 @@ class SlippingRigidChain(TriedSlips):
         if which in (HOLD, SLIP) and (self.is_rigid(k) or self.is_slippery(k)):
             self.write_contacts(mode, state, memory)
             if which == HOLD:
-                self.accelerate(mode, state, ground)
+                self.find_forces(mode, state, ground)
                 thrust = room[k * PLACES + at.THRUST]
                 room[k * PLACES + at.STARTS] = -math.copysign(1.0, thrust)
             else:
@@ -186,7 +186,7 @@ class SlippingRigidChain(TriedSlips):
         """Give the mode after an event in which friction holds what it can, and opposes slip."""
         new, event = mode, memory[LAST_EVENT]
         for _ in range(self.body_count):
-            self.accelerate(new, state, ground)
+            self.find_forces(new, state, ground)
             amiss = False
             for k in range(self.body_count):
                 amiss |= self.is_amiss(k, new, state)
@@ -220,7 +220,7 @@ class SlippingRigidChain(TriedSlips):
         """Give the mode in which what friction cannot hold slips."""
         room = self.places()
         for _ in range(self.body_count):
-            self.accelerate(mode, state, ground)
+            self.find_forces(mode, state, ground)
             for k in range(self.body_count):
                 if not self.part_mode(mode, k).slides and self.is_amiss(k, mode, state):
                     if k == self.body_count - 1:
@@ -238,7 +238,7 @@ class SlippingRigidChain(TriedSlips):
         closed, count, free = before | self.resting_corners(mode, state), 0, mode
         found = Found(before, 0, -1, 0)
         for _ in range(self.body_count):
-            self.accelerate(flying, state, ground)
+            self.find_forces(flying, state, ground)
             found = bearing_corners(
                 self, flying, closed & ~pulled, pulled, before, FRICTION_ALONE, state
             )
@@ -254,7 +254,7 @@ class SlippingRigidChain(TriedSlips):
         ways = found.admissible
         if found.admissible == 0 and found.held == 0:
             self.note_slips(mode)
-            self.accelerate(mode, state, ground)
+            self.find_forces(mode, state, ground)
             for k in range(self.body_count):
                 self.is_amiss(k, mode, state)
                 starts = self.places()[k * PLACES + at.STARTS]

@@ -165,7 +165,7 @@ class SlipperyBases(SlippingBodies):
         body, n = self.on_base(k).body, self.coordinates()
         if not self.part_mode(mode, k).slides:
             return mode
-        slope = self.accelerate(mode, state, ground)
+        slope = self.find_forces(mode, state, ground)
         rate, _ = self.slip_rate(k, mode, state)
         found = self.guards_of_slip(k, mode, state, slope, 0.0, 1.0)
         slows = -found.slip_rate * math.sqrt(body.gravity * body.size())
@@ -176,7 +176,7 @@ class SlipperyBases(SlippingBodies):
         for i in range(n):  # what the slip adds to velocities before it ends
             state[n + i] += slope[i] * time
         new = self.with_slip(k, 0.0, mode, state, memory)
-        slope = self.accelerate(new, state, ground)
+        slope = self.find_forces(new, state, ground)
         for i in range(n):
             state[n + i] -= slope[i] * time
         self.end_slip(k, new, state)

@@ -186,7 +186,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         # the same at both corners, where both bear
         left = room[k * PLACES + at.LEFT_CORNER] != NONE
         slip, _ = self.slip_on(k, PIVOT_LEFT if left else PIVOT_RIGHT, state)
-        leaned = of_both(self, k, first + at.HOLDS, room, rows) - rows[first + at.VALUE]
+        leaned = of_both(self.body_count, k, first + at.HOLDS, room, rows) - rows[first + at.VALUE]
         return float(-rows[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
 
     @kernel
@@ -435,7 +435,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         spare = MOST_CONSTRAINTS * self.body_count - 1  # what slips is not held, so there is room
         keeps = spare * CONSTRAINT + at.KEEPS
         write_direction(self, k, 1.0, 0.0, -reach.rate, keeps, room, rows)
-        found = of_both(self, k, keeps, room, rows)
+        found = of_both(self.body_count, k, keeps, room, rows)
         if impulsive:
             return found
         return found - coriolis_along(i, room) - reach.bend * rate * rate
