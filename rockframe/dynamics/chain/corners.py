@@ -17,7 +17,7 @@ from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.any_base import ON_RIGID
 from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, RIGHT_ONLY, Attempt, attempt
 from rockframe.dynamics.chain.motion import add_constraint, coriolis_normal
-from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES, SOLVED_FOR
+from rockframe.dynamics.chain.rows import CONSTRAINT, GUARDS, PLACES
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.on_base import Mode
 from rockframe.dynamics.pads import CORNER, CORNER_GUARDS
@@ -255,30 +255,18 @@ class RigidCorners(Chain):
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Give accelerations and powers; bodies that rest on the ground need no forces for it."""
         moving, bearing = self.body_count, self.bearing(mode)
-        while moving > 0 and bearing >> 2 * (moving - 1) & BOTH == BOTH:
-            if self.part_mode(mode, moving - 1).slides:
+        for k in range(self.body_count - 1, -1, -1):
+            if bearing >> 2 * k & BOTH != BOTH or self.part_mode(mode, k).slides:
                 break
-            moving -= 1
+            moving = k
+        if moving == self.body_count:
+            return self.find_forces(mode, state, ground)
         return self.accelerate_first(moving, mode, state, ground)
 
     @inlined
-    def note_solved(self, mode: int, state: Vector, ground: Ground) -> None:
-        """Note for what forces were solved for: guards are often asked for the same."""
-        note = self.solved_room()
-        note[0], note[1], note[2] = mode, ground.x, ground.y
-        for i in range(2 * self.coordinates()):
-            note[SOLVED_FOR + i] = state[i]
-        self.places()[(self.body_count - 1) * PLACES + at.SOLVED] = 1.0
-
-    @kernel
     def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:
         """Find the forces of corners on rigid bases, unless they stand."""
-        note = self.solved_room()
-        stands = self.places()[(self.body_count - 1) * PLACES + at.SOLVED] != 0.0
-        stands &= (note[0] == mode) & (note[1] == ground.x) & (note[2] == ground.y)
-        for i in range(2 * self.coordinates()):
-            stands &= note[SOLVED_FOR + i] == state[i]
-        if not stands:
+        if not self.forces_stand(mode, state, ground):
             self.find_forces(mode, state, ground)
 
     @inlined

@@ -24,6 +24,7 @@ from rockframe.dynamics.chain.motion import (
 from rockframe.dynamics.chain.rows import (
     CONSTRAINT,
     PLACES,
+    SOLVED_FOR,
     Rows,
 )
 from rockframe.dynamics.on_base import Mode, VelocityChange
@@ -155,10 +156,27 @@ class MovingBodies(Rows):
 
     @kernel
     def find_forces(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give the same, and leave the forces on all bodies in the rooms."""
-        found = self.accelerate_first(self.body_count, mode, state, ground)
-        self.note_solved(mode, state, ground)
+        """Give the same, leave the forces on all bodies in the rooms, and note for what."""
+        found, note = (
+            self.accelerate_first(self.body_count, mode, state, ground),
+            self.solved_room(),
+        )
+        note[0], note[1], note[2] = mode, ground.x, ground.y
+        for i in range(2 * self.coordinates()):
+            note[SOLVED_FOR + i] = state[i]
+        self.places()[(self.body_count - 1) * PLACES + at.SOLVED] = 1.0
         return found
+
+    @kernel
+    def forces_stand(self, mode: int, state: Vector, ground: Ground) -> bool:
+        """Whether forces were solved for last that belong to a mode and a state."""
+        note, solved = self.solved_room(), (self.body_count - 1) * PLACES + at.SOLVED
+        # variables of links are not noted
+        stand = (self.places()[solved] != 0.0) & (self.variables() == 0)
+        stand &= (note[0] == mode) & (note[1] == ground.x) & (note[2] == ground.y)
+        for i in range(2 * self.coordinates()):
+            stand &= note[SOLVED_FOR + i] == state[i]
+        return bool(stand)
 
     @kernel
     def accelerate_first(self, moving: int, mode: int, state: Vector, ground: Ground) -> Vector:
@@ -188,10 +206,6 @@ class MovingBodies(Rows):
         powers = DEGREES * self.body_count + self.variables()
         out[powers], out[powers + 1] = dissipated, supplied
         return out
-
-    @inlined
-    def note_solved(self, mode: int, state: Vector, ground: Ground) -> None:
-        """Note for what forces were solved for: none of those here are asked for again."""
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
