@@ -12,17 +12,16 @@ Reference: L. Krischer et al., "An Adaptable Seismic Data Format", Geophysical J
 International 207(2), 2016; U.S. Geological Survey, gmprocess, "Workspace".
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math
 import re
 import warnings
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -48,11 +47,7 @@ from rockframe.records.reader import (
     begins_otherwise,
 )
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 _MARKS: Final = (b"Waveforms", b"file_format")

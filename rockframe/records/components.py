@@ -1,21 +1,16 @@
 """Which component of a file is read, and which way it points: in one way for all formats."""
 
-from __future__ import annotations
-
 import math
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, Literal, cast
+from typing import Final, Literal, cast
 
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordError
 from rockframe.records.numbers import same_start
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from rockframe.records.reader import Metadata, Record, Request, Source
+from rockframe.records.reader import Metadata, Record, Request, Source
 
 UPWARDS: Final = "up"
 DOWNWARDS: Final = "down"
@@ -47,7 +42,7 @@ class Orientation:
     # ``"up"``, ``"down"`` or, if the file does not say which, ``"vertical"``
     vertical: Literal["up", "down", "vertical"] | None = None
 
-    def matches(self, other: Orientation) -> bool:
+    def matches(self, other: "Orientation") -> bool:
         """Tell whether two directions are the same, or both vertical."""
         if self.vertical is not None and other.vertical is not None:
             return True
@@ -56,7 +51,7 @@ class Orientation:
         turn = (self.azimuth - other.azimuth) % _FULL_CIRCLE
         return min(turn, _FULL_CIRCLE - turn) < 1e-6
 
-    def reversed(self) -> Orientation:
+    def reversed(self) -> "Orientation":
         """Give the opposite direction, for a sign before a name; downwards if it is vertical."""
         if self.vertical is not None:
             return Orientation(vertical=DOWNWARDS)

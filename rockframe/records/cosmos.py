@@ -7,8 +7,6 @@ Reference: Consortium of Organizations for Strong-Motion Observation Systems,
 "COSMOS Strong Motion Data Format", version 1.20, August 15, 2001.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass
@@ -157,7 +155,7 @@ def _section(
             found = f"{count} values on {lines} lines of {columns} ({what})"
             expected = "as many lines as these values need, and as many as follow"
             raise source.refuse(found=found, expected=expected, line=index + 1)
-        return FixedWidth(width, columns).at(source, first), count, first + lines
+        return Fields(source, FixedWidth(width, columns), first), count, first + lines
     index = min(max(at, 0), end - 1)
     raise source.refuse(
         found=quoted_first_line(source.lines[index]),

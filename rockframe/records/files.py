@@ -1,7 +1,5 @@
 """Where the bytes of records come from: a path, a folder, an archive, memory or an open file."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import os
@@ -158,7 +156,7 @@ class Unread:
     reason: str  # what was found, and what was expected
 
     @classmethod
-    def of(cls, path: str, problem: RecordError) -> Unread:
+    def of(cls, path: str, problem: RecordError) -> "Unread":
         """Say of a file why it was not read."""
         where = "" if problem.line is None else f"line {problem.line}: "
         return cls(path, f"{where}found {problem.found}; expected {problem.expected}")

@@ -14,14 +14,14 @@ of their own, in any order, or one under the other::
 or the time step alone on top of one column.
 """
 
-from __future__ import annotations
-
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 
+from rockframe.errors import RecordError
 from rockframe.records.checks import USUAL_TIME_STEPS
 from rockframe.records.numbers import (
     NUMBER,
@@ -34,12 +34,7 @@ from rockframe.records.numbers import (
     with_e,
 )
 from rockframe.records.reader import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rockframe.errors import RecordError
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 HEADER_LINES: Final = 20
 _MOST_COMMENTS: Final = 2_000

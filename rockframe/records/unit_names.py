@@ -6,8 +6,6 @@ records* only; every other argument of rockframe goes through the general unit
 reader. What the file says and what the caller asks for is settled here, too.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass
@@ -17,7 +15,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.units import ACCELERATION, Measure, to_si
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # which imports this module
     from rockframe.records.reader import Request, Source
 
 
@@ -99,7 +97,7 @@ def other_quantity(name: str) -> str | None:
 
 
 def choose_unit(
-    source: Source, request: Request, name: str | None, line: int | None
+    source: "Source", request: "Request", name: str | None, line: int | None
 ) -> tuple[RecordUnit, str, list[str]]:
     """Settle the unit of the samples between the file and the ``unit=`` argument.
 
