@@ -11,7 +11,6 @@ from rockframe.plot._axes import (
     GREY,
     Shown,
     axis_label,
-    colour_of,
     grid,
     ink,
     key,
@@ -156,8 +155,6 @@ def moment_rotation(
     >>> axes.get_xlabel()
     'rotation [°]'
     """
-    from rockframe.simulation.system import System
-
     chosen = units_of(units, "moment_rotation")
     angle = chosen.of(ANGLE, "deg", rotation=rotation)
     size = chosen.of(MOMENT, "kN*m", moment=moment)
@@ -177,8 +174,7 @@ def moment_rotation(
                 angle.of(_on_base(run.dataset)), size.of(run.dataset["base_overturning_moment"]),
                 color=run.colour, linestyle=run.style, linewidth=0.9, label=run.label,
             )  # fmt: skip
-        if on.axes.get_legend_handles_labels()[0]:
-            key(on.axes)
+        key(on.axes)
         on.entitle(runs_title(runs, chosen.reader), title)
     _about_zero(on.axes)
     on.axes.set(
@@ -292,14 +288,11 @@ def _held(system: System, largest: float) -> xr.Dataset:
 
 
 def _draw_held(axes: Axes, held: xr.Dataset, angle: Shown, size: Shown) -> None:
-    for number, (name, words) in enumerate(
-        (("base_moment", "of the base"), ("restoring_moment", "that holds the body"))
+    for name, words, colour, style in (
+        ("base_moment", "of the base", COLOURS[0], "-"),
+        ("restoring_moment", "that holds the body", COLOURS[1], "--"),
     ):
-        values = size.of(held[name])
-        style = "-" if number == 0 else "--"
-        axes.plot(
-            angle.of(held["angle"]), values, color=colour_of(number), linestyle=style, label=words
-        )
+        axes.plot(angle.of(held["angle"]), size.of(held[name]), style, color=colour, label=words)
     key(axes, title="moment", title_fontsize="small")
 
 

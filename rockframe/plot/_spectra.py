@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_words, truth
+from rockframe.measures import fourier_spectrum, response_spectrum, velocity_and_displacement
 from rockframe.motion.quantities import ArrayLike
 from rockframe.plot._axes import (
     BLUE,
@@ -85,12 +86,6 @@ def spectra(
     >>> panels[0].get_xlabel()
     'time [s]'
     """
-    from rockframe.measures import (
-        fourier_spectrum,
-        response_spectrum,
-        velocity_and_displacement,
-    )
-
     given = drawn_motions(motion, "spectra")
     cut = window_of(window, "spectra")
     chosen = units_of(units, "spectra")
@@ -164,7 +159,7 @@ def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> N
     history.set_xlim(min(time[0] for time in ends), max(time[-1] for time in ends))
     history.set(
         xlabel="time [s]",
-        ylabel=axis_label("acceleration\n", unit.words).replace("\n ", "\n"),
+        ylabel=axis_label("acceleration\n", unit.words),
     )
     response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
     response.set_ylim(bottom=0.0)
@@ -252,8 +247,6 @@ def suite(
     >>> axes.get_ylabel()
     'pseudo-spectral acceleration [g]'
     """
-    from rockframe.measures import response_spectrum
-
     given = drawn_motions(motions, "suite")
     if target is not None:
         check_target(target, owner="rf.plot.suite")

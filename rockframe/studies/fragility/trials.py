@@ -228,7 +228,7 @@ def trials_of_capacities(
     has_lower, has_upper = below > 0.0, np.isfinite(above)
     rows = [_in_lines(measure, sizes, SCALE) for measure in measures]
     lower, upper = (
-        np.log(np.column_stack([_at_scales(row, scales, scale) for row in rows]))
+        np.log(np.column_stack([at_scales(row, scales, scale) for row in rows]))
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
     told = has_lower | has_upper
@@ -275,10 +275,10 @@ def motion_numbers(runs: xr.DataArray) -> Generic:
     return np.unique(laid_out(runs[MOTION], runs).astype(str), return_inverse=True)[1]
 
 
-def _at_scales(measure: Generic, known: Array, scales: Array) -> Array:
-    """Give a measure of each line at its scale; measures are powers of the scale."""
-    near, far = measure[:, 0], measure[:, -1]
-    if measure.shape[1] == 1:
+def at_scales(measure: Generic, known: Array, scales: Array | float) -> Array:
+    """Give a measure at scales from those at known ones, of which it is a power."""
+    near, far = measure[..., 0], measure[..., -1]
+    if measure.shape[-1] == 1:
         return near
     power = np.log(far / near) / np.log(known[-1] / known[0])
     return near * (scales / known[0]) ** power
