@@ -7,17 +7,15 @@ from rockframe.command.answer import Answer
 from rockframe.command.plot import PICTURE, save
 from rockframe.command.shared import (
     Outputs,
+    analysed,
     analysis_kind,
     given_of,
     in_words,
     scene_from,
     system_words,
     taken_by,
-    with_project,
 )
-from rockframe.command.streams import bar_for
 from rockframe.plot import critical_scale as draw
-from rockframe.reports.figures import figure_of
 from rockframe.simulation.provenance import motion_words
 from rockframe.studies import critical_scale
 
@@ -40,10 +38,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     }
     if arguments.runs is not None:
         given["scales"] = max(2, min(arguments.runs, _FIRST))
-    with bar_for("critical", quiet=arguments.quiet) as bar:
-        given["progress"] = bar
-        dataset = critical_scale(found.system, found.motion, **given)
-    dataset = with_project(dataset, found.project)
+    dataset = analysed(critical_scale, found, found.motion, given, arguments)
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Motion", motion_words(dataset.attrs))
     answer.says("Verdict", dataset.attrs["verdict"])
@@ -53,5 +48,5 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.numbers(dataset)
     outputs.result(arguments.output, _RESULT, dataset)
     if arguments.picture is not None:
-        save(figure_of(draw(dataset)), arguments.picture, outputs)
+        save(draw(dataset), arguments.picture, outputs)
     return 0

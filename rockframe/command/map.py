@@ -11,19 +11,17 @@ from rockframe.command.files.tables import arguments_of
 from rockframe.command.plot import PICTURE, save
 from rockframe.command.shared import (
     Outputs,
+    analysed,
     analysis_kind,
     run_from,
     system_words,
     taken_by,
     values_of,
-    with_project,
 )
-from rockframe.command.streams import bar_for
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS
 from rockframe.plot import overturning_map as draw
-from rockframe.reports.figures import figure_of
 from rockframe.shared_arguments import suggestion
 from rockframe.studies import overturning_map
 
@@ -45,10 +43,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         "frequency": values_of(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
     }
     pulse, words = _pulse(found, arguments.pulse)
-    with bar_for("map", quiet=arguments.quiet) as bar:
-        given["progress"] = bar
-        dataset = overturning_map(found.system, pulse, **given)
-    dataset = with_project(dataset, found.project)
+    dataset = analysed(overturning_map, found, pulse, given, arguments)
     answer.says("Verdict", dataset.attrs["verdict"])
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Pulse", words)
@@ -56,7 +51,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.numbers(dataset)
     outputs.result(arguments.output, _RESULT, dataset)
     if arguments.picture is not None:
-        save(figure_of(draw(dataset)), arguments.picture, outputs)
+        save(draw(dataset), arguments.picture, outputs)
     return 0
 
 

@@ -11,7 +11,6 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
 from rockframe.plot import motion as draw
-from rockframe.reports.figures import figure_of
 from rockframe.results.table import table
 
 _ABOUT: Final = (
@@ -49,7 +48,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.numbers(measures)
     outputs.table(arguments.csv, _TABLE, values)
     for path, motion in zip(pictures, motions.values(), strict=bool(pictures)):
-        save(figure_of(draw(motion)), path, outputs)
+        save(draw(motion), path, outputs)
     return 0
 
 

@@ -15,7 +15,7 @@ import xarray as xr
 from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
-from rockframe.command.streams import INPUT, STREAM, StandardInput, opened
+from rockframe.command.streams import INPUT, STREAM, StandardInput, bar_for, opened
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, FileError, RecordError, SolverError, shown
 from rockframe.motion import GroundMotion
@@ -43,10 +43,8 @@ _LONGEST_HEAD: Final = 65536
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
     """Read the file of a motion as the options for reading say."""
-    step = {} if arguments.time_step is None else {"time_step": arguments.time_step}
-    return GroundMotion.read(
-        opened(path, "a record"), component=arguments.component, unit=arguments.unit, **step
-    )
+    given = given_of(arguments, "component", "unit", "time_step")
+    return GroundMotion.read(opened(path, "a record"), **given)
 
 
 def suite_from(paths: Sequence[str], arguments: argparse.Namespace) -> MotionSuite:
@@ -111,7 +109,9 @@ def check_format(arguments: argparse.Namespace) -> None:
 
 def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
     """Give the arguments of a run: those of a file, and what options give instead."""
-    run = {**of_file, **_run_options(arguments)}
+    run = {**of_file, **given_of(arguments, "duration", "free_vibration")}
+    if arguments.accuracy is not None:
+        run["accuracy"] = _accuracy(arguments.accuracy)
     if arguments.duration is not None and arguments.free_vibration is None:
         run.pop("free_vibration", None)
     if arguments.free_vibration is not None and arguments.duration is None:
@@ -163,6 +163,19 @@ def _steps(start: float, end: float, step: float) -> list[float]:
 def simulated(found: Described, **more: Any) -> xr.Dataset:
     """Simulate what a file describes."""
     return with_project(found.system.simulate(found.motion, **{**found.run, **more}), found.project)
+
+
+def analysed(
+    analysis: Callable[..., xr.Dataset],
+    found: Any,
+    motions: object,
+    given: Mapping[str, Any],
+    arguments: argparse.Namespace,
+) -> xr.Dataset:
+    """Analyse what a file describes, with a bar that tells how far it is."""
+    with bar_for(arguments.command, quiet=arguments.quiet) as bar:
+        dataset = analysis(found.system, motions, **given, progress=bar)
+    return with_project(dataset, found.project)
 
 
 def with_project(dataset: xr.Dataset, project: str) -> xr.Dataset:
@@ -326,17 +339,6 @@ def printed(values: Any) -> str:
 def system_words(system: System) -> str:
     """Name the parts of a system in a line."""
     return ", ".join(type(part).__name__ for part in system.parts.structural())
-
-
-def _run_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    given: dict[str, Any] = {
-        name: getattr(arguments, name)
-        for name in ("duration", "free_vibration")
-        if getattr(arguments, name) is not None
-    }
-    if arguments.accuracy is not None:
-        given["accuracy"] = _accuracy(arguments.accuracy)
-    return given
 
 
 def _accuracy(text: str) -> str | float:
