@@ -12,8 +12,7 @@ from rockframe.simulation.run_arguments import PROVED, Certification
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Simulate, with all runs beside it, and say what they showed."""
     found = scene_from(arguments)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, RUN)
+    outputs = Outputs(arguments, found.files, answer, output=RUN)
     wanted = PROVED
     if not arguments.proved:
         wanted = Certification(**given_of(arguments, "nudge", "reach", "runs"))
@@ -29,5 +28,5 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         count = int(response.attrs["certificate_runs"])
         answer.text(f"  runs beside it: {count}", certificate_runs=count)
     answer.numbers(response)
-    outputs.result(arguments.output, RUN, response)
+    outputs.result(response)
     return 0 if finished(response) else 1

@@ -28,9 +28,7 @@ _FIRST: Final = 80
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Find the least scale that overturns, and tell the shaking at it."""
     found = scene_from(arguments, moved=True)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, _RESULT)
-    outputs.check(arguments.picture, PICTURE)
+    outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {
         "intensity": _USUAL,
         **given_of(arguments, "largest", "runs", "intensity", "period"),
@@ -46,7 +44,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if bool(measure.notnull()):
         answer.says("Shaking", f"{in_words(measure, dataset)} at the critical scale")
     answer.numbers(dataset)
-    outputs.result(arguments.output, _RESULT, dataset)
+    outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
     return 0

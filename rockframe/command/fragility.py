@@ -36,9 +36,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     known = is_result(arguments.scene)
     found = None if known else scene_and_motions(arguments)
     read = [arguments.scene, *arguments.records] if found is None else found.files
-    outputs = Outputs(arguments, read, answer)
-    outputs.check(arguments.output, _RESULT)
-    outputs.check(arguments.picture, PICTURE)
+    outputs = Outputs(arguments, read, answer, output=_RESULT, picture=PICTURE)
     if found is None:
         runs = _runs_of_study(arguments)
     else:
@@ -59,7 +57,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         answer.subject("Scene", system_words(found.system))
     answer.subject("Runs", str(runs.attrs["verdict"]))
     answer.numbers(dataset)
-    outputs.result(arguments.output, _RESULT, dataset)
+    outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
     return 0

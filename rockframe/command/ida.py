@@ -34,10 +34,8 @@ _USUAL: Final = "PGA"
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Scale motions until they overturn, and tell the capacity under each."""
     found = scene_and_motions(arguments)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, _RESULT)
-    outputs.check(arguments.picture, PICTURE)
-    outputs.check(arguments.csv, _TABLE)
+    kinds = {"output": _RESULT, "picture": PICTURE, "csv": _TABLE}
+    outputs = Outputs(arguments, found.files, answer, **kinds)
     axes = {**found.arguments.get(AXES, {})}
     if CASES in found.arguments:
         words = "a dynamic analysis has axes, and no table of cases"
@@ -60,8 +58,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if len(capacities) <= _MOST_SHOWN:
         answer.text(printed(capacities))
     answer.numbers(dataset)
-    outputs.table(arguments.csv, _TABLE, capacities)
-    outputs.result(arguments.output, _RESULT, dataset)
+    outputs.table(capacities)
+    outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
     return 0

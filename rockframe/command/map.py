@@ -33,9 +33,7 @@ _AXES: Final = ("amplitude", "frequency")
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Run pulses of all amplitudes and frequencies, and tell what overturns."""
     found = read_scene(arguments.scene)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, _RESULT)
-    outputs.check(arguments.picture, PICTURE)
+    outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {
         "store": arguments.store,
         **taken_by(overturning_map, run_from(found.run, arguments)),
@@ -49,7 +47,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.subject("Pulse", words)
     answer.text("\n".join(_lines(dataset)))
     answer.numbers(dataset)
-    outputs.result(arguments.output, _RESULT, dataset)
+    outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
     return 0

@@ -30,8 +30,7 @@ _MOST_SHOWN: Final = 10
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Tell what files hold."""
-    outputs = Outputs(arguments, arguments.files, answer)
-    outputs.check(arguments.csv, _TABLE)
+    outputs = Outputs(arguments, arguments.files, answer, csv=_TABLE)
     motions = motions_from(arguments)
     pictures = _numbered(arguments.picture, len(motions))
     for path in pictures:
@@ -46,7 +45,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     else:
         answer.text(printed(values))
     answer.numbers(measures)
-    outputs.table(arguments.csv, _TABLE, values)
+    outputs.table(values)
     for path, motion in zip(pictures, motions.values(), strict=bool(pictures)):
         save(draw(motion), path, outputs)
     return 0

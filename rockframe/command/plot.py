@@ -29,8 +29,7 @@ PICTURE: Final = FileKind.marked("a picture", tuple(_SIGNED), _MARK)
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Draw what a file holds."""
     check_format(arguments)
-    outputs = Outputs(arguments, [arguments.dataset], answer)
-    outputs.check(arguments.output, PICTURE)
+    outputs = Outputs(arguments, [arguments.dataset], answer, output=PICTURE)
     dataset = read_result(arguments.dataset)
     name = drawn_by(dataset)
     named: dict[str, Any] = {} if arguments.title is None else {"title": arguments.title}

@@ -201,13 +201,20 @@ class Outputs:
     """The files that a command writes, and those that it must not write over."""
 
     def __init__(
-        self, arguments: argparse.Namespace, read: Iterable[str | Path], answer: Answer
+        self,
+        arguments: argparse.Namespace,
+        read: Iterable[str | Path],
+        answer: Answer,
+        **kinds: FileKind,  # of the files that options name; refused before the work, not after it
     ) -> None:
         self._given: dict[str, Any] = {"overwrite": arguments.overwrite, "read": list(read)}
         self._answer = answer
+        self._named = {name: (getattr(arguments, name), kind) for name, kind in kinds.items()}
+        for path, kind in self._named.values():
+            self.check(path, kind)
 
     def check(self, path: str | Path | None, kind: FileKind) -> None:
-        """Refuse a file that must not be written, before the work and not after it."""
+        """Refuse a file that must not be written."""
         if path is not None and str(path) != STREAM:
             checked_path(path, kind, **self._given)
 
@@ -221,9 +228,9 @@ class Outputs:
         write_file(path, kind, content, **self._given)
         self._answer.wrote(title, path)
 
-    def result(self, path: str | Path | None, kind: FileKind, dataset: xr.Dataset) -> None:
-        """Write a result, if a file was named, and say so."""
-        self.write(path, kind, "Results", dataset.to_netcdf)
+    def result(self, dataset: xr.Dataset) -> None:
+        """Write a result to the file of ``--output``, if there is one, and say so."""
+        self.write(*self._named["output"], "Results", dataset.to_netcdf)
 
     def written_by(
         self, path: str | Path, ending: str, title: str, save: Callable[[Path], object]
@@ -240,9 +247,9 @@ class Outputs:
             save(place)
             self._answer.hands_on(place.read_bytes())
 
-    def table(self, path: str | None, kind: FileKind, values: "pd.DataFrame") -> None:
-        """Write a table, if a file was named, and say so."""
-        self.write(path, kind, "Table", lambda part: values.to_csv(part))
+    def table(self, values: "pd.DataFrame") -> None:
+        """Write a table to the file of ``--csv``, if there is one, and say so."""
+        self.write(*self._named["csv"], "Table", lambda part: values.to_csv(part))
 
 
 def _bytes_of(content: Content, kind: FileKind) -> bytes:

@@ -30,9 +30,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     found = read_study(arguments.study)
     if arguments.output is None and found.output is not None:
         arguments.output = str(found.output)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, STUDY)
-    outputs.check(arguments.csv, _TABLE)
+    outputs = Outputs(arguments, found.files, answer, output=STUDY, csv=_TABLE)
     if arguments.store == "":
         words = "found no name of a folder after --store; expected one, such as --store kept"
         raise FileError(arguments.study, [(None, words)])
@@ -52,8 +50,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if len(values) <= _MOST_SHOWN:
         wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
         answer.text(printed(values[wanted]))
-    outputs.table(arguments.csv, _TABLE, values)
-    outputs.result(arguments.output, STUDY, runs)
+    outputs.table(values)
+    outputs.result(runs)
     status = runs["status"].to_numpy()
     if (status == RunStatus.NOT_RUN).any():
         _say_how_to_go_on(store, arguments.typed)

@@ -85,6 +85,12 @@ _REALS: Final = re.compile(
     r"\s*Format\s*=?\s*\(\s*(\d{1,3})[FEG](\d{1,3})\.\d{1,3}\)",
     re.IGNORECASE,
 )
+_OF_INTEGERS: Final = (
+    "integer header", "100 Integer-header values follow on 10 lines, Format= (10I8)",
+)  # fmt: skip
+_OF_REALS: Final = (
+    "real header", "100 Real-header values follow on 20 lines, Format= (5F15.6)",
+)  # fmt: skip
 _COMMENTS: Final = re.compile(r"(\d{1,6})\s+Comment line", re.IGNORECASE)
 _UNKNOWN: Final = re.compile(r"unspecified:\s*(-?\d{1,8})\s*,?\s*(-?[\d.]{1,12})")
 _USUAL_UNKNOWN: Final = (-999, -999.0)
@@ -125,8 +131,8 @@ class _Header:
 
 def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Header:
     at = start + text_lines
-    integers, integer_count, at = _section(source, at, end, _INTEGERS, "integer header")
-    reals, real_count, comments_line = _section(source, at, end, _REALS, "real header")
+    integers, integer_count, at = _section(source, at, end, _INTEGERS, *_OF_INTEGERS)
+    reals, real_count, comments_line = _section(source, at, end, _REALS, *_OF_REALS)
     comments, data_at = "", comments_line
     said = _COMMENTS.search(source.top(1, comments_line)[0]) if comments_line < end else None
     if said is not None:
@@ -139,7 +145,7 @@ def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Head
 
 
 def _section(
-    source: Source, at: int, end: int, announcement: re.Pattern[str], what: str
+    source: Source, at: int, end: int, announcement: re.Pattern[str], what: str, such_as: str
 ) -> tuple[Fields, int, int]:
     """Give the fields of a section, how many there are, and the index of the line below them."""
     # one line of slack: some files have a text line more than they announce
@@ -157,16 +163,9 @@ def _section(
             raise source.refuse(found=found, expected=expected, line=index + 1)
         return Fields(source, FixedWidth(width, columns), first), count, first + lines
     index = min(max(at, 0), end - 1)
-    raise source.refuse(
-        found=quoted_first_line(source.lines[index]),
-        expected=f"the line that announces the {what}, such as '100 "
-        + (
-            "Integer-header values follow on 10 lines, Format= (10I8)'"
-            if announcement is _INTEGERS
-            else "Real-header values follow on 20 lines, Format= (5F15.6)'"
-        ),
-        line=index + 1,
-    )
+    found = quoted_first_line(source.lines[index])
+    expected = f"the line that announces the {what}, such as '{such_as}'"
+    raise source.refuse(found=found, expected=expected, line=index + 1)
 
 
 def _unknown(lines: list[str]) -> tuple[int, float]:

@@ -14,7 +14,7 @@ Reference: Instituto de Ingenieria, UNAM, "Archivo estandar de aceleracion", ver
 """
 
 import re
-from functools import cache
+from functools import cache, partial
 from typing import Final
 
 from rockframe.records.checks import LENGTH, Stated, record_of, settle_count, settle_time_step
@@ -82,7 +82,7 @@ def _read(source: Source, request: Request) -> Record:
     for place, (said, line) in enumerate(directions[:channels]):
         name, direction = _direction(said)
         name = name or f"channel {place + 1}"
-        read = lambda place=place: samples(place)  # noqa: E731
+        read = partial(samples, place)
         components.append(FileComponent(name, read, direction, channel=place + 1, line=line))
     return choose_component(source, request, components)
 

@@ -161,20 +161,17 @@ def argument_unit(unit: object, *, owner: str) -> RecordUnit:
     known = acceleration_unit(text)
     if known is not None:
         return known
-    try:
-        factor = to_si(f"1 {text}", _TRY_UNIT, owner=owner, name="unit")
-    except (UnitsError, ComponentError) as problem:
-        factor = 0.0
-        cause: Exception | None = problem
-    else:
-        cause = None
-    if factor > 0.0:
-        return RecordUnit(text, factor)
     msg = (
         f"{owner}: unit needs the unit of an acceleration, got {shown(text)}; "
         "write for example unit='g', unit='cm/s^2' or unit='m/s^2'"
     )
-    raise UnitsError(msg) from cause
+    try:
+        factor = to_si(f"1 {text}", _TRY_UNIT, owner=owner, name="unit")
+    except (UnitsError, ComponentError) as problem:
+        raise UnitsError(msg) from problem
+    if not factor > 0.0:
+        raise UnitsError(msg)
+    return RecordUnit(text, factor)
 
 
 def _short_metre(match: re.Match[str]) -> str:
