@@ -248,14 +248,8 @@ def fractile_curves(
         one = given.isel(quantile=number)
         of_response = np.minimum(one["response_fractile"].to_numpy(), 2.0 * right)
         axes.plot(of_response, up, color=colour, lw=1.6, label=f"{words} of responses")
-        axes.plot(
-            levels,
-            np.where(np.isfinite(one["intensity_fractile"]), one["intensity_fractile"], np.nan),
-            color=paired,
-            lw=1.4,
-            ls="--",
-            label=f"{words} of intensities",
-        )
+        reached = one["intensity_fractile"].where(np.isfinite)
+        axes.plot(levels, reached, color=paired, lw=1.4, ls="--", label=f"{words} of intensities")
     words = str(given.attrs["response"])
     axes.set(
         xlabel=label_of(given["response_level"].rename(words)),

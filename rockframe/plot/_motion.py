@@ -181,16 +181,11 @@ def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: Shown, colour: 
     time, peak = float(dataset["time"][place]), float(values[place])
     axes.plot([time], [peak], marker="o", markersize=4.0, color=colour)
     late = place > 0.8 * values.size
+    beside, side = (-6.0, "right") if late else (6.0, "left")
     axes.annotate(
-        f"{abs(peak):.3g}",
-        (time, peak),
-        xytext=(-6.0 if late else 6.0, 0.0),
-        textcoords="offset points",
-        ha="right" if late else "left",
-        va="bottom" if peak > 0.0 else "top",
-        fontsize="small",
-        color=colour,
-    )
+        f"{abs(peak):.3g}", (time, peak), xytext=(beside, 0.0), textcoords="offset points", ha=side,
+        va="bottom" if peak > 0.0 else "top", fontsize="small", color=colour,
+    )  # fmt: skip
 
 
 @draws(

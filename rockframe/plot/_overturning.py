@@ -84,14 +84,9 @@ def overturning_map(
     axes = on.axes
     known = overturns(given).transpose(*count.dims).notnull()
     axes.pcolormesh(
-        across,
-        up,
-        count.fillna(-1.0).where(known),
-        cmap=ListedColormap(colours),
-        vmin=-1.5,
-        vmax=told + 0.5,
-        shading="nearest",
-    )
+        across, up, count.fillna(-1.0).where(known), cmap=ListedColormap(colours), vmin=-1.5,
+        vmax=told + 0.5, shading="nearest",
+    )  # fmt: skip
     middle = 0.5 * (given["amplitude_below"] + given["amplitude_above"])
     size = float(up[-1] / given["amplitude"][-1])
     for number in range(given.sizes.get("boundary", 0)):

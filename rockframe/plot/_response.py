@@ -55,12 +55,8 @@ def draw_contact(axes: Axes, state: xr.DataArray, name: str) -> None:
     of time: bars would show whichever was painted last.
     """
     time = state["time"].to_numpy()
-    axes.imshow(
-        mixed_colours(state, _COLUMNS)[np.newaxis],
-        extent=(time[0], time[-1], 0.0, 1.0),
-        aspect="auto",
-        interpolation="antialiased",
-    )
+    colours, ends = mixed_colours(state, _COLUMNS)[np.newaxis], (time[0], time[-1], 0.0, 1.0)
+    axes.imshow(colours, extent=ends, aspect="auto", interpolation="antialiased")
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
     axes.set_ylabel(name, rotation=0, ha="right", va="center")

@@ -91,12 +91,8 @@ def tradeoff(
     for panel in axes:
         panel.set(xscale="log")
         grid(panel)
-    axes[0].set(
-        yscale="log",
-        xlabel="time of a run [ms]",
-        ylabel=_ERROR.format("\n"),
-        title="integration: low and left is better",
-    )
+    axes[0].set(yscale="log", xlabel="time of a run [ms]", ylabel=_ERROR.format("\n"))
+    axes[0].set_title("integration: low and left is better")
     axes[0].xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes[0].xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes[0].xaxis.set_minor_locator(NullLocator())
