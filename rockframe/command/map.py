@@ -84,7 +84,9 @@ def _lines(dataset: xr.Dataset) -> list[str]:
         one = dataset.isel(frequency=number)
         ends = zip(one["amplitude_above"].to_numpy(), one["impacts_above"].to_numpy(), strict=True)
         told = [f"{at:.4g} {_way(impacts)}" for at, impacts in ends if at == at]
-        lines.append(f"  {frequency:<16.4g} {', '.join(told) or _throughout(one)}")
+        ways = one["impacts_before_overturning"].to_numpy()
+        none = "stands" if (ways != ways).all() else "overturns"
+        lines.append(f"  {frequency:<16.4g} {', '.join(told) or f'none: {none} throughout'}")
     return lines
 
 
@@ -92,9 +94,3 @@ def _way(impacts: float) -> str:
     if impacts != impacts:
         return "stands"
     return f"overturns after {impacts:.0f} impact{'' if impacts == 1 else 's'}"
-
-
-def _throughout(one: xr.Dataset) -> str:
-    """Say what all amplitudes do where the verdict does not change."""
-    ways = one["impacts_before_overturning"].to_numpy()
-    return "none: stands throughout" if (ways != ways).all() else "none: overturns throughout"

@@ -69,7 +69,7 @@ def read_table(source: Source, most_columns: int) -> Table:
         raise too_many(source, len(rows), line=lines[MAXIMUM_SAMPLES])
     body = "\n".join(rows)
     decimal_comma = _has_decimal_commas(source, lines, rows, body)
-    separator = _separator(body, decimal_comma=decimal_comma)
+    separator = ";" if ";" in body else "," if "," in body and not decimal_comma else None
     columns = len(_split(rows[0], separator))
     _check_header(source, header, separator, columns)
     if columns > most_columns:
@@ -183,12 +183,6 @@ def _has_decimal_commas(source: Source, lines: list[int], rows: list[str], body:
         expected = "decimal points, or ';' between columns with decimal commas"
         raise source.refuse(found=found, expected=expected, line=lines[comma])
     return True
-
-
-def _separator(body: str, *, decimal_comma: bool) -> str | None:
-    if ";" in body:
-        return ";"
-    return "," if "," in body and not decimal_comma else None
 
 
 def _fields(

@@ -83,7 +83,9 @@ def normalised(name: str) -> str:
     text = re.sub(r"\s+", "", name.casefold())
     text = text.replace("**", "^").replace("²", "^2").replace("·", "").replace("⁻^2", "^-2")
     text = re.sub(r"^[µμ]m", "um", text)
-    return re.sub(r"^(centi|milli|micro|nano)?met(?:er|re)s?(?=/|s|$)", _short_metre, text)
+    short = {"centi": "cm", "milli": "mm", "micro": "um", "nano": "nm", None: "m"}
+    spelt_out = r"^(centi|milli|micro|nano)?met(?:er|re)s?(?=/|s|$)"
+    return re.sub(spelt_out, lambda found: short[found[1]], text)
 
 
 def acceleration_unit(name: str) -> RecordUnit | None:
@@ -172,8 +174,3 @@ def argument_unit(unit: object, *, owner: str) -> RecordUnit:
     if not factor > 0.0:
         raise UnitsError(msg)
     return RecordUnit(text, factor)
-
-
-def _short_metre(match: re.Match[str]) -> str:
-    short = {"centi": "c", "milli": "m", "micro": "u", "nano": "n", None: ""}
-    return short[match.group(1)] + "m"
