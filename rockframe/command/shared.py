@@ -77,11 +77,11 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
     motion, files = found.motion, found.files
     if arguments.motion is None:
         refuse_of_record(arguments, "name one with --motion")
-    if moved and motion is None and arguments.motion is None:
-        raise FileError(arguments.scene, [(None, _NO_MOTION)])
-    if arguments.motion is not None:
+    else:
         motion = motion_from(arguments.motion, arguments)
         files += (Path(arguments.motion),)
+    if moved and motion is None:
+        raise FileError(arguments.scene, [(None, _NO_MOTION)])
     if arguments.scale is not None and motion is not None:
         motion = motion.scaled(arguments.scale)
     return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)

@@ -156,8 +156,9 @@ class Drawer:
             along = (feet[0] - feet[1]) * side / width
             normal = np.array([-along[1], along[0]])
             # heights of the block's base above the feet, up to that of a free pad
-            heights = [float((_on(base, x, half) - foot) @ normal)
-                       for x, foot in zip((outer, inner), feet, strict=True)]  # fmt: skip
+            shares = (0.5 * (x / half + 1.0) for x in (outer, inner))  # along the base at rest
+            heights = [float((base[0] + share * (base[1] - base[0]) - foot) @ normal)
+                       for share, foot in zip(shares, feet, strict=True)]  # fmt: skip
             tops = [
                 foot + normal * min(max(height, _LEAST_THICKNESS * thick), thick + free)
                 for height, foot in zip(heights, feet, strict=True)
@@ -202,12 +203,6 @@ class Drawer:
             return self._turned(part) if isinstance(part, np.ndarray) else part
 
         return Layout(**{name: turned(part) for name, part in vars(found).items()})
-
-
-def _on(base: Array, x: float, half: float) -> Array:
-    """Give the point of a base line at a place along it at rest."""
-    share = 0.5 * (x / half + 1.0)
-    return base[0] + share * (base[1] - base[0])
 
 
 CONTACT: Final = VERMILLION

@@ -29,6 +29,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
+from rockframe.records.headers import first_match
 from rockframe.records.numbers import Fields, FixedWidth, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import acceleration_unit, choose_unit
@@ -308,15 +309,13 @@ def _samples(source: Source, request: Request, header: _Header) -> Record:
 
 
 def _data_line(source: Source, header: _Header) -> tuple[int, re.Match[str]]:
-    for index, text in enumerate(source.top(3, header.data_at), start=header.data_at):
-        match = _DATA_LINE.match(text)
-        if match is not None:
-            return index + 1, match
+    found = first_match(_DATA_LINE, source.top(3, header.data_at), header.data_at + 1)
+    if found is not None:
+        return found[1], found[0]
     index = min(header.data_at, len(source.lines) - 1)
+    first = quoted_first_line(source.lines[index])
     expected = "a line such as '42000 acceleration pts, ..., units=cm/sec2(04),Format=(8F10.3)'"
-    raise source.refuse(
-        found=quoted_first_line(source.lines[index]), expected=expected, line=index + 1
-    )
+    raise source.refuse(found=first, expected=expected, line=index + 1)
 
 
 def _unit_name(source: Source, request: Request, header: _Header, text: str, line: int) -> str:

@@ -142,17 +142,15 @@ def description(header: list[str]) -> Metadata:
     if lines:
         metadata["description"] = "corrected" if is_corrected(lines) else "uncorrected"
     metadata |= _event(lines, place + (2 if second else 1))
-    for number, text in enumerate(lines):
-        station = _STATION.search(text)
-        if station is None:
-            continue
+    found = first_match(_STATION, lines)
+    if found is not None:
+        station, below = found
         if _COORDINATE.fullmatch(station.group(1)) is None:
             metadata["station"] = station.group(1)
-        if number + 1 < len(lines) and lines[number + 1]:
-            name = _WIDE_GAP.split(lines[number + 1])[0]
+        if below < len(lines) and lines[below]:
+            name = _WIDE_GAP.split(lines[below])[0]
             if _PROCESSING.search(name) is None:
                 metadata["station_name"] = name
-        break
     location = first_match(_LOCATION, lines)
     if location is not None:
         metadata["sensor_location"] = " ".join(location[0][1].split())
