@@ -38,12 +38,12 @@ def word(*names: str, **settings: Any) -> CommandArgument:
     return CommandArgument(names, settings)
 
 
-def number(name: str, metavar: str, words: str) -> CommandArgument:
+def number_option(name: str, metavar: str, words: str) -> CommandArgument:
     """Declare an option that is a number."""
     return word(name, type=_number_typed, metavar=metavar, help=words)
 
 
-def whole(name: str, words: str, usual: int | None = None) -> CommandArgument:
+def whole_option(name: str, words: str, usual: int | None = None) -> CommandArgument:
     """Declare an option that is a whole number."""
     return word(name, type=_whole_typed, metavar="N", help=words, default=usual)
 
@@ -113,7 +113,7 @@ LENGTH: Final = (
 RUNNING: Final = (
     path("-m", "--motion", metavar="FILE", help="a record, in the place of the scene's motion"),
     *READING,
-    number("--scale", "FACTOR", "multiply the motion by this"),
+    number_option("--scale", "FACTOR", "multiply the motion by this"),
     ACCURACY,
     *LENGTH,
 )

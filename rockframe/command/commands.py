@@ -18,9 +18,9 @@ from rockframe.command.arguments import (
     STORE,
     UNITS,
     Command,
-    number,
+    number_option,
     path,
-    whole,
+    whole_option,
     word,
 )
 
@@ -127,16 +127,18 @@ COMMANDS: Final = (
         (
             SCENE,
             *RUNNING,
-            number(
+            number_option(
                 "--nudge", "SHARE", "largest relative change of each parameter (default: 0.001)"
             ),
-            number("--reach", "SHARE", "largest relative change of the scale (default: 0.5)"),
+            number_option(
+                "--reach", "SHARE", "largest relative change of the scale (default: 0.5)"
+            ),
             word(
                 "--proved",
                 action="store_true",
                 help="prove the verdict instead (of a block alone; needs python-flint)",
             ),
-            whole("--runs", "most runs beside it (default: 200)"),
+            whole_option("--runs", "most runs beside it (default: 200)"),
             RESULT,
             OVERWRITE,
         ),
@@ -153,8 +155,8 @@ COMMANDS: Final = (
         (
             SCENE,
             *RUNNING,
-            number("--largest", "FACTOR", "largest scale that is tried (default: 4)"),
-            whole(
+            number_option("--largest", "FACTOR", "largest scale that is tried (default: 4)"),
+            whole_option(
                 "--runs",
                 "most runs of the scan; more find narrower ranges that overturn (default: 400)",
             ),
@@ -293,8 +295,8 @@ COMMANDS: Final = (
                 help="where it goes to the standard output (default: html)",
             ),
             word("--window", nargs=2, metavar=("START", "END"), help="what is shown of the run"),
-            number("--speed", "FACTOR", "of a film: time of the run over that of the film"),
-            number("--magnify", "FACTOR", "multiply displacements in the drawing by this"),
+            number_option("--speed", "FACTOR", "of a film: time of the run over that of the film"),
+            number_option("--magnify", "FACTOR", "multiply displacements in the drawing by this"),
             word("--title", help="above it, in the place of the verdict"),
             *RUNNING,
             OVERWRITE,
@@ -376,7 +378,7 @@ COMMANDS: Final = (
         (
             path("record", nargs="?", metavar="FILE", help="a record that can be chosen, too"),
             *READING,
-            whole("--port", "of this machine; 0 takes a free one (default: 8000)", 8000),
+            whole_option("--port", "of this machine; 0 takes a free one (default: 8000)", 8000),
             word("--browse", action="store_true", help="open the page in the browser"),
         ),
     ),

@@ -39,19 +39,19 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     try:
         given = {"store": store, **found.arguments}
         runs = analysed(sweep, found, found.motions, given, arguments)
+        answer.says("Verdict", runs.attrs["verdict"])
+        answer.numbers(runs)
+        values = table(runs)
+        if len(values) <= _MOST_SHOWN:
+            wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
+            answer.text(printed(values[wanted]))
+        outputs.table(values)
+        outputs.result(runs)
     except StudyError as problem:
         raise found.at_lines(problem) from problem
     except KeyboardInterrupt:
         _say_how_to_go_on(store, arguments.typed)
         raise
-    answer.says("Verdict", runs.attrs["verdict"])
-    answer.numbers(runs)
-    values = table(runs)
-    if len(values) <= _MOST_SHOWN:
-        wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
-        answer.text(printed(values[wanted]))
-    outputs.table(values)
-    outputs.result(runs)
     status = runs["status"].to_numpy()
     if (status == RunStatus.NOT_RUN).any():
         _say_how_to_go_on(store, arguments.typed)

@@ -181,9 +181,13 @@ def _until_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
 
 def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]:
     """Give shares of the motions, and the peaks below which these stay at intensities."""
-    peaks = [np.interp(up, np.append(0.0, along), np.append(0.0, peak)) for along, peak in lines]
-    within = np.quantile(peaks, _FRACTILES, axis=0)
-    above = np.quantile(peaks, _FRACTILES, axis=0, method="higher")
+    peaks = np.sort(
+        [np.interp(up, np.append(0.0, along), np.append(0.0, peak)) for along, peak in lines],
+        axis=0,
+    )  # NaN, of a run without a result, comes last
+    places = np.array(_FRACTILES) * (len(lines) - 1)
+    below, above = (peaks[rounded(places).astype(int)] for rounded in (np.floor, np.ceil))
+    within = below + (places % 1.0)[:, None] * (above - below)
     # between a peak and a fall nothing lies
     return list(zip(_FRACTILES, np.where(above >= _CAPPED, _CAPPED, within), strict=True))
 
