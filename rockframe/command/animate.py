@@ -69,7 +69,6 @@ def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
         run = read_result(arguments.dataset)
     else:
         arguments.scene = arguments.dataset
-        found = scene_from(arguments)
-        run = simulated(found)
+        run = simulated(scene_from(arguments))
     answer.says("Verdict", str(run.attrs.get("verdict", "")))
     return run

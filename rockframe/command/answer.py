@@ -31,7 +31,7 @@ class Answer:
         self._lines: list[tuple[bool, str]] = []  # whether it is beside the answer; the line
         self._told: dict[str, Any] = {"command": command, "version": __version__}
         self._numbers: dict[str, Any] = {}
-        self._files: dict[str, Any] = {}
+        self._files: dict[str, list[str]] = {}
         self._warnings: list[str] = []
         self.data: bytes | None = None
         """A file that goes to the standard output."""
@@ -61,10 +61,7 @@ class Answer:
     def wrote(self, title: str, path: object) -> None:
         """Tell of a file that was written."""
         self._lines.append((True, f"{title}: {path}"))
-        key = title.lower()
-        before = self._files.get(key)
-        several = [] if before is None else before if isinstance(before, list) else [before]
-        self._files[key] = [*several, str(path)] if several else str(path)
+        self._files.setdefault(title.lower(), []).append(str(path))
 
     def hands_on(self, data: bytes) -> None:
         """Take a file that goes to the standard output, of which there is one."""
@@ -97,10 +94,11 @@ class Answer:
 
     def json(self, code: int, error: str = "") -> str:
         """Give all of it as a JSON object."""
+        files = {title: one[0] if len(one) == 1 else one for title, one in self._files.items()}
         told = {
             **self._told,
             **({"numbers": self._numbers} if self._numbers else {}),
-            **({"files": self._files} if self._files else {}),
+            **({"files": files} if files else {}),
             **({"warnings": self._warnings} if self._warnings else {}),
             **({"error": error} if error else {}),
             "exit_code": code,

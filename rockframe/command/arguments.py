@@ -38,7 +38,17 @@ def word(*names: str, **settings: Any) -> CommandArgument:
     return CommandArgument(names, settings)
 
 
-def number_typed(typed: str) -> float:
+def number_option(name: str, metavar: str, words: str) -> CommandArgument:
+    """Declare an option that is a number."""
+    return word(name, type=_number_typed, metavar=metavar, help=words)
+
+
+def whole_option(name: str, words: str, usual: int | None = None) -> CommandArgument:
+    """Declare an option that is a whole number."""
+    return word(name, type=_whole_typed, metavar="N", help=words, default=usual)
+
+
+def _number_typed(typed: str) -> float:
     """Read an argument that is a number."""
     try:
         return float(typed)
@@ -47,7 +57,7 @@ def number_typed(typed: str) -> float:
         raise ArgumentTypeError(words) from None
 
 
-def whole_typed(typed: str) -> int:
+def _whole_typed(typed: str) -> int:
     """Read an argument that is a whole number."""
     try:
         return int(typed)
@@ -103,7 +113,7 @@ LENGTH: Final = (
 RUNNING: Final = (
     path("-m", "--motion", metavar="FILE", help="a record, in the place of the scene's motion"),
     *READING,
-    word("--scale", type=number_typed, metavar="FACTOR", help="multiply the motion by this"),
+    number_option("--scale", "FACTOR", "multiply the motion by this"),
     ACCURACY,
     *LENGTH,
 )

@@ -18,9 +18,9 @@ from rockframe.command.arguments import (
     STORE,
     UNITS,
     Command,
-    number_typed,
+    number_option,
     path,
-    whole_typed,
+    whole_option,
     word,
 )
 
@@ -113,12 +113,7 @@ COMMANDS: Final = (
   rockframe run scene.toml                                 the motion is in the scene
   rockframe run scene.toml --motion record.AT2 -o out.nc
   rockframe run scene.toml --motion record.AT2 --scale 1.5 --accuracy fast""",
-        (
-            SCENE,
-            *RUNNING,
-            RESULT,
-            OVERWRITE,
-        ),
+        (SCENE, *RUNNING, RESULT, OVERWRITE),
     ),
     Command(
         "certify",
@@ -132,26 +127,18 @@ COMMANDS: Final = (
         (
             SCENE,
             *RUNNING,
-            word(
-                "--nudge",
-                type=number_typed,
-                metavar="SHARE",
-                help="largest relative change of each parameter (default: 0.001)",
+            number_option(
+                "--nudge", "SHARE", "largest relative change of each parameter (default: 0.001)"
             ),
-            word(
-                "--reach",
-                type=number_typed,
-                metavar="SHARE",
-                help="largest relative change of the scale (default: 0.5)",
+            number_option(
+                "--reach", "SHARE", "largest relative change of the scale (default: 0.5)"
             ),
             word(
                 "--proved",
                 action="store_true",
                 help="prove the verdict instead (of a block alone; needs python-flint)",
             ),
-            word(
-                "--runs", type=whole_typed, metavar="N", help="most runs beside it (default: 200)"
-            ),
+            whole_option("--runs", "most runs beside it (default: 200)"),
             RESULT,
             OVERWRITE,
         ),
@@ -168,18 +155,10 @@ COMMANDS: Final = (
         (
             SCENE,
             *RUNNING,
-            word(
-                "--largest",
-                type=number_typed,
-                metavar="FACTOR",
-                help="largest scale that is tried (default: 4)",
-            ),
-            word(
+            number_option("--largest", "FACTOR", "largest scale that is tried (default: 4)"),
+            whole_option(
                 "--runs",
-                type=whole_typed,
-                metavar="N",
-                help="most runs of the scan; more find narrower ranges that overturn "
-                "(default: 400)",
+                "most runs of the scan; more find narrower ranges that overturn (default: 400)",
             ),
             *INTENSITY,
             RESULT,
@@ -316,18 +295,8 @@ COMMANDS: Final = (
                 help="where it goes to the standard output (default: html)",
             ),
             word("--window", nargs=2, metavar=("START", "END"), help="what is shown of the run"),
-            word(
-                "--speed",
-                type=number_typed,
-                metavar="FACTOR",
-                help="of a film: time of the run over that of the film",
-            ),
-            word(
-                "--magnify",
-                type=number_typed,
-                metavar="FACTOR",
-                help="multiply displacements in the drawing by this",
-            ),
+            number_option("--speed", "FACTOR", "of a film: time of the run over that of the film"),
+            number_option("--magnify", "FACTOR", "multiply displacements in the drawing by this"),
             word("--title", help="above it, in the place of the verdict"),
             *RUNNING,
             OVERWRITE,
@@ -409,13 +378,7 @@ COMMANDS: Final = (
         (
             path("record", nargs="?", metavar="FILE", help="a record that can be chosen, too"),
             *READING,
-            word(
-                "--port",
-                type=whole_typed,
-                default=8000,
-                metavar="N",
-                help="of this machine; 0 takes a free one (default: 8000)",
-            ),
+            whole_option("--port", "of this machine; 0 takes a free one (default: 8000)", 8000),
             word("--browse", action="store_true", help="open the page in the browser"),
         ),
     ),

@@ -7,17 +7,15 @@ from rockframe.command.answer import Answer
 from rockframe.command.plot import PICTURE, save
 from rockframe.command.shared import (
     Outputs,
+    analysed,
     analysis_kind,
     given_of,
     in_words,
     scene_from,
     system_words,
     taken_by,
-    with_project,
 )
-from rockframe.command.streams import bar_for
 from rockframe.plot import critical_scale as draw
-from rockframe.reports.figures import figure_of
 from rockframe.simulation.provenance import motion_words
 from rockframe.studies import critical_scale
 
@@ -30,9 +28,7 @@ _FIRST: Final = 80
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Find the least scale that overturns, and tell the shaking at it."""
     found = scene_from(arguments, moved=True)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, _RESULT)
-    outputs.check(arguments.picture, PICTURE)
+    outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {
         "intensity": _USUAL,
         **given_of(arguments, "largest", "runs", "intensity", "period"),
@@ -40,10 +36,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     }
     if arguments.runs is not None:
         given["scales"] = max(2, min(arguments.runs, _FIRST))
-    with bar_for("critical", quiet=arguments.quiet) as bar:
-        given["progress"] = bar
-        dataset = critical_scale(found.system, found.motion, **given)
-    dataset = with_project(dataset, found.project)
+    dataset = analysed(critical_scale, found, found.motion, given, arguments)
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Motion", motion_words(dataset.attrs))
     answer.says("Verdict", dataset.attrs["verdict"])
@@ -51,7 +44,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if bool(measure.notnull()):
         answer.says("Shaking", f"{in_words(measure, dataset)} at the critical scale")
     answer.numbers(dataset)
-    outputs.result(arguments.output, _RESULT, dataset)
+    outputs.result(dataset)
     if arguments.picture is not None:
-        save(figure_of(draw(dataset)), arguments.picture, outputs)
+        save(draw(dataset), arguments.picture, outputs)
     return 0

@@ -13,16 +13,15 @@ from rockframe.command.plot import PICTURE, save
 from rockframe.command.shared import (
     Outputs,
     amount,
+    analysed,
     analysis_kind,
     is_result,
     read_result,
     system_words,
     with_project,
 )
-from rockframe.command.streams import bar_for
 from rockframe.errors import FileError, StudyError
 from rockframe.plot import fragility as draw
-from rockframe.reports.figures import figure_of
 from rockframe.reports.project import ATTRIBUTE
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies import fragility, open_study, sweep
@@ -37,22 +36,17 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     known = is_result(arguments.scene)
     found = None if known else scene_and_motions(arguments)
     read = [arguments.scene, *arguments.records] if found is None else found.files
-    outputs = Outputs(arguments, read, answer)
-    outputs.check(arguments.output, _RESULT)
-    outputs.check(arguments.picture, PICTURE)
+    outputs = Outputs(arguments, read, answer, output=_RESULT, picture=PICTURE)
     if found is None:
         runs = _runs_of_study(arguments)
     else:
         given: dict[str, Any] = {"store": found.store, **found.arguments}
         if AXES not in given and CASES not in given:
             given[AXES] = {SCALE: _USUAL}
-        with bar_for("fragility", quiet=arguments.quiet) as bar:
-            given["progress"] = bar
-            try:
-                runs = sweep(found.system, found.motions, **given)
-            except StudyError as problem:
-                raise found.at_lines(problem) from problem
-        runs = with_project(runs, found.project)
+        try:
+            runs = analysed(sweep, found, found.motions, given, arguments)
+        except StudyError as problem:
+            raise found.at_lines(problem) from problem
     dataset = fragility(runs, **typed_intensity(arguments, fragility))
     dataset = with_project(dataset, str(runs.attrs.get(ATTRIBUTE, "")))
     answer.says("Verdict", dataset.attrs["verdict"])
@@ -63,24 +57,17 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         answer.subject("Scene", system_words(found.system))
     answer.subject("Runs", str(runs.attrs["verdict"]))
     answer.numbers(dataset)
-    outputs.result(arguments.output, _RESULT, dataset)
+    outputs.result(dataset)
     if arguments.picture is not None:
-        save(figure_of(draw(dataset)), arguments.picture, outputs)
+        save(draw(dataset), arguments.picture, outputs)
     return 0
 
 
 def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
     """Read the runs of a study, from its file or its store."""
     more = (
-        "records",
-        "unit",
-        "time_step",
-        "scales",
-        "store",
-        "accuracy",
-        "free_vibration",
-        "duration",
-    )
+        "records", "unit", "time_step", "scales", "store", "accuracy", "free_vibration", "duration",
+    )  # fmt: skip
     if any(getattr(arguments, name) for name in more):
         words = "its runs have been made; records, scales, a store or lengths of runs go with a "
         raise FileError(arguments.scene, [(None, f"this is a result: {words}scene")])

@@ -9,18 +9,16 @@ from rockframe.command.over_motions import SCALE, scene_and_motions, typed_inten
 from rockframe.command.plot import PICTURE, save
 from rockframe.command.shared import (
     Outputs,
+    analysed,
     analysis_kind,
     given_of,
     printed,
     system_words,
     table_kind,
     taken_by,
-    with_project,
 )
-from rockframe.command.streams import bar_for
 from rockframe.errors import FileError
 from rockframe.plot import dynamic_analysis as draw
-from rockframe.reports.figures import figure_of
 from rockframe.results.table import table
 from rockframe.studies import fragility, incremental_dynamic_analysis
 
@@ -36,10 +34,8 @@ _USUAL: Final = "PGA"
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Scale motions until they overturn, and tell the capacity under each."""
     found = scene_and_motions(arguments)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, _RESULT)
-    outputs.check(arguments.picture, PICTURE)
-    outputs.check(arguments.csv, _TABLE)
+    kinds = {"output": _RESULT, "picture": PICTURE, "csv": _TABLE}
+    outputs = Outputs(arguments, found.files, answer, **kinds)
     axes = {**found.arguments.get(AXES, {})}
     if CASES in found.arguments:
         words = "a dynamic analysis has axes, and no table of cases"
@@ -52,21 +48,18 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         AXES: axes,
         **typed_intensity(arguments, incremental_dynamic_analysis),
     }
-    period = given_of(arguments, "period")
-    with bar_for("ida", quiet=arguments.quiet) as bar:
-        given["progress"] = bar
-        dataset = incremental_dynamic_analysis(found.system, found.motions, **given)
-    dataset = with_project(dataset, found.project)
+    dataset = analysed(incremental_dynamic_analysis, found, found.motions, given, arguments)
     answer.says("Verdict", dataset.attrs["verdict"])
     answer.subject("Scene", system_words(found.system))
-    fitted = fragility(dataset, dataset.attrs["intensity"], trials="capacities", **period)
+    fitted = fragility(dataset, dataset.attrs["intensity"], trials="capacities",
+                       **given_of(arguments, "period"))  # fmt: skip
     answer.says("Fit", fitted.attrs["verdict"])
     capacities = table(dataset[list(_SHOWN)].drop_vars("rotation_limit"))
     if len(capacities) <= _MOST_SHOWN:
         answer.text(printed(capacities))
     answer.numbers(dataset)
-    outputs.table(arguments.csv, _TABLE, capacities)
-    outputs.result(arguments.output, _RESULT, dataset)
+    outputs.table(capacities)
+    outputs.result(dataset)
     if arguments.picture is not None:
-        save(figure_of(draw(dataset)), arguments.picture, outputs)
+        save(draw(dataset), arguments.picture, outputs)
     return 0

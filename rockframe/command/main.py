@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from rockframe.command.answer import Answer
 
-DONE: Final = 0
 UNFINISHED: Final = 1
 WRONG_INPUT: Final = 2
 INTERRUPTED: Final = 130
@@ -71,7 +70,9 @@ def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:
         warnings.simplefilter("default", RockframeWarning)
         warnings.showwarning = _say_warning(who, answer)
         try:
-            code = _execute(arguments, answer)
+            # the module of the command loads what it needs
+            module: Any = import_module(f"rockframe.command.{arguments.command}")
+            code = int(module.execute(arguments, answer))
             if heard:  # and what was found until then was told
                 code = INTERRUPTED
         except KeyboardInterrupt:
@@ -85,12 +86,6 @@ def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:
     if error and not arguments.debug:
         tell(who, error)
     return code if written or error else WRONG_INPUT
-
-
-def _execute(arguments: "Namespace", answer: "Answer") -> int:
-    """Call the module of the command, which loads what it needs."""
-    module: Any = import_module(f"rockframe.command.{arguments.command}")
-    return int(module.execute(arguments, answer))
 
 
 def _print(answer: "Answer", code: int, error: str, who: str) -> bool:

@@ -11,19 +11,17 @@ from rockframe.command.files.tables import arguments_of
 from rockframe.command.plot import PICTURE, save
 from rockframe.command.shared import (
     Outputs,
+    analysed,
     analysis_kind,
     run_from,
     system_words,
     taken_by,
     values_of,
-    with_project,
 )
-from rockframe.command.streams import bar_for
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS
 from rockframe.plot import overturning_map as draw
-from rockframe.reports.figures import figure_of
 from rockframe.shared_arguments import suggestion
 from rockframe.studies import overturning_map
 
@@ -35,9 +33,7 @@ _AXES: Final = ("amplitude", "frequency")
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Run pulses of all amplitudes and frequencies, and tell what overturns."""
     found = read_scene(arguments.scene)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, _RESULT)
-    outputs.check(arguments.picture, PICTURE)
+    outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {
         "store": arguments.store,
         **taken_by(overturning_map, run_from(found.run, arguments)),
@@ -45,18 +41,15 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         "frequency": values_of(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
     }
     pulse, words = _pulse(found, arguments.pulse)
-    with bar_for("map", quiet=arguments.quiet) as bar:
-        given["progress"] = bar
-        dataset = overturning_map(found.system, pulse, **given)
-    dataset = with_project(dataset, found.project)
+    dataset = analysed(overturning_map, found, pulse, given, arguments)
     answer.says("Verdict", dataset.attrs["verdict"])
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Pulse", words)
     answer.text("\n".join(_lines(dataset)))
     answer.numbers(dataset)
-    outputs.result(arguments.output, _RESULT, dataset)
+    outputs.result(dataset)
     if arguments.picture is not None:
-        save(figure_of(draw(dataset)), arguments.picture, outputs)
+        save(draw(dataset), arguments.picture, outputs)
     return 0
 
 
@@ -91,7 +84,9 @@ def _lines(dataset: xr.Dataset) -> list[str]:
         one = dataset.isel(frequency=number)
         ends = zip(one["amplitude_above"].to_numpy(), one["impacts_above"].to_numpy(), strict=True)
         told = [f"{at:.4g} {_way(impacts)}" for at, impacts in ends if at == at]
-        lines.append(f"  {frequency:<16.4g} {', '.join(told) or _throughout(one)}")
+        ways = one["impacts_before_overturning"].to_numpy()
+        none = "stands" if (ways != ways).all() else "overturns"
+        lines.append(f"  {frequency:<16.4g} {', '.join(told) or f'none: {none} throughout'}")
     return lines
 
 
@@ -99,9 +94,3 @@ def _way(impacts: float) -> str:
     if impacts != impacts:
         return "stands"
     return f"overturns after {impacts:.0f} impact{'' if impacts == 1 else 's'}"
-
-
-def _throughout(one: xr.Dataset) -> str:
-    """Say what all amplitudes do where the verdict does not change."""
-    ways = one["impacts_before_overturning"].to_numpy()
-    return "none: stands throughout" if (ways != ways).all() else "none: overturns throughout"

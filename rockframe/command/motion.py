@@ -11,7 +11,6 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
 from rockframe.plot import motion as draw
-from rockframe.reports.figures import figure_of
 from rockframe.results.table import table
 
 _ABOUT: Final = (
@@ -31,8 +30,7 @@ _MOST_SHOWN: Final = 10
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Tell what files hold."""
-    outputs = Outputs(arguments, arguments.files, answer)
-    outputs.check(arguments.csv, _TABLE)
+    outputs = Outputs(arguments, arguments.files, answer, csv=_TABLE)
     motions = motions_from(arguments)
     pictures = _numbered(arguments.picture, len(motions))
     for path in pictures:
@@ -47,9 +45,9 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     else:
         answer.text(printed(values))
     answer.numbers(measures)
-    outputs.table(arguments.csv, _TABLE, values)
+    outputs.table(values)
     for path, motion in zip(pictures, motions.values(), strict=bool(pictures)):
-        save(figure_of(draw(motion)), path, outputs)
+        save(draw(motion), path, outputs)
     return 0
 
 

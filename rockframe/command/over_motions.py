@@ -32,7 +32,7 @@ def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
     found = read_study(arguments.scene, varied=False)
     if not arguments.records:
         refuse_of_record(arguments, "name records behind the scene")
-    if arguments.records:
+    else:
         suite = suite_from(arguments.records, arguments)
         files = (*found.files, *map(Path, arguments.records))
         found = replace(found, motions=dict(suite.items()), files=files)

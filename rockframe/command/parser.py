@@ -7,11 +7,11 @@ from typing import Any, Final, NoReturn
 
 from rockframe.command.arguments import EVERYWHERE, Command
 from rockframe.command.commands import COMMANDS
+from rockframe.command.streams import STREAM
 from rockframe.errors import nearest
 from rockframe.shared_arguments import suggestion
 from rockframe.version import __version__
 
-STREAM: Final = "-"
 _VALUE: Final = re.compile(r"-[\d.]|-.* ")
 """What begins with a hyphen and is a value: a number, or a quantity with its unit."""
 _EXAMPLE: Final = re.compile(r"\b(\w+)='([^']*)'")
@@ -97,7 +97,9 @@ def misspelt(typed: Sequence[str]) -> str | None:
     for word in typed[place + 1 :]:
         if word == "--":
             break
-        if _looks_like_option(word) and not _is_option(word, options):
+        # neither a number, nor a value with a unit, nor the standard input
+        option = word.startswith("-") and word != STREAM and not _VALUE.match(word)
+        if option and not _is_option(word, options):
             return _no_option(word.split("=")[0], command, options)
     return None
 
@@ -119,11 +121,6 @@ def _options(command: Command | None) -> list[str]:
     declared = [*EVERYWHERE, *(() if command is None else command.arguments)]
     names = [name for one in declared for name in one.names if name.startswith("-")]
     return [*names, "-h", "--help", *(["--version"] if command is None else [])]
-
-
-def _looks_like_option(word: str) -> bool:
-    """Tell options from numbers, from values with a unit, and from the standard input."""
-    return word.startswith("-") and word != STREAM and not _VALUE.match(word)
 
 
 def _is_option(word: str, options: Sequence[str]) -> bool:

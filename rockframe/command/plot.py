@@ -3,7 +3,7 @@
 import argparse
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from rockframe import plot
 from rockframe.command.answer import Answer
@@ -15,9 +15,6 @@ from rockframe.plot._checks import drawn_by
 from rockframe.reports.figures import close, figure_of
 from rockframe.version import __version__
 from rockframe.writing import FileKind
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _MARK: Final = "figure by rockframe "
 _SIGNED: Final = {
@@ -32,8 +29,7 @@ PICTURE: Final = FileKind.marked("a picture", tuple(_SIGNED), _MARK)
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Draw what a file holds."""
     check_format(arguments)
-    outputs = Outputs(arguments, [arguments.dataset], answer)
-    outputs.check(arguments.output, PICTURE)
+    outputs = Outputs(arguments, [arguments.dataset], answer, output=PICTURE)
     dataset = read_result(arguments.dataset)
     name = drawn_by(dataset)
     named: dict[str, Any] = {} if arguments.title is None else {"title": arguments.title}
@@ -44,24 +40,22 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
             msg = "--panels: only a run along time has panels to choose from"
             raise ComponentError(msg)
         named["panels"] = tuple(arguments.panels)
-    figure = figure_of(getattr(plot, name)(dataset, **named))
-    save(figure, arguments.output, outputs, arguments.format)
+    save(getattr(plot, name)(dataset, **named), arguments.output, outputs, arguments.format)
     return 0
 
 
-def save(
-    figure: "Figure", path: str | Path, outputs: Outputs, of_stream: str | None = None
-) -> None:
-    """Write a figure, and say so; `of_stream` is the format on the standard output."""
+def save(drawn: Any, path: str | Path, outputs: Outputs, of_stream: str | None = None) -> None:
+    """Write the figure of what was drawn; `of_stream` is the format on the standard output."""
+    figure = figure_of(drawn)
     kind = f".{of_stream or 'png'}" if str(path) == STREAM else Path(path).suffix.lower()
-    drawn = BytesIO()
+    written = BytesIO()
     try:
         signed = {_SIGNED[kind]: f"{_MARK}{__version__}"}
-        figure.savefig(drawn, format=kind.removeprefix("."), dpi=150, metadata=signed)
+        figure.savefig(written, format=kind.removeprefix("."), dpi=150, metadata=signed)
     except ValueError as problem:  # of a formula in the title
         words = "found a title that cannot be drawn; expected one whose '$' enclose formulas"
         msg = f"{path}: {words} ({problem})"
         raise ComponentError(msg) from problem
     finally:
         close(figure)
-    outputs.write(path, PICTURE, "Figure", drawn.getvalue())
+    outputs.write(path, PICTURE, "Figure", written.getvalue())

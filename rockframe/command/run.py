@@ -15,8 +15,7 @@ FINISHED = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Simulate, and say what became of it."""
     found = scene_from(arguments)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, RUN)
+    outputs = Outputs(arguments, found.files, answer, output=RUN)
     response = simulated(found)
     answer.subject("Scene", f"{system_words(found.system)} ({response.attrs['model']})")
     answer.subject("Motion", motion_words(response.attrs))
@@ -25,7 +24,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         if name in response.attrs:
             answer.says(name.capitalize(), response.attrs[name])
     answer.numbers(response)
-    outputs.result(arguments.output, RUN, response)
+    outputs.result(response)
     return 0 if finished(response) else 1
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rockframe.command.answer import Answer
-from rockframe.command.shared import motion_from, refuse_of_record
+from rockframe.command.shared import given_of, motion_from, refuse_of_record
 from rockframe.command.streams import STREAM, tell
 from rockframe.errors import FileError
 from rockframe.serve import Server
@@ -33,9 +33,5 @@ def _record(arguments: argparse.Namespace) -> NamedRecord:
         words = "a scene's file names its record; give a file in the place of '-'"
         raise FileError(STREAM, [(None, words)])
     keys: dict[str, Any] = {"file": str(Path(arguments.record).expanduser().resolve())}
-    keys |= {
-        name: getattr(arguments, name)
-        for name in ("component", "unit", "time_step")
-        if getattr(arguments, name) is not None
-    }
+    keys |= given_of(arguments, "component", "unit", "time_step")
     return NamedRecord(motion_from(arguments.record, arguments), keys)

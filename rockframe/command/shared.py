@@ -15,7 +15,7 @@ import xarray as xr
 from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
-from rockframe.command.streams import INPUT, STREAM, StandardInput, opened
+from rockframe.command.streams import INPUT, STREAM, StandardInput, bar_for, opened
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, FileError, RecordError, SolverError, shown
 from rockframe.motion import GroundMotion
@@ -43,10 +43,8 @@ _LONGEST_HEAD: Final = 65536
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
     """Read the file of a motion as the options for reading say."""
-    step = {} if arguments.time_step is None else {"time_step": arguments.time_step}
-    return GroundMotion.read(
-        opened(path, "a record"), component=arguments.component, unit=arguments.unit, **step
-    )
+    given = given_of(arguments, "component", "unit", "time_step")
+    return GroundMotion.read(opened(path, "a record"), **given)
 
 
 def suite_from(paths: Sequence[str], arguments: argparse.Namespace) -> MotionSuite:
@@ -79,11 +77,11 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
     motion, files = found.motion, found.files
     if arguments.motion is None:
         refuse_of_record(arguments, "name one with --motion")
-    if moved and motion is None and arguments.motion is None:
-        raise FileError(arguments.scene, [(None, _NO_MOTION)])
-    if arguments.motion is not None:
+    else:
         motion = motion_from(arguments.motion, arguments)
         files += (Path(arguments.motion),)
+    if moved and motion is None:
+        raise FileError(arguments.scene, [(None, _NO_MOTION)])
     if arguments.scale is not None and motion is not None:
         motion = motion.scaled(arguments.scale)
     return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
@@ -111,7 +109,9 @@ def check_format(arguments: argparse.Namespace) -> None:
 
 def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
     """Give the arguments of a run: those of a file, and what options give instead."""
-    run = {**of_file, **_run_options(arguments)}
+    run = {**of_file, **given_of(arguments, "duration", "free_vibration")}
+    if arguments.accuracy is not None:
+        run["accuracy"] = _accuracy(arguments.accuracy)
     if arguments.duration is not None and arguments.free_vibration is None:
         run.pop("free_vibration", None)
     if arguments.free_vibration is not None and arguments.duration is None:
@@ -165,6 +165,19 @@ def simulated(found: Described, **more: Any) -> xr.Dataset:
     return with_project(found.system.simulate(found.motion, **{**found.run, **more}), found.project)
 
 
+def analysed(
+    analysis: Callable[..., xr.Dataset],
+    found: Any,
+    motions: object,
+    given: Mapping[str, Any],
+    arguments: argparse.Namespace,
+) -> xr.Dataset:
+    """Analyse what a file describes, with a bar that tells how far it is."""
+    with bar_for(arguments.command, quiet=arguments.quiet) as bar:
+        dataset = analysis(found.system, motions, **given, progress=bar)
+    return with_project(dataset, found.project)
+
+
 def with_project(dataset: xr.Dataset, project: str) -> xr.Dataset:
     """Let a result keep what its file says of the project."""
     return dataset.assign_attrs({ATTRIBUTE: project}) if project else dataset
@@ -188,13 +201,20 @@ class Outputs:
     """The files that a command writes, and those that it must not write over."""
 
     def __init__(
-        self, arguments: argparse.Namespace, read: Iterable[str | Path], answer: Answer
+        self,
+        arguments: argparse.Namespace,
+        read: Iterable[str | Path],
+        answer: Answer,
+        **kinds: FileKind,  # of the files that options name; refused before the work, not after it
     ) -> None:
         self._given: dict[str, Any] = {"overwrite": arguments.overwrite, "read": list(read)}
         self._answer = answer
+        self._named = {name: (getattr(arguments, name), kind) for name, kind in kinds.items()}
+        for path, kind in self._named.values():
+            self.check(path, kind)
 
     def check(self, path: str | Path | None, kind: FileKind) -> None:
-        """Refuse a file that must not be written, before the work and not after it."""
+        """Refuse a file that must not be written."""
         if path is not None and str(path) != STREAM:
             checked_path(path, kind, **self._given)
 
@@ -208,9 +228,9 @@ class Outputs:
         write_file(path, kind, content, **self._given)
         self._answer.wrote(title, path)
 
-    def result(self, path: str | Path | None, kind: FileKind, dataset: xr.Dataset) -> None:
-        """Write a result, if a file was named, and say so."""
-        self.write(path, kind, "Results", dataset.to_netcdf)
+    def result(self, dataset: xr.Dataset) -> None:
+        """Write a result to the file of ``--output``, if there is one, and say so."""
+        self.write(*self._named["output"], "Results", dataset.to_netcdf)
 
     def written_by(
         self, path: str | Path, ending: str, title: str, save: Callable[[Path], object]
@@ -227,9 +247,9 @@ class Outputs:
             save(place)
             self._answer.hands_on(place.read_bytes())
 
-    def table(self, path: str | None, kind: FileKind, values: "pd.DataFrame") -> None:
-        """Write a table, if a file was named, and say so."""
-        self.write(path, kind, "Table", lambda part: values.to_csv(part))
+    def table(self, values: "pd.DataFrame") -> None:
+        """Write a table to the file of ``--csv``, if there is one, and say so."""
+        self.write(*self._named["csv"], "Table", lambda part: values.to_csv(part))
 
 
 def _bytes_of(content: Content, kind: FileKind) -> bytes:
@@ -326,17 +346,6 @@ def printed(values: Any) -> str:
 def system_words(system: System) -> str:
     """Name the parts of a system in a line."""
     return ", ".join(type(part).__name__ for part in system.parts.structural())
-
-
-def _run_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    given: dict[str, Any] = {
-        name: getattr(arguments, name)
-        for name in ("duration", "free_vibration")
-        if getattr(arguments, name) is not None
-    }
-    if arguments.accuracy is not None:
-        given["accuracy"] = _accuracy(arguments.accuracy)
-    return given
 
 
 def _accuracy(text: str) -> str | float:

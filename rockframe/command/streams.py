@@ -56,20 +56,14 @@ def opened(path: str, what: str) -> "str | IO[bytes]":
     return StandardInput.read_for(what) if path == STREAM else path
 
 
-def shows_colours(stream: object) -> bool:
-    """Tell whether a stream is a terminal on which colours are wanted (https://no-color.org)."""
-    plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
-    return not plain and is_terminal(stream)
-
-
-def coloured(words: str, kind: str, stream: object) -> str:
-    """Colour words, where they are shown in colours."""
-    return f"\x1b[{_COLOURS[kind]}m{words}\x1b[0m" if shows_colours(stream) else words
-
-
 def tell(who: str, words: str, kind: str = "error") -> None:
     """Write a message to the standard error, behind the name of the command."""
-    print(f"{coloured(f'{who}:', kind, sys.stderr)} {words}", file=sys.stderr)
+    # in colours where they are wanted, https://no-color.org
+    plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    head = f"{who}:"
+    if not plain and is_terminal(sys.stderr):
+        head = f"\x1b[{_COLOURS[kind]}m{head}\x1b[0m"
+    print(f"{head} {words}", file=sys.stderr)
 
 
 def is_terminal(stream: object) -> bool:

@@ -3,16 +3,16 @@
 import argparse
 import shlex
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from rockframe.command.answer import Answer
-from rockframe.command.files.studies import DescribedStudy, read_study
+from rockframe.command.files.studies import read_study
 from rockframe.command.main import INTERRUPTED
 from rockframe.command.run import FINISHED
-from rockframe.command.shared import STUDY, Outputs, printed, system_words, table_kind, with_project
-from rockframe.command.streams import bar_for, tell
+from rockframe.command.shared import STUDY, Outputs, analysed, printed, system_words, table_kind
+from rockframe.command.streams import tell
 from rockframe.errors import FileError, StudyError
 from rockframe.results.table import table
 from rockframe.results.variables.runs import RunStatus
@@ -30,43 +30,28 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     found = read_study(arguments.study)
     if arguments.output is None and found.output is not None:
         arguments.output = str(found.output)
-    outputs = Outputs(arguments, found.files, answer)
-    outputs.check(arguments.output, STUDY)
-    outputs.check(arguments.csv, _TABLE)
+    outputs = Outputs(arguments, found.files, answer, output=STUDY, csv=_TABLE)
     if arguments.store == "":
         words = "found no name of a folder after --store; expected one, such as --store kept"
         raise FileError(arguments.study, [(None, words)])
     store = found.store if arguments.store is None else Path(arguments.store).expanduser()
     answer.subject("Scene", system_words(found.system))
     try:
-        return _carried_out(found, store, arguments, outputs, answer)
+        given = {"store": store, **found.arguments}
+        runs = analysed(sweep, found, found.motions, given, arguments)
+        answer.says("Verdict", runs.attrs["verdict"])
+        answer.numbers(runs)
+        values = table(runs)
+        if len(values) <= _MOST_SHOWN:
+            wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
+            answer.text(printed(values[wanted]))
+        outputs.table(values)
+        outputs.result(runs)
+    except StudyError as problem:
+        raise found.at_lines(problem) from problem
     except KeyboardInterrupt:
         _say_how_to_go_on(store, arguments.typed)
         raise
-
-
-def _carried_out(
-    found: DescribedStudy,
-    store: Path | None,
-    arguments: argparse.Namespace,
-    outputs: Outputs,
-    answer: Answer,
-) -> int:
-    try:
-        with bar_for("study", quiet=arguments.quiet) as bar:
-            given: dict[str, Any] = {"store": store, "progress": bar, **found.arguments}
-            runs = sweep(found.system, found.motions, **given)
-    except StudyError as problem:
-        raise found.at_lines(problem) from problem
-    runs = with_project(runs, found.project)
-    answer.says("Verdict", runs.attrs["verdict"])
-    answer.numbers(runs)
-    values = table(runs)
-    if len(values) <= _MOST_SHOWN:
-        wanted = [head for head in values if str(head).split(" [")[0] in _SHOWN]
-        answer.text(printed(values[wanted]))
-    outputs.table(arguments.csv, _TABLE, values)
-    outputs.result(arguments.output, STUDY, runs)
     status = runs["status"].to_numpy()
     if (status == RunStatus.NOT_RUN).any():
         _say_how_to_go_on(store, arguments.typed)

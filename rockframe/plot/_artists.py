@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -20,15 +20,12 @@ from rockframe.plot._axes import (
     ink,
     measured_in,
 )
+from rockframe.plot._panels import Axes
 from rockframe.results.points import Placement
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, LinkedPoints
 from rockframe.system.links import link_labels
 from rockframe.system.parts import Parts
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 _PAD_WIDTH: Final = 0.17
 """Over that of the base."""
@@ -52,9 +49,9 @@ class Layout:
     soil: Array | None  # its surface, from the left edge of the drawing to the right one
     touching: tuple[Array, ...]  # where contact is: points, shape (1, 2), and lines
     ground: Array  # surface of rigid ground, where there is no soil
-    lower: tuple[Array, ...] = ()  # outlines of the bodies of a stack beneath the block
-    ties: tuple[Array, ...] = ()  # both ends of each restrainer, shape (2, 2)
-    others: tuple[Array, ...] = ()  # outlines of a frame's other columns and of its beam
+    lower: tuple[Array, ...]  # outlines of the bodies of a stack beneath the block
+    ties: tuple[Array, ...]  # both ends of each restrainer, shape (2, 2)
+    others: tuple[Array, ...]  # outlines of a frame's other columns and of its beam
 
 
 @dataclass(frozen=True)
@@ -78,10 +75,6 @@ class Drawer:
         """Half the width of the ground that is drawn [m]."""
         size = max(2.0 * self.geometry.base_half_width, 0.5 * self.geometry.height)
         return max(self.geometry.base_half_width + 0.6 * size, self.least_reach)
-
-    def widened(self, width: float) -> "Drawer":
-        """Give one that draws the ground as far as the drawing reaches [m]."""
-        return replace(self, least_reach=width)
 
     def lay_out(self, at: Placement) -> Layout:
         """Lay out a scene at an instant."""
@@ -109,12 +102,12 @@ class Drawer:
             touching = tuple(one[:2] for one in columns or (block,)) if all(at.bearing()) else ends
         floor = 0.0 if geometry.stacked else -self.pad_thickness
         ground = np.array([(-self.reach, floor), (self.reach, floor)])
-        found = Layout(block, cap, members, centre, pads, bear, soil, touching, ground)
         lower = tuple(
             self._moved(partial(at.lower, k), one.outline) for k, one in enumerate(geometry.lower)
         )
         ties = tuple(self._tie(at, one) for one in geometry.ties)
-        return self._inclined(replace(found, lower=lower, ties=ties, others=others))
+        laid_out = (block, cap, members, centre, pads, bear, soil, touching, ground)
+        return self._inclined(Layout(*laid_out, lower, ties, others))
 
     def _tie(self, at: Placement, tie: LinkedPoints) -> Array:
         """Lay out a restrainer, from one body to another or to the ground."""
@@ -163,8 +156,9 @@ class Drawer:
             along = (feet[0] - feet[1]) * side / width
             normal = np.array([-along[1], along[0]])
             # heights of the block's base above the feet, up to that of a free pad
-            heights = [float((_on(base, x, half) - foot) @ normal)
-                       for x, foot in zip((outer, inner), feet, strict=True)]  # fmt: skip
+            shares = (0.5 * (x / half + 1.0) for x in (outer, inner))  # along the base at rest
+            heights = [float((base[0] + share * (base[1] - base[0]) - foot) @ normal)
+                       for share, foot in zip(shares, feet, strict=True)]  # fmt: skip
             tops = [
                 foot + normal * min(max(height, _LEAST_THICKNESS * thick), thick + free)
                 for height, foot in zip(heights, feet, strict=True)
@@ -203,27 +197,12 @@ class Drawer:
         return points @ np.array([(cosine, sine), (-sine, cosine)])
 
     def _inclined(self, found: Layout) -> Layout:
-        turn = self._turned
-        return Layout(
-            block=turn(found.block),
-            cap=None if found.cap is None else turn(found.cap),
-            members=tuple(turn(one) for one in found.members),
-            centre=turn(found.centre),
-            pads=tuple(turn(one) for one in found.pads),
-            pads_bear=found.pads_bear,
-            soil=None if found.soil is None else turn(found.soil),
-            touching=tuple(turn(one) for one in found.touching),
-            ground=turn(found.ground),
-            lower=tuple(turn(one) for one in found.lower),
-            ties=tuple(turn(one) for one in found.ties),
-            others=tuple(turn(one) for one in found.others),
-        )
+        def turned(part: Any) -> Any:
+            if isinstance(part, tuple):
+                return tuple(map(turned, part))
+            return self._turned(part) if isinstance(part, np.ndarray) else part
 
-
-def _on(base: Array, x: float, half: float) -> Array:
-    """Give the point of a base line at a place along it at rest."""
-    share = 0.5 * (x / half + 1.0)
-    return base[0] + share * (base[1] - base[0])
+        return Layout(**{name: turned(part) for name, part in vars(found).items()})
 
 
 CONTACT: Final = VERMILLION
@@ -237,7 +216,7 @@ class SceneArtist:
 
     def __init__(
         self,
-        axes: "Axes",
+        axes: Axes,
         drawer: Drawer,
         names: Mapping[str, str] | None = None,
         length: Shown = METRES,
@@ -262,7 +241,7 @@ class SceneArtist:
         low, high = corners.min(axis=0), corners.max(axis=0)
         widest = float(max(-low[0], high[0]))
         if widest > self.drawer.reach:
-            self.drawer = self.drawer.widened(1.08 * widest)
+            self.drawer = replace(self.drawer, least_reach=1.08 * widest)
         reach, depth = self.drawer.reach, _DEPTH * self.drawer.reach
         self.axes.set_xlim(-reach, reach)
         self.axes.set_ylim(low[1] - depth, high[1] + 0.06 * (high[1] - low[1]))
@@ -358,16 +337,9 @@ class SceneArtist:
         from matplotlib.patches import Polygon
 
         if key not in self._artists:
-            self._artists[key] = self.axes.add_patch(
-                Polygon(
-                    corners,
-                    closed=True,
-                    facecolor=to_rgba(colour, alpha),
-                    edgecolor=colour,
-                    linewidth=1.2,
-                    zorder=order,
-                )
-            )
+            face = to_rgba(colour, alpha)
+            shape = Polygon(corners, facecolor=face, edgecolor=colour, linewidth=1.2, zorder=order)
+            self._artists[key] = self.axes.add_patch(shape)
         self._artists[key].set_xy(corners)
         return self._artists[key]
 

@@ -47,8 +47,10 @@ _FEW: Final = 4
 
 
 def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> None:
-    """Write a legend above what is drawn, for which the axis is made longer."""
+    """Write a legend above what is drawn and named, for which the axis is made longer."""
     handles, words = axes.get_legend_handles_labels() if named is None else named
+    if not words:
+        return
     width, height = np.divide(axes.get_window_extent().size, axes.figure.dpi)
     if len(words) > _FEW and "title" not in style:
         common, words = apart(words)
@@ -117,7 +119,8 @@ def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
 
 def axis_label(words: str, unit: str) -> str:
     """Put a unit behind words, for an axis."""
-    return f"{words} [{'-' if unit == '1' else powers_in_mathtext(unit)}]"
+    blank = "" if words.endswith("\n") else " "
+    return f"{words}{blank}[{'-' if unit == '1' else powers_in_mathtext(unit)}]"
 
 
 def powers_in_mathtext(unit: str) -> str:

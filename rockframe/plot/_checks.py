@@ -6,21 +6,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from inspect import signature
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+from typing import Any, Final, TypeVar, cast
 
 import numpy as np
 import xarray as xr
 
-from rockframe.errors import ComponentError, RockframeWarning, SchemaError
+from rockframe.errors import RockframeWarning, SchemaError
+from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.shared_arguments import Argument, completed, with_raises
+from rockframe.simulation.system import System
 from rockframe.units import POSITIVE, to_ratio
 from rockframe.units.shown import KINDS as SHOWN_KINDS
-from rockframe.units.shown import reader_units
-
-if TYPE_CHECKING:
-    from rockframe.simulation.system import System
-    from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, reader_units
 
 Drawing = TypeVar("Drawing", bound=Callable[..., Any])
 
@@ -156,32 +154,21 @@ def checked_run(given: object, function: str) -> xr.Dataset:
     given = _checked(given, function, RUN)
     for name in (*RUN.known, *RUN.needed):
         if given[name].dtype.kind not in "fiub":
-            msg = (
-                f"rf.plot.{function} needs {_needed(function)}, got one whose {name!r} holds no "
-                "numbers"
-            )
-            raise SchemaError(msg)
+            raise _got(function, f"one whose {name!r} holds no numbers")
     more = [str(name) for name in given["relative_rotation"].dims if name != "time"]
     if more:
-        msg = (
-            f"rf.plot.{function} needs {_needed(function)}, got several runs over "
-            f"{', '.join(more)}; pick one, for example with dataset.isel({more[0]}=0)"
-        )
-        raise SchemaError(msg)
+        way = f"pick one, for example with dataset.isel({more[0]}=0)"
+        raise _got(function, f"several runs over {', '.join(more)}; {way}")
     known = np.flatnonzero(~np.isnan(given["relative_rotation"].to_numpy()))
     if not len(known):
-        msg = f"rf.plot.{function} needs {_needed(function)}, got a case without a result"
-        raise SchemaError(msg)
+        raise _got(function, "a case without a result")
     if known[-1] < 1:
-        msg = (
-            f"rf.plot.{function} needs {_needed(function)}, got one of a single instant; "
-            "simulate for longer, or with a shorter output_step"
-        )
-        raise SchemaError(msg)
+        way = "simulate for longer, or with a shorter output_step"
+        raise _got(function, f"one of a single instant; {way}")
     return given.isel(time=slice(int(known[-1]) + 1))
 
 
-def drawable(given: object, function: str, units: "UnitsLike" = None) -> xr.Dataset:
+def drawable(given: object, function: str, units: UnitsLike = None) -> xr.Dataset:
     """Give the dataset that a function draws, in units of choice, and refuse any other thing."""
     dataset = _checked(given, function, KINDS[function])
     return reader_units(units, owner=f"rf.plot.{function}").of_all(dataset)
@@ -192,20 +179,12 @@ def _checked(given: object, function: str, kind: DatasetKind) -> xr.Dataset:
         raise SchemaError(refuse(function, given))
     missing = [repr(name) for name in (*kind.known, *kind.needed) if name not in given.variables]
     if missing:
-        msg = (
-            f"rf.plot.{function} needs {_needed(function)}, got one that lacks "
-            f"{', '.join(missing)}; give it the whole dataset"
-        )
-        raise SchemaError(msg)
+        raise _got(function, f"one that lacks {', '.join(missing)}; give it the whole dataset")
     return given
 
 
-def check_motion(given: object, function: str) -> None:
-    """Refuse what is not a ground motion."""
-    from rockframe.motion import GroundMotion
-
-    if not isinstance(given, GroundMotion):
-        raise ComponentError(refuse(function, given))
+def _got(function: str, what: str) -> SchemaError:
+    return SchemaError(f"rf.plot.{function} needs {_needed(function)}, got {what}")
 
 
 def above_zero(given: object, function: str, name: str) -> float:
@@ -213,18 +192,8 @@ def above_zero(given: object, function: str, name: str) -> float:
     return to_ratio(given, owner=f"rf.plot.{function}", name=name, condition=POSITIVE, example="2")
 
 
-def require_system(given: object, function: str) -> None:
-    """Refuse what is not a system."""
-    from rockframe.simulation.system import System
-
-    if not isinstance(given, System):
-        raise ComponentError(refuse(function, given))
-
-
-def system_of_run(run: xr.Dataset, function: str) -> "System":
+def system_of_run(run: xr.Dataset, function: str) -> System:
     """Build the system of a run, without its motion."""
-    from rockframe.simulation.system import System
-
     text = run.attrs.get("system_json")
     if not isinstance(text, str):
         msg = (
@@ -245,9 +214,6 @@ def refuse(function: str, given: object) -> str:
 
 def _words(function: str, given: object) -> tuple[str, str]:
     """Say what was given, and which way leads to a figure."""
-    from rockframe.motion import GroundMotion
-    from rockframe.simulation.system import System
-
     if isinstance(given, str | PathLike):
         name = str(cast("object", given))
         of_motions = function in ("motion", "spectra")

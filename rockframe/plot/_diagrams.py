@@ -11,7 +11,6 @@ from rockframe.plot._axes import (
     GREY,
     Shown,
     axis_label,
-    colour_of,
     grid,
     ink,
     key,
@@ -84,22 +83,19 @@ def phase(
     on = single(ax, "phase", (5.6, 4.4))
     for run in given:
         across, up = of_rotation(run, unit), _rate(run, unit)
-        on.axes.plot(
-            across, up, color=run.colour, linestyle=run.style, linewidth=0.9, label=run.label
-        )
+        on.axes.plot(across, up, color=run.colour, ls=run.style, lw=0.9, label=run.label)
         on.axes.plot(across[:1], up[:1], "o", color=run.colour, markersize=5.0)
         left, right = overturning_angles(run.dataset)
         ends = np.array([-left, right])
         ends = relative(ends, left, right) if unit is None else unit.of(ends)
         on.axes.plot(ends, [0.0, 0.0], "x", color=ink(), markersize=6.0)
     _about_zero(on.axes)
-    words, per_second = ("-", "s^-1") if unit is None else (unit.words, f"{unit.words} s^-1")
-    on.axes.set(
-        xlabel=axis_label(r"rotation $\alpha/\theta$" if unit is None else "rotation", words),
-        ylabel=axis_label(
-            r"rate $\dot\alpha/\theta$" if unit is None else "rate of the rotation", per_second
-        ),
-    )
+    if unit is None:
+        on.axes.set(xlabel=r"rotation $\alpha/\theta$ [-]")
+        on.axes.set(ylabel=axis_label(r"rate $\dot\alpha/\theta$", "s^-1"))
+    else:
+        on.axes.set(xlabel=axis_label("rotation", unit.words))
+        on.axes.set(ylabel=axis_label("rate of the rotation", f"{unit.words} s^-1"))
     if len(given) > 1:
         key(on.axes)
     on.entitle(runs_title(given, chosen.reader), title)
@@ -156,8 +152,6 @@ def moment_rotation(
     >>> axes.get_xlabel()
     'rotation [°]'
     """
-    from rockframe.simulation.system import System
-
     chosen = units_of(units, "moment_rotation")
     angle = chosen.of(ANGLE, "deg", rotation=rotation)
     size = chosen.of(MOMENT, "kN*m", moment=moment)
@@ -177,14 +171,11 @@ def moment_rotation(
                 angle.of(_on_base(run.dataset)), size.of(run.dataset["base_overturning_moment"]),
                 color=run.colour, linestyle=run.style, linewidth=0.9, label=run.label,
             )  # fmt: skip
-        if on.axes.get_legend_handles_labels()[0]:
-            key(on.axes)
+        key(on.axes)
         on.entitle(runs_title(runs, chosen.reader), title)
     _about_zero(on.axes)
-    on.axes.set(
-        xlabel=axis_label("rotation", angle.words),
-        ylabel=axis_label("moment of the base", size.words),
-    )
+    on.axes.set_xlabel(axis_label("rotation", angle.words))
+    on.axes.set_ylabel(axis_label("moment of the base", size.words))
     return on.axes
 
 
@@ -264,9 +255,8 @@ def energies(
                 label=names[name] if sign > 0.0 else None,
             )  # fmt: skip
             below = below + values
-    on.axes.plot(
-        part.time, from_start["input_energy"][kept], color=ink(), linewidth=1.1, label="input"
-    )
+    given_in = from_start["input_energy"][kept]
+    on.axes.plot(part.time, given_in, color=ink(), linewidth=1.1, label="input")
     zero_line(on.axes)
     on.axes.set(xlabel="time [s]", ylabel=axis_label("energy", unit.words))
     on.axes.set_xlim(part.time[0], part.time[-1])
@@ -292,14 +282,11 @@ def _held(system: System, largest: float) -> xr.Dataset:
 
 
 def _draw_held(axes: Axes, held: xr.Dataset, angle: Shown, size: Shown) -> None:
-    for number, (name, words) in enumerate(
-        (("base_moment", "of the base"), ("restoring_moment", "that holds the body"))
+    for name, words, colour, style in (
+        ("base_moment", "of the base", COLOURS[0], "-"),
+        ("restoring_moment", "that holds the body", COLOURS[1], "--"),
     ):
-        values = size.of(held[name])
-        style = "-" if number == 0 else "--"
-        axes.plot(
-            angle.of(held["angle"]), values, color=colour_of(number), linestyle=style, label=words
-        )
+        axes.plot(angle.of(held["angle"]), size.of(held[name]), style, color=colour, label=words)
     key(axes, title="moment", title_fontsize="small")
 
 
@@ -316,10 +303,8 @@ def _draw_beneath(axes: Axes, run: Run, angle: Shown, size: Shown) -> None:
     rotation = run.dataset["rotation"].to_numpy()
     angles = np.linspace(rotation.min(), rotation.max(), _ANGLES)
     held = system.moment_rotation((angles, str(ANGLE.unit)))
-    axes.plot(
-        angle.of(held["angle"]), size.of(held["base_moment"]), "--", color=GREY, linewidth=1.2,
-        label="in equilibrium",
-    )  # fmt: skip
+    along, moments = angle.of(held["angle"]), size.of(held["base_moment"])
+    axes.plot(along, moments, "--", color=GREY, linewidth=1.2, label="in equilibrium")
 
 
 def _need(runs: list[Run], names: tuple[str, ...], function: str) -> None:

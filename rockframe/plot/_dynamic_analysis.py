@@ -19,6 +19,7 @@ from rockframe.plot._axes import (
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, chosen_panels, sheet, single
 from rockframe.studies.dynamic_analysis import verdict_of_analysis
+from rockframe.studies.fragility.trials import at_scales
 from rockframe.units.shown import UnitsLike
 
 _PANELS: Final = {"peaks": 1.4, "shares": 1.0}
@@ -129,13 +130,9 @@ def dynamic_analysis(
 def _flips(given: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
     """Give the intensities at which the verdict on each motion changes."""
     scales = given["scale"].to_numpy()
-    above = given["scale_above"].isel(limit_state=-1)
-    found: list[np.ndarray] = []
-    for number in range(given.sizes["motion"]):
-        flips = above.isel(motion=number).to_numpy()
-        along = intensity.isel(motion=number).to_numpy()
-        found.append(_at(flips[~np.isnan(flips)], scales, along))
-    return found
+    above = given["scale_above"].isel(limit_state=-1).transpose("motion", ...).to_numpy()
+    each = zip(above, intensity.transpose("motion", ...).to_numpy(), strict=True)
+    return [at_scales(along, scales, flips[~np.isnan(flips)]) for flips, along in each]
 
 
 def _peaks(axes: Axes, given: xr.Dataset, intensity: xr.DataArray, flips: list[np.ndarray]) -> None:
@@ -165,7 +162,7 @@ def _shares(axes: Axes, given: xr.Dataset, intensity: xr.DataArray) -> None:
     for number, state in enumerate(given["limit_state"].to_numpy()):
         capacity = given["capacity_scale"].isel(limit_state=number).to_numpy()
         places = [
-            float(_at(np.array([scale]), scales, along)[0])
+            at_scales(along, scales, scale)
             for scale, along in zip(capacity, each, strict=True)
             if np.isfinite(scale)
         ]
@@ -187,21 +184,12 @@ def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]
     peaks = np.sort(
         [np.interp(up, np.append(0.0, along), np.append(0.0, peak)) for along, peak in lines],
         axis=0,
-    )
-    found: list[tuple[float, Any]] = []
-    for share in _FRACTILES:
-        place = share * (len(lines) - 1)
-        below, above = peaks[int(place)], peaks[int(np.ceil(place))]
-        # between a peak and a fall nothing lies
-        within = below + (place - int(place)) * (above - below)
-        found.append((share, np.where(above >= _CAPPED, _CAPPED, within)))
-    return found
-
-
-def _at(scales: np.ndarray, known: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Give intensities at scales, of which they are a power."""
-    power = np.log(along[-1] / along[0]) / np.log(known[-1] / known[0])
-    return along[0] * (scales / known[0]) ** power
+    )  # NaN, of a run without a result, comes last
+    places = np.array(_FRACTILES) * (len(lines) - 1)
+    below, above = (peaks[rounded(places).astype(int)] for rounded in (np.floor, np.ceil))
+    within = below + (places % 1.0)[:, None] * (above - below)
+    # between a peak and a fall nothing lies
+    return list(zip(_FRACTILES, np.where(above >= _CAPPED, _CAPPED, within), strict=True))
 
 
 @draws(
@@ -264,14 +252,8 @@ def fractile_curves(
         one = given.isel(quantile=number)
         of_response = np.minimum(one["response_fractile"].to_numpy(), 2.0 * right)
         axes.plot(of_response, up, color=colour, lw=1.6, label=f"{words} of responses")
-        axes.plot(
-            levels,
-            np.where(np.isfinite(one["intensity_fractile"]), one["intensity_fractile"], np.nan),
-            color=paired,
-            lw=1.4,
-            ls="--",
-            label=f"{words} of intensities",
-        )
+        reached = one["intensity_fractile"].where(np.isfinite)
+        axes.plot(levels, reached, color=paired, lw=1.4, ls="--", label=f"{words} of intensities")
     words = str(given.attrs["response"])
     axes.set(
         xlabel=label_of(given["response_level"].rename(words)),

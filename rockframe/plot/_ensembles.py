@@ -65,9 +65,7 @@ def ensemble(
         (("cumulative_probability_lower_bound", "cumulative_probability_upper_bound"), 0.25),
     ):
         low, high = (given[name].to_numpy() for name in names)
-        axes.fill_between(
-            values, low, high, step="post", color=COLOURS[0], alpha=alpha, linewidth=0.0
-        )
+        axes.fill_between(values, low, high, step="post", color=COLOURS[0], alpha=alpha, lw=0.0)
     axes.step(values, given["cumulative_probability"], where="post", color=COLOURS[0])
     axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
@@ -131,12 +129,8 @@ def probability(
         right.set(xlabel=label_of(first))
     else:
         labels, place = np.unique(first.to_numpy()[known].astype(str), return_inverse=True)
-        right.bar(
-            range(len(labels)),
-            [verdict[known][place == k].mean() for k in range(len(labels))],
-            color=COLOURS[1],
-            alpha=0.6,
-        )
+        shares = [verdict[known][place == k].mean() for k in range(len(labels))]
+        right.bar(range(len(labels)), shares, color=COLOURS[1], alpha=0.6)
         right.set(xlabel="motion")
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
@@ -351,32 +345,21 @@ def _curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> No
         # side by side where limit states were counted at one intensity
         place = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(named) - 1))
         axes.errorbar(place, fraction, yerr=reach, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7)
-    axes.set(
-        xlabel=label_of_intensity(named[0][1][measure], named[0][1]),
-        ylabel="probability of exceedance [-]",
-        ylim=(-0.02, 1.02),
-    )
-    axes.set_xlim(left=0.0)
+    axes.set_xlabel(label_of_intensity(named[0][1][measure], named[0][1]))
+    axes.set(ylabel="probability of exceedance [-]", ylim=(-0.02, 1.02), xlim=(0.0, None))
     grid(axes)
 
 
 def _contours(axes: Axes, one: xr.Dataset, measures: list[str]) -> None:
     across, up = measures
-    surface = one[_NAME].transpose(up, across)
-    axes.contourf(
-        one[across], one[up], surface, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.5
-    )
-    lines = axes.contour(
-        one[across], one[up], surface, levels=_LEVELS, colors=COLOURS[0], linewidths=0.9
-    )
+    drawn = one[across], one[up], one[_NAME].transpose(up, across)
+    axes.contourf(*drawn, levels=np.linspace(0.0, 1.0, 21), cmap="Blues", alpha=0.5)
+    lines = axes.contour(*drawn, levels=_LEVELS, colors=COLOURS[0], linewidths=0.9)
     for label in axes.clabel(lines, fontsize="small", fmt="%.2f", inline_spacing=2, colors="black"):
         label.set_bbox({"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.6})
         label.set_rotation(0.0)
-    axes.set(
-        xlabel=label_of_intensity(one[across], one),
-        ylabel=label_of_intensity(one[up], one),
-        title=_name(one),
-    )
+    axes.set(xlabel=label_of_intensity(one[across], one), title=_name(one))
+    axes.set_ylabel(label_of_intensity(one[up], one))
 
 
 def _name(one: xr.Dataset) -> str:

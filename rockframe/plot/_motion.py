@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
+from typing import Any, Final, TypeAlias, cast
 
 import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError
+from rockframe.measures import velocity_and_displacement
 from rockframe.motion import GroundMotion, VelocityPulse
 from rockframe.motion.description import shown_name
 from rockframe.plot._axes import (
@@ -25,15 +26,11 @@ from rockframe.plot._axes import (
     units_of,
     zero_line,
 )
-from rockframe.plot._checks import check_motion, draws, refuse
-from rockframe.plot._panels import AxesLike, Panels, sheet
+from rockframe.plot._checks import draws, refuse
+from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.plot._runs import Window, window_of
 from rockframe.units import ACCELERATION, LENGTH, VELOCITY
 from rockframe.units.shown import UnitsLike
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, GroundMotion]
 
@@ -58,8 +55,6 @@ def motions_title(given: list[Drawn]) -> str:
 
 def drawn_motions(given: object, function: str) -> list[Drawn]:
     """Read one or several motions."""
-    from rockframe.motion import GroundMotion
-
     labelled: dict[str, Any] = {}
     if isinstance(given, Mapping):
         labelled = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
@@ -79,8 +74,9 @@ def drawn_motions(given: object, function: str) -> list[Drawn]:
             Drawn(one, label, colour_of(number), style_of(number))
             for number, (label, one) in enumerate(labelled.items())
         ]
-    check_motion(given, function)
-    return [Drawn(cast("GroundMotion", given), None, colour_of(0), "-")]
+    if not isinstance(given, GroundMotion):
+        raise ComponentError(refuse(function, given))
+    return [Drawn(given, None, colour_of(0), "-")]
 
 
 _ROWS: Final = ("acceleration", "velocity", "displacement")
@@ -131,8 +127,6 @@ def motion(
     >>> panels[-1].get_xlabel()
     'time [s]'
     """
-    from rockframe.measures import velocity_and_displacement
-
     given = drawn_motions(motion, "motion")
     cut = window_of(window, "motion")
     chosen = units_of(units, "motion")
@@ -149,16 +143,18 @@ def motion(
     colours = (ink(), BLUE, GREEN)
     for axes, name, unit, colour in zip(on.panels, _ROWS, shown_in, colours, strict=True):
         if upwards is not None:
-            _line(axes, upwards, f"vertical_ground_{name}", unit, GREY, "vertical")
+            values = unit.of(upwards[f"vertical_ground_{name}"])
+            axes.plot(upwards["time"], values, color=GREY, lw=0.8, label="vertical")
         for one, history in zip(given, found, strict=True):
             single = one.label is None
-            label = one.label or "horizontal"
-            _line(axes, history, f"ground_{name}", unit, colour if single else one.colour, label,
-                  one.style)  # fmt: skip
+            axes.plot(
+                history["time"], unit.of(history[f"ground_{name}"]), linestyle=one.style, lw=0.8,
+                color=colour if single else one.colour, label=one.label or "horizontal",
+            )  # fmt: skip
             if single:
                 _mark_peak(axes, history, f"ground_{name}", unit, colour)
         zero_line(axes)
-        axes.set_ylabel(axis_label(f"{name}\n", unit.words).replace("\n ", "\n"))
+        axes.set_ylabel(axis_label(f"{name}\n", unit.words))
         axes.margins(y=0.15)
         axes.set_xlim(
             min(float(history["time"][0]) for history in found),
@@ -179,30 +175,17 @@ def _part(history: xr.Dataset, cut: tuple[float, float]) -> xr.Dataset:
     return history.sel(time=slice(*cut)) if np.isfinite(cut).any() else history
 
 
-def _line(
-    axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, colour: Any, label: str,
-    style: Any = "-",
-) -> None:  # fmt: skip
-    values = unit.of(dataset[name])
-    axes.plot(dataset["time"], values, color=colour, linestyle=style, linewidth=0.8, label=label)
-
-
-def _mark_peak(axes: "Axes", dataset: xr.Dataset, name: str, unit: Shown, colour: Any) -> None:
+def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: Shown, colour: Any) -> None:
     values = unit.of(dataset[name])
     place = int(np.argmax(np.abs(values)))
     time, peak = float(dataset["time"][place]), float(values[place])
     axes.plot([time], [peak], marker="o", markersize=4.0, color=colour)
     late = place > 0.8 * values.size
+    beside, side = (-6.0, "right") if late else (6.0, "left")
     axes.annotate(
-        f"{abs(peak):.3g}",
-        (time, peak),
-        xytext=(-6.0 if late else 6.0, 0.0),
-        textcoords="offset points",
-        ha="right" if late else "left",
-        va="bottom" if peak > 0.0 else "top",
-        fontsize="small",
-        color=colour,
-    )
+        f"{abs(peak):.3g}", (time, peak), xytext=(beside, 0.0), textcoords="offset points", ha=side,
+        va="bottom" if peak > 0.0 else "top", fontsize="small", color=colour,
+    )  # fmt: skip
 
 
 @draws(
@@ -242,9 +225,6 @@ def velocity_pulse(
     >>> panels[-1].get_xlabel()
     'time [s]'
     """
-    from rockframe.measures import velocity_and_displacement
-    from rockframe.motion import VelocityPulse
-
     if not isinstance(cast("object", pulse), VelocityPulse):
         raise ComponentError(refuse("velocity_pulse", pulse))
     unit = units_of(units, "velocity_pulse").of(VELOCITY)

@@ -1,6 +1,6 @@
 """Maps of overturning, and spectra over the size of the block."""
 
-from typing import Final
+from typing import Any, Final
 
 import xarray as xr
 
@@ -84,14 +84,9 @@ def overturning_map(
     axes = on.axes
     known = overturns(given).transpose(*count.dims).notnull()
     axes.pcolormesh(
-        across,
-        up,
-        count.fillna(-1.0).where(known),
-        cmap=ListedColormap(colours),
-        vmin=-1.5,
-        vmax=told + 0.5,
-        shading="nearest",
-    )
+        across, up, count.fillna(-1.0).where(known), cmap=ListedColormap(colours), vmin=-1.5,
+        vmax=told + 0.5, shading="nearest",
+    )  # fmt: skip
     middle = 0.5 * (given["amplitude_below"] + given["amplitude_above"])
     size = float(up[-1] / given["amplitude"][-1])
     for number in range(given.sizes.get("boundary", 0)):
@@ -145,15 +140,13 @@ def rocking_spectrum(
     'H/B = 5'
     """
     given = drawable(dataset, "rocking_spectrum", units)
-    on = _sheet(ax, "rocking_spectrum", given)
-    for place, axes in enumerate(on.panels):
-        one = given.isel(slenderness=place)
-        _lines(axes, one["peak_relative_rotation"].clip(max=_CAPPED))
+    peaks = given["peak_relative_rotation"].clip(max=_CAPPED)
+    on = _by_slenderness(ax, "rocking_spectrum", peaks, ylim=(0.0, 1.06))
+    for axes in on.panels:
         axes.axhline(_CAPPED, color="0.5", lw=0.8, ls=":")
-        axes.set(xscale="log", ylim=(0.0, 1.06), title=f"H/B = {float(one['slenderness']):.3g}")
-        axes.set_xlabel(r"$2\pi/p$ [s]")
     on.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
-    _finish(on, given)
+    if given.sizes["motion"] <= _MOST_NAMED:
+        on.name_lines()
     on.entitle("Rocking spectrum", title)
     return on.panels
 
@@ -195,15 +188,11 @@ def overturning_spectrum(
     'peak ground acceleration [g]'
     """
     given = drawable(dataset, "overturning_spectrum", units)
-    on = _sheet(ax, "overturning_spectrum", given)
     measure = given["capacity_intensity"].rename(str(given.attrs["intensity"]))
-    for place, axes in enumerate(on.panels):
-        one = measure.isel(slenderness=place)
-        _lines(axes, one)
-        axes.set(xscale="log", yscale="log", title=f"H/B = {float(one['slenderness']):.3g}")
-        axes.set_xlabel(r"$2\pi/p$ [s]")
+    on = _by_slenderness(ax, "overturning_spectrum", measure, yscale="log")
     on.axes.set_ylabel(label_of_intensity(measure, given))
-    _finish(on, given)
+    if given.sizes["motion"] <= _MOST_NAMED:
+        on.name_lines()
     on.entitle("Least intensity that overturns", title)
     return on.panels
 
@@ -214,24 +203,19 @@ def _after(count: int, told: int) -> str:
     return f"overturns {words}{' or more' if count == told else ''}"
 
 
-def _sheet(ax: AxesLike, function: str, given: xr.Dataset) -> Sheet:
-    names = [f"H/B = {float(value):.3g}" for value in given["slenderness"]]
-    return sheet(
+def _by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: Any) -> Sheet:
+    """Draw a line for each motion over the size of the block, a panel for each slenderness."""
+    names = [f"H/B = {float(value):.3g}" for value in values["slenderness"]]
+    on = sheet(
         ax, function, names, (1.2 + 3.2 * len(names), 3.9),
         lambda figure: figure.subplots(1, len(names), sharey=True),
     )  # fmt: skip
-
-
-def _lines(axes: Axes, values: xr.DataArray) -> None:
-    for number, colour in enumerate(colour_steps(values["motion"])):
-        one = values.isel(motion=number)
-        label = str(one["motion"].item())
-        axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)
-    grid(axes)
-
-
-def _finish(on: Sheet, given: xr.Dataset) -> None:
-    for axes in on.panels:
+    for place, axes in enumerate(on.panels):
+        for number, colour in enumerate(colour_steps(values["motion"])):
+            one = values.isel(slenderness=place, motion=number)
+            label = str(one["motion"].item())
+            axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)
+        axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
+        grid(axes)
         plain_ticks(axes)
-    if given.sizes["motion"] <= _MOST_NAMED:
-        on.name_lines()
+    return on

@@ -21,7 +21,7 @@ from rockframe.plot._response import (
     OF_BODIES,
     OF_CAP,
     SLIP,
-    contact_names_of,
+    names_of_flags,
     of_rotation,
     strips_of,
 )
@@ -357,7 +357,7 @@ def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
     """Give the instants at which contact changes, and the state after each."""
     values, time = state.to_numpy(), state["time"].to_numpy()
     changes = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
-    names = dict(contact_names_of(state))
+    names = dict(names_of_flags(state))
     return {"words": words, "times": [round(float(time[k]), 6) for k in changes],
             "states": [names[int(values[k])] for k in changes]}  # fmt: skip
 

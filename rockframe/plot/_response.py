@@ -3,8 +3,9 @@
 Events are marked on the rotation, and strips below it show the contact states.
 """
 
+from collections.abc import Callable
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -16,6 +17,7 @@ from rockframe.plot._axes import (
     COLOURS,
     GREEN,
     GREY,
+    METRES,
     ORANGE,
     PURPLE,
     VERMILLION,
@@ -28,16 +30,11 @@ from rockframe.plot._axes import (
     zero_line,
 )
 from rockframe.plot._checks import RUN, draws, overturning_angles
-from rockframe.plot._panels import AxesLike, Panels, sheet
+from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.results.outcome import LEAST_SLIP
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import ReaderUnits, UnitsLike
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 
 CONTACT_COLOURS: Final = {
     "full": "#ececec",
@@ -51,29 +48,25 @@ _COLUMNS: Final = 1 << 14
 """More than a figure has pixels, so that what is narrower than a pixel is averaged twice only."""
 
 
-def draw_contact(axes: "Axes", state: xr.DataArray, name: str) -> None:
+def draw_contact(axes: Axes, state: xr.DataArray, name: str) -> None:
     """Draw which corner bears, in the colour of the state.
 
     Where states change faster than the figure can show, the colours are mixed by the shares
     of time: bars would show whichever was painted last.
     """
     time = state["time"].to_numpy()
-    axes.imshow(
-        mixed_colours(state, _COLUMNS)[np.newaxis],
-        extent=(time[0], time[-1], 0.0, 1.0),
-        aspect="auto",
-        interpolation="antialiased",
-    )
+    colours, ends = mixed_colours(state, _COLUMNS)[np.newaxis], (time[0], time[-1], 0.0, 1.0)
+    axes.imshow(colours, extent=ends, aspect="auto", interpolation="antialiased")
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
     axes.set_ylabel(name, rotation=0, ha="right", va="center")
 
 
-def draw_contact_legend(axes: "Axes", state: xr.DataArray) -> None:
+def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
     """Name the colours below the strip."""
     from matplotlib.patches import Patch
 
-    names = [name for _, name in contact_names_of(state)]
+    names = [name for _, name in names_of_flags(state)]
     axes.legend(
         handles=[Patch(facecolor=CONTACT_COLOURS[name], label=name) for name in names],
         loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(names),
@@ -88,17 +81,17 @@ def mixed_colours(state: xr.DataArray, columns: int) -> Any:
     time, values = state["time"].to_numpy(), state.to_numpy()
     edges = np.linspace(time[0], time[-1], columns + 1)
     colours = np.zeros((columns, 3))
-    for value, name in contact_names_of(state):
+    for value, name in names_of_flags(state):
         held = np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[:-1] == value))])
         share = np.diff(np.interp(edges, time, held)) / np.diff(edges)
         colours += share[:, np.newaxis] * np.array(to_rgb(CONTACT_COLOURS[name]))
     return np.clip(colours, 0.0, 1.0)
 
 
-def contact_names_of(state: xr.DataArray) -> list[tuple[int, str]]:
-    """Give the numbers of contact states with their names."""
-    meanings = str(state.attrs["flag_meanings"]).split()
-    return list(zip(state.attrs["flag_values"], meanings, strict=True))
+def names_of_flags(flags: xr.DataArray) -> list[tuple[int, str]]:
+    """Give the numbers of contact states, or of kinds of events, with their names."""
+    meanings = str(flags.attrs["flag_meanings"]).split()
+    return list(zip(flags.attrs["flag_values"], meanings, strict=True))
 
 
 MARKS: Final = {
@@ -124,7 +117,7 @@ MARKS: Final = {
 horizontal restraint are not drawn: they come with a separation or a contact."""
 
 
-def draw_events(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
+def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
     """Mark events where they happened on the rotation, and name them in the legend."""
     named: set[str] = set()
     for run in runs:
@@ -136,7 +129,11 @@ def draw_events(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
         drawn = rotation / np.where(rotation < 0.0, left, right)
         drawn = drawn if unit is None else unit.of(rotation)
         when = dataset["event_time"].to_numpy()
-        for name, chosen in events_by_kind(run).items():
+        kinds = dataset["event_kind"].to_numpy()
+        for value, name in names_of_flags(dataset["event_kind"]):
+            chosen = kinds == value
+            if name not in MARKS or not chosen.any():
+                continue
             marker, colour = MARKS[name]
             label = None if name in named else name.replace("_", " ")
             named.add(name)
@@ -149,21 +146,9 @@ def draw_events(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
         key(axes)
 
 
-def events_by_kind(run: Run) -> dict[str, np.ndarray]:
-    """Give which events of a run are of each kind that is drawn."""
-    kinds = run.dataset["event_kind"]
-    values = kinds.to_numpy()
-    meanings = str(kinds.attrs["flag_meanings"]).split()
-    named = zip(kinds.attrs["flag_values"], meanings, strict=True)
-    found = {name: values == value for value, name in named if name in MARKS}
-    return {name: chosen for name, chosen in found.items() if chosen.any()}
-
-
 CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 """Strips of contact states, and what they are called where there are two."""
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
-_SI_ACCELERATION: Final = Shown(str(ACCELERATION.unit), 1.0)
-_SI_LENGTH: Final = Shown(str(LENGTH.unit), 1.0)
 _AT_REST: Final = 1e-12
 """Rotations below are rounding [rad]."""
 SLIP: Final = "slip"
@@ -258,11 +243,11 @@ def response(
         for name in names
     ]
 
-    def make(figure: "Figure") -> Any:
-        ratios = {"height_ratios": heights}
-        return figure.subplots(len(names), 1, sharex=True, gridspec_kw=ratios)
-
-    on = sheet(ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)), make, choice=True)
+    on = sheet(
+        ax, "response", names, (8.0, 1.0 + 1.15 * sum(heights)),
+        lambda figure: figure.subplots(len(names), 1, sharex=True, height_ratios=heights),
+        choice=True,
+    )  # fmt: skip
     drawn = dict(zip(names, on.panels, strict=True))
     for name, axes in drawn.items():
         if name in strips:
@@ -353,8 +338,7 @@ def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
     return found
 
 
-def _ground(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
-    unit = unit or _SI_ACCELERATION
+def _ground(axes: Axes, runs: list[Run], unit: Shown) -> None:
     alike = all(
         run.dataset["ground_acceleration"].identical(runs[0].dataset["ground_acceleration"])
         for run in runs
@@ -366,12 +350,11 @@ def _ground(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
             axes.plot(run.time, upwards, color=GREY, linewidth=0.6, label="vertical")
         across = unit.of(run.dataset["ground_acceleration"])
         axes.plot(run.time, across, color=colour, linewidth=0.8)
-    if axes.get_legend_handles_labels()[0]:
-        key(axes)
-    axes.set_ylabel(axis_label("ground\n", unit.words).replace("\n ", "\n"))
+    key(axes)
+    axes.set_ylabel(axis_label("ground\n", unit.words))
 
 
-def _history(axes: "Axes", runs: list[Run], name: str, units: ReaderUnits) -> None:
+def _history(axes: Axes, runs: list[Run], name: str, units: ReaderUnits) -> None:
     """Draw a history without a panel of its own kind, of those runs that hold it.
 
     Of several points there is a line for each.
@@ -392,14 +375,13 @@ def _history(axes: "Axes", runs: list[Run], name: str, units: ReaderUnits) -> No
         axes.lines[-1].set_label("block")
         cap = unit.of(runs[0].dataset[OF_CAP])
         axes.plot(runs[0].time, cap, color=ORANGE, linewidth=0.9, label="cap")
-    if axes.get_legend_handles_labels()[0]:
-        key(axes)
+    key(axes)
     zero_line(axes)
     words = "\n".join(wrap(name.replace("_", " "), 16))
-    axes.set_ylabel(axis_label(f"{words}\n", unit.words).replace("\n ", "\n"))
+    axes.set_ylabel(axis_label(f"{words}\n", unit.words))
 
 
-def _rotation(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
+def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
     several = len(runs) > 1
     for run in runs:
         dataset = run.dataset
@@ -429,7 +411,7 @@ def _rotation(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
         _beside_in_degrees(axes, *angles.pop())
 
 
-def _uplift(axes: "Axes", dataset: xr.Dataset, unit: Shown | None) -> None:
+def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
     """Draw the rotations at which contact is first lost."""
     uplift = float(dataset["uplift_angle"])
     if not (np.isfinite(uplift) and uplift > 0.0):
@@ -440,7 +422,7 @@ def _uplift(axes: "Axes", dataset: xr.Dataset, unit: Shown | None) -> None:
         axes.axhline(place, color=GREEN, linewidth=0.7, linestyle="--", label=label)
 
 
-def _beside_in_degrees(axes: "Axes", left: float, right: float) -> None:
+def _beside_in_degrees(axes: Axes, left: float, right: float) -> None:
     """Write degrees at the right of an axis of rotations over the overturning angle."""
 
     def degrees(share: Any) -> Any:
@@ -453,10 +435,10 @@ def _beside_in_degrees(axes: "Axes", left: float, right: float) -> None:
     axes.secondary_yaxis("right", functions=(degrees, share)).set_ylabel("[°]")
 
 
-def _vertical(axes: "Axes", runs: list[Run], unit: Shown | None) -> None:
+def _vertical(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
     name = "relative_vertical_displacement"
     over_settlement = unit is None and all(name in run.dataset for run in runs)
-    metres = unit or _SI_LENGTH
+    metres = unit or METRES
     for number, run in enumerate(runs):
         shown_as = run.dataset[name if over_settlement else "vertical_displacement"]
         values = shown_as.to_numpy() if over_settlement else metres.of(shown_as)
@@ -485,4 +467,8 @@ def settlement_in(run: xr.Dataset) -> float:
     return float(f"{float(run['vertical_displacement'][most]) / float(share[most]):.12g}")
 
 
-_DRAW: Final = {"ground": _ground, "rotation": _rotation, "vertical": _vertical}
+_DRAW: Final[dict[str, Callable[..., None]]] = {
+    "ground": _ground,
+    "rotation": _rotation,
+    "vertical": _vertical,
+}

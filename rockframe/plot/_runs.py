@@ -64,12 +64,13 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
         )
         raise ComponentError(msg)
     start, end = (
-        float("nan") if one is None else to_si(one, TIME, owner=owner, name=name) for one in ends
-    )
+        none if one is None else to_si(one, TIME, owner=owner, name=name)
+        for one, none in zip(ends, (-np.inf, np.inf), strict=True)
+    )  # fmt: skip
     if start >= end:
         msg = f"{owner}: {name} must end after it starts, got {shown(window)}"
         raise ComponentError(msg)
-    return (-np.inf if np.isnan(start) else start), (np.inf if np.isnan(end) else end)
+    return start, end
 
 
 def runs_title(runs: list[Run], units: ReaderUnits) -> str:

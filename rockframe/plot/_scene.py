@@ -1,7 +1,7 @@
 """Scenes to scale: as they stand, and at an instant of a run."""
 
 from collections.abc import Mapping
-from typing import Final
+from typing import Final, cast
 
 import numpy as np
 import xarray as xr
@@ -15,12 +15,11 @@ from rockframe.plot._checks import (
     above_zero,
     checked_run,
     draws,
-    require_system,
+    refuse,
     system_of_run,
 )
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.results.points import UPRIGHT, Placement
-from rockframe.signals.arrays import Array
 from rockframe.simulation.plan import points_of
 from rockframe.simulation.system import System
 from rockframe.system.geometry import Geometry, geometry_of
@@ -89,7 +88,8 @@ def scene(
     >>> axes.get_xlabel()
     '[m]'
     """
-    require_system(system, "scene")
+    if not isinstance(cast("object", system), System):
+        raise ComponentError(refuse("scene", system))
     drawer = Drawer(geometry_of(system.assembly))
     at = Placement(drawer.geometry, UPRIGHT, system.restraint)
     named = truth(legend, owner="rf.plot.scene", name="legend")
@@ -215,13 +215,10 @@ class Moving:
     def at(self, place: int) -> Placement:
         """Give the scene at a sample."""
         values = {name: float(column[place]) for name, column in self._columns.items()}
-        return Placement(self.geometry, values, self.system.restraint, self._bodies_at(place))
-
-    def _bodies_at(self, place: int) -> Array | None:
-        """Give rotation and displacements of all bodies of a stack at a sample."""
-        if not self.geometry.lower:
-            return None
-        return np.column_stack([self.run[name].to_numpy()[:, place] for name in _OF_BODIES])
+        bodies = None
+        if self.geometry.lower:
+            bodies = np.column_stack([self.run[name].to_numpy()[:, place] for name in _OF_BODIES])
+        return Placement(self.geometry, values, self.system.restraint, bodies)
 
     def nearest(self, time: object) -> int:
         """Find the sample nearest to a time, or that of the largest rotation."""
@@ -247,11 +244,6 @@ class Moving:
         text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.0f} % of overturning{whose}"
         factor = self.drawer.magnify
         return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
-
-    def corners(self, places: Array) -> Array:
-        """Give all corners of the block at samples, which a drawing must hold."""
-        found = [self.drawer.lay_out(self.at(int(place))) for place in places]
-        return np.vstack([part for one in found for part in (one.block, *one.others)])
 
 
 def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:

@@ -71,14 +71,9 @@ def selection(
     period = drawn["period"].to_numpy()
     spectra, misfits = on.panels
     for place in range(count):
-        spectra.plot(
-            period,
-            drawn["scaled_spectral_acceleration"].isel(motion=place),
-            color=GREY,
-            alpha=0.6,
-            linewidth=0.6,
-            label="motions" if place == 0 else None,
-        )
+        words = "motions" if place == 0 else None
+        one = drawn["scaled_spectral_acceleration"].isel(motion=place)
+        spectra.plot(period, one, color=GREY, alpha=0.6, linewidth=0.6, label=words)
     for name, colour, words in (
         ("set_median", _SET, "median"),
         ("target_spectral", _TARGET, "target"),
@@ -90,14 +85,9 @@ def selection(
             for sign in (-1.0, 1.0):
                 edge = middle * np.exp(sign * spread)
                 spectra.plot(period, edge, color=colour, linewidth=1.0, linestyle="--")
-    spectra.set(
-        xscale="log",
-        yscale="log",
-        xlabel="period [s]",
-        ylabel=axis_label(
-            "pseudo-spectral acceleration", dataset["scaled_spectral_acceleration"].attrs["units"]
-        ),
-    )
+    unit = dataset["scaled_spectral_acceleration"].attrs["units"]
+    spectra.set(xscale="log", yscale="log", xlabel="period [s]")
+    spectra.set_ylabel(axis_label("pseudo-spectral acceleration", unit))
     key(spectra)
     labels = [str(label) for label in dataset["motion"].to_numpy()]
     factors = dataset["scale_factor"].to_numpy()

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import one_of_words, truth
+from rockframe.measures import fourier_spectrum, response_spectrum, velocity_and_displacement
 from rockframe.motion.quantities import ArrayLike
 from rockframe.plot._axes import (
     BLUE,
@@ -85,12 +86,6 @@ def spectra(
     >>> panels[0].get_xlabel()
     'time [s]'
     """
-    from rockframe.measures import (
-        fourier_spectrum,
-        response_spectrum,
-        velocity_and_displacement,
-    )
-
     given = drawn_motions(motion, "spectra")
     cut = window_of(window, "spectra")
     chosen = units_of(units, "spectra")
@@ -114,20 +109,19 @@ def spectra(
     on = sheet(ax, "spectra", _PANELS, (7.2, 5.4), make)
     for one, history, response, fourier in found:
         name = f"{_PREFIX[str(component)]}ground_acceleration"
-        _history(on.panels[0], history.sel(time=slice(*cut)), name, unit, one)
+        colour, part = ink() if one.label is None else one.colour, history.sel(time=slice(*cut))
+        values = unit.of(part[name])
+        on.axes.plot(part["time"], values, color=colour, linewidth=0.8, label=one.label)
+        zero_line(on.axes)
         _response(on.panels[1], response, unit, one)
-        _fourier(on.panels[2], fourier, amplitude, one)
+        rest = fourier.isel(frequency=slice(1, None))
+        values = amplitude.of(rest["fourier_amplitude"])
+        on.panels[2].semilogx(rest["frequency"], values, color=colour, linewidth=0.7)
     _label(on.panels, found, unit, amplitude)
     if len(given) > 1:
         on.legend(*on.panels[1].get_legend_handles_labels(), fontsize="small")
     on.entitle(motions_title(given), title)
     return on.panels
-
-
-def _history(axes: Axes, dataset: xr.Dataset, name: str, unit: Shown, one: Drawn) -> None:
-    colour = ink() if one.label is None else one.colour
-    axes.plot(dataset["time"], unit.of(dataset[name]), color=colour, linewidth=0.8, label=one.label)
-    zero_line(axes)
 
 
 def _response(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
@@ -138,21 +132,11 @@ def _response(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
         label = damping
         if one.label is not None:
             label = one.label if len(ratios) == 1 else f"{one.label}, {damping}"
+        values = unit.of(drawn["pseudo_spectral_acceleration"].isel(damping_ratio=place))
+        colour = colour_of(place) if one.label is None else one.colour
         axes.semilogx(
-            drawn["period"],
-            unit.of(drawn["pseudo_spectral_acceleration"].isel(damping_ratio=place)),
-            color=colour_of(place) if one.label is None else one.colour,
-            linestyle=style_of(place),
-            linewidth=1.2,
-            label=label,
+            drawn["period"], values, color=colour, ls=style_of(place), lw=1.2, label=label
         )
-
-
-def _fourier(axes: Axes, dataset: xr.Dataset, unit: Shown, one: Drawn) -> None:
-    drawn = dataset.isel(frequency=slice(1, None))
-    colour = ink() if one.label is None else one.colour
-    values = unit.of(drawn["fourier_amplitude"])
-    axes.semilogx(drawn["frequency"], values, color=colour, linewidth=0.7)
 
 
 def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> None:
@@ -162,10 +146,7 @@ def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> N
     shown = [line.get_xdata() for line in history.get_lines() if len(line.get_xdata()) > 2]
     ends = shown or times
     history.set_xlim(min(time[0] for time in ends), max(time[-1] for time in ends))
-    history.set(
-        xlabel="time [s]",
-        ylabel=axis_label("acceleration\n", unit.words).replace("\n ", "\n"),
-    )
+    history.set(xlabel="time [s]", ylabel=axis_label("acceleration\n", unit.words))
     response.set(xlabel="period [s]", ylabel=axis_label("pseudo-spectral acceleration", unit.words))
     response.set_ylim(bottom=0.0)
     if not several:
@@ -252,8 +233,6 @@ def suite(
     >>> axes.get_ylabel()
     'pseudo-spectral acceleration [g]'
     """
-    from rockframe.measures import response_spectrum
-
     given = drawn_motions(motions, "suite")
     if target is not None:
         check_target(target, owner="rf.plot.suite")

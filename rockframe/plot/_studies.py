@@ -294,11 +294,10 @@ def _draw_lines(
     others: list[str],
 ) -> None:  # fmt: skip
     places, words = _along(given, along)
-    rows = values.expand_dims("one") if not others else values
-    across = others[0] if others else "one"
-    overturned = None if fell is None else (fell.expand_dims("one") if not others else fell)
-    for number in range(rows.sizes[across]):
-        line = rows.isel({across: number}).to_numpy().astype(np.float64)
+    across = others[0] if others else ""
+    for number in range(values.sizes.get(across, 1)):
+        one = {across: number} if others else {}
+        line = values.isel(one).to_numpy().astype(np.float64)
         label = None
         if others:
             known = across in given.coords
@@ -308,8 +307,8 @@ def _draw_lines(
             places, line, marker="o", markersize=3.0, color=colour_of(number),
             linestyle=style_of(number // 6), linewidth=1.0, label=label,
         )  # fmt: skip
-        if overturned is not None:
-            down = overturned.isel({across: number}).to_numpy().astype(bool)
+        if fell is not None:
+            down = fell.isel(one).to_numpy().astype(bool)
             axes.plot(places[down], line[down], "x", color=ink(), markersize=6.0)
     if not _is_axis(given, along) and along in given.coords:
         names = [str(name) for name in given[along].to_numpy()]

@@ -7,11 +7,10 @@ import xarray as xr
 
 from rockframe.plot._axes import GREY, grid, ink
 from rockframe.plot._checks import drawable, draws
-from rockframe.plot._panels import AxesLike, Panels, sheet
+from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.units.shown import UnitsLike
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
 
@@ -92,12 +91,8 @@ def tradeoff(
     for panel in axes:
         panel.set(xscale="log")
         grid(panel)
-    axes[0].set(
-        yscale="log",
-        xlabel="time of a run [ms]",
-        ylabel=_ERROR.format("\n"),
-        title="integration: low and left is better",
-    )
+    axes[0].set(yscale="log", xlabel="time of a run [ms]", ylabel=_ERROR.format("\n"))
+    axes[0].set_title("integration: low and left is better")
     axes[0].xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes[0].xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes[0].xaxis.set_minor_locator(NullLocator())
@@ -115,7 +110,7 @@ def tradeoff(
     return on.panels
 
 
-def _line(axes: "Axes", x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
+def _line(axes: Axes, x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
     axes.plot(x, y, "-", color=colour, lw=1.0)
     face = "white" if _SMALL in str(row["model"].item()) else colour
     agrees = row["verdict_agrees"].to_numpy()
@@ -126,7 +121,7 @@ def _line(axes: "Axes", x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
             axes.plot(x[k], y[k], "x", color=ink(), ms=11)
 
 
-def _mark_below(axes: "Axes", errors: Any) -> None:
+def _mark_below(axes: Axes, errors: Any) -> None:
     """Set the ends of the axis of errors, and mark the band of those that are not told apart."""
     from matplotlib.ticker import LogLocator, NullLocator
 

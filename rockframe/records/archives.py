@@ -6,20 +6,16 @@ names that lead out of it, links, devices, and archives in those in it are told 
 followed.
 """
 
-from __future__ import annotations
-
 import gzip
 import io
 import re
 import tarfile
 import zipfile
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import IO, TYPE_CHECKING, Any, Final, cast
+from typing import IO, Any, Final, cast
 
 from rockframe.errors import RecordError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 MAXIMUM_BYTES: Final = 40 * 2**20
 """Largest file that is opened at all."""
@@ -121,7 +117,7 @@ def _single(member: ArchiveMember) -> ArchiveMember:
     return member
 
 
-def _unpacked(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMember]:
+def _unpacked(file: IO[bytes], name: str, budget: "_Budget") -> Iterator[ArchiveMember]:
     start = file.read(_START)
     file.seek(0)
     unpack = _of_zip if start.startswith(_ZIP) else _of_tar

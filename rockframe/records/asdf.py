@@ -12,17 +12,15 @@ Reference: L. Krischer et al., "An Adaptable Seismic Data Format", Geophysical J
 International 207(2), 2016; U.S. Geological Survey, gmprocess, "Workspace".
 """
 
-from __future__ import annotations
-
-import hashlib
 import json
 import math
 import re
 import warnings
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -46,13 +44,10 @@ from rockframe.records.reader import (
     Request,
     Source,
     begins_otherwise,
+    source_of,
 )
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 _MARKS: Final = (b"Waveforms", b"file_format")
@@ -201,10 +196,9 @@ def _stated_unit(file: Any, one: _Waveform) -> str | None:
         return None
     # the channels of a stream share a name without the last letter, and a tag
     start = f"{one.codes[:-1]}_{one.tag}"
-    variable = groups.variables.get(start)
-    if variable is None or math.prod(map(int, variable.shape)) > _LARGEST_TEXT:
+    text = _text_in(groups, start)
+    if text is None:
         return None
-    text = np.asarray(variable[:]).astype(np.uint8).tobytes()
     try:
         told = json.loads(text.decode("utf-8", "replace"))
     except (ValueError, RecursionError):
@@ -219,12 +213,16 @@ def _response(
 ) -> InstrumentResponse | None:
     if request.response is not None:
         return InstrumentResponses(source, request).of(one.codes, start)
-    variable = file.groups["Waveforms"].groups[one.group].variables.get("StationXML")
+    xml = _text_in(file.groups["Waveforms"].groups[one.group], "StationXML")
+    return None if xml is None else response_in(source_of(source.path, xml), one.codes, start)
+
+
+def _text_in(group: Any, name: str) -> bytes | None:
+    """Give a text that is kept as an array of bytes; None if there is none, or it is too long."""
+    variable = group.variables.get(name)
     if variable is None or math.prod(map(int, variable.shape)) > _LARGEST_TEXT:
         return None
-    data = np.asarray(variable[:]).astype(np.uint8).tobytes()
-    xml = Source(source.path, data, hashlib.sha256(data).hexdigest())
-    return response_in(xml, one.codes, start)
+    return np.asarray(variable[:]).astype(np.uint8).tobytes()
 
 
 ASDF: Final = Format(

@@ -4,11 +4,10 @@ What headers state of peak, length and end does not decide how a file is read. W
 warned about: the unit, the time step or the samples may be another record's than the header's.
 """
 
-from __future__ import annotations
-
 import math
 import re
-from typing import TYPE_CHECKING, Final, NamedTuple
+from collections.abc import Iterable
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -16,11 +15,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.records.numbers import ONE_NUMBER
 from rockframe.records.reader import Metadata, Record, Request, Source
 from rockframe.records.unit_names import RecordUnit, acceleration_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 TIME_STEP_LIMITS: Final = (1e-6, 10.0)
 """Time steps outside are refused [s]."""

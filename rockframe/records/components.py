@@ -1,21 +1,16 @@
 """Which component of a file is read, and which way it points: in one way for all formats."""
 
-from __future__ import annotations
-
 import math
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, Literal, cast
+from typing import Final, Literal, cast
 
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordError
 from rockframe.records.numbers import same_start
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from rockframe.records.reader import Metadata, Record, Request, Source
+from rockframe.records.reader import Metadata, Record, Request, Source
 
 UPWARDS: Final = "up"
 DOWNWARDS: Final = "down"
@@ -47,7 +42,7 @@ class Orientation:
     # ``"up"``, ``"down"`` or, if the file does not say which, ``"vertical"``
     vertical: Literal["up", "down", "vertical"] | None = None
 
-    def matches(self, other: Orientation) -> bool:
+    def matches(self, other: "Orientation") -> bool:
         """Tell whether two directions are the same, or both vertical."""
         if self.vertical is not None and other.vertical is not None:
             return True
@@ -56,7 +51,7 @@ class Orientation:
         turn = (self.azimuth - other.azimuth) % _FULL_CIRCLE
         return min(turn, _FULL_CIRCLE - turn) < 1e-6
 
-    def reversed(self) -> Orientation:
+    def reversed(self) -> "Orientation":
         """Give the opposite direction, for a sign before a name; downwards if it is vertical."""
         if self.vertical is not None:
             return Orientation(vertical=DOWNWARDS)
@@ -281,17 +276,8 @@ def choose_component(
 
 def named(source: Source, component: FileComponent) -> Record:
     """Read a component as it is, a vertical one upwards, with its name in the metadata."""
-    record = component.read()
-    done: tuple[str, ...] = ()
-    warned: tuple[str, ...] = ()
-    if component.orientation.vertical is not None:
-        record, done, warned = _upwards(source, record, component)
-    return replace(
-        record,
-        metadata={**record.metadata, **_metadata_of(component)},
-        history=(*record.history, *done),
-        warnings=(*record.warnings, *warned),
-    )
+    record = _upwards(source, component.read(), component)
+    return replace(record, metadata={**record.metadata, **_metadata_of(component)})
 
 
 def _across(source: Source, request: Request, components: Sequence[FileComponent]) -> FileComponent:
@@ -310,28 +296,26 @@ def _alone(
 ) -> Record:
     record = chosen.read()
     metadata: Metadata = {**record.metadata, **_metadata_of(chosen)}
-    history = record.history
-    warnings = record.warnings
     if len(components) > 1:
         names = ", ".join(str(entry.name) for entry in components[:_LISTED])
-        history = (*history, f"component {chosen.name} taken (of {names})")
+        taken = f"component {chosen.name} taken (of {names})"
+        record = replace(record, history=(*record.history, taken))
     requested = request.component
     if chosen.orientation.vertical is not None and requested is None:
-        warnings = (
-            *warnings,
+        words = (
             f"{source.path}: the component {chosen.name} is vertical, and is read as if it "
             f"were horizontal; say component={chosen.name!r} if that is meant, and "
-            "use with_vertical to set it beside a horizontal one",
+            "use with_vertical to set it beside a horizontal one"
         )
+        record = replace(record, warnings=(*record.warnings, words))
     # asked for as upwards, not by the name that the file gives it
     by_direction = requested is not None and not _has_name(requested, chosen)
     sense = chosen.orientation.vertical
     if by_direction and orientation_of(requested or "").vertical == UPWARDS:
-        record, step, warning = _upwards(source, record, chosen)
-        history, warnings, sense = (*history, *step), (*warnings, *warning), UPWARDS
+        record, sense = _upwards(source, record, chosen), UPWARDS
     if sense is not None:
         metadata[SENSE] = sense
-    return replace(record, metadata=metadata, history=history, warnings=warnings)
+    return replace(record, metadata=metadata)
 
 
 def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Record:
@@ -347,8 +331,8 @@ def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Reco
             expected="one start time for both",
             line=upwards.line,
         )
-    raised, turned, warned = _upwards(source, raised, upwards)
-    vertical = raised.samples
+    turned = _upwards(source, raised, upwards)
+    vertical = turned.samples
     if not math.isclose(raised.unit.factor, level.unit.factor):
         vertical = vertical * (raised.unit.factor / level.unit.factor)
     count = max(level.samples.size, vertical.size)
@@ -371,31 +355,26 @@ def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Reco
             *level.history,
             *(f"vertical component: {sentence}" for sentence in own),
             f"component {across.name} taken as horizontal, {upwards.name} as vertical",
-            *turned,
+            *turned.history[len(raised.history) :],
             *steps,
         ),
-        warnings=(
-            *level.warnings,
-            *(words for words in raised.warnings if words not in level.warnings),
-            *warned,
-        ),
+        warnings=tuple(dict.fromkeys((*level.warnings, *turned.warnings))),
     )
 
 
-def _upwards(
-    source: Source, record: Record, component: FileComponent
-) -> tuple[Record, tuple[str, ...], tuple[str, ...]]:
+def _upwards(source: Source, record: Record, component: FileComponent) -> Record:
+    """Turn a vertical component over that is positive downwards, and say what was done."""
     sense = component.orientation.vertical
     if sense == DOWNWARDS:
         sentence = f"component {component.name} turned over: positive upwards"
-        return replace(record, samples=-record.samples), (sentence,), ()
+        return replace(record, samples=-record.samples, history=(*record.history, sentence))
     if sense == VERTICAL:
         words = (
             f"{source.path}: the file does not say whether {component.name} is positive "
             "upwards or downwards; upwards is assumed"
         )
-        return record, (), (words,)
-    return record, (), ()
+        return replace(record, warnings=(*record.warnings, words))
+    return record
 
 
 def _metadata_of(component: FileComponent) -> Metadata:

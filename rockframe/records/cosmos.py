@@ -7,8 +7,6 @@ Reference: Consortium of Organizations for Strong-Motion Observation Systems,
 "COSMOS Strong Motion Data Format", version 1.20, August 15, 2001.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass
@@ -31,6 +29,7 @@ from rockframe.records.components import (
     choose_component,
     orientation_of,
 )
+from rockframe.records.headers import first_match
 from rockframe.records.numbers import Fields, FixedWidth, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import acceleration_unit, choose_unit
@@ -87,6 +86,12 @@ _REALS: Final = re.compile(
     r"\s*Format\s*=?\s*\(\s*(\d{1,3})[FEG](\d{1,3})\.\d{1,3}\)",
     re.IGNORECASE,
 )
+_OF_INTEGERS: Final = (
+    "integer header", "100 Integer-header values follow on 10 lines, Format= (10I8)",
+)  # fmt: skip
+_OF_REALS: Final = (
+    "real header", "100 Real-header values follow on 20 lines, Format= (5F15.6)",
+)  # fmt: skip
 _COMMENTS: Final = re.compile(r"(\d{1,6})\s+Comment line", re.IGNORECASE)
 _UNKNOWN: Final = re.compile(r"unspecified:\s*(-?\d{1,8})\s*,?\s*(-?[\d.]{1,12})")
 _USUAL_UNKNOWN: Final = (-999, -999.0)
@@ -127,8 +132,8 @@ class _Header:
 
 def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Header:
     at = start + text_lines
-    integers, integer_count, at = _section(source, at, end, _INTEGERS, "integer header")
-    reals, real_count, comments_line = _section(source, at, end, _REALS, "real header")
+    integers, integer_count, at = _section(source, at, end, _INTEGERS, *_OF_INTEGERS)
+    reals, real_count, comments_line = _section(source, at, end, _REALS, *_OF_REALS)
     comments, data_at = "", comments_line
     said = _COMMENTS.search(source.top(1, comments_line)[0]) if comments_line < end else None
     if said is not None:
@@ -141,7 +146,7 @@ def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Head
 
 
 def _section(
-    source: Source, at: int, end: int, announcement: re.Pattern[str], what: str
+    source: Source, at: int, end: int, announcement: re.Pattern[str], what: str, such_as: str
 ) -> tuple[Fields, int, int]:
     """Give the fields of a section, how many there are, and the index of the line below them."""
     # one line of slack: some files have a text line more than they announce
@@ -157,18 +162,11 @@ def _section(
             found = f"{count} values on {lines} lines of {columns} ({what})"
             expected = "as many lines as these values need, and as many as follow"
             raise source.refuse(found=found, expected=expected, line=index + 1)
-        return FixedWidth(width, columns).at(source, first), count, first + lines
+        return Fields(source, FixedWidth(width, columns), first), count, first + lines
     index = min(max(at, 0), end - 1)
-    raise source.refuse(
-        found=quoted_first_line(source.lines[index]),
-        expected=f"the line that announces the {what}, such as '100 "
-        + (
-            "Integer-header values follow on 10 lines, Format= (10I8)'"
-            if announcement is _INTEGERS
-            else "Real-header values follow on 20 lines, Format= (5F15.6)'"
-        ),
-        line=index + 1,
-    )
+    found = quoted_first_line(source.lines[index])
+    expected = f"the line that announces the {what}, such as '{such_as}'"
+    raise source.refuse(found=found, expected=expected, line=index + 1)
 
 
 def _unknown(lines: list[str]) -> tuple[int, float]:
@@ -311,15 +309,13 @@ def _samples(source: Source, request: Request, header: _Header) -> Record:
 
 
 def _data_line(source: Source, header: _Header) -> tuple[int, re.Match[str]]:
-    for index, text in enumerate(source.top(3, header.data_at), start=header.data_at):
-        match = _DATA_LINE.match(text)
-        if match is not None:
-            return index + 1, match
+    found = first_match(_DATA_LINE, source.top(3, header.data_at), header.data_at + 1)
+    if found is not None:
+        return found[1], found[0]
     index = min(header.data_at, len(source.lines) - 1)
+    first = quoted_first_line(source.lines[index])
     expected = "a line such as '42000 acceleration pts, ..., units=cm/sec2(04),Format=(8F10.3)'"
-    raise source.refuse(
-        found=quoted_first_line(source.lines[index]), expected=expected, line=index + 1
-    )
+    raise source.refuse(found=first, expected=expected, line=index + 1)
 
 
 def _unit_name(source: Source, request: Request, header: _Header, text: str, line: int) -> str:

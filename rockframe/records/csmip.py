@@ -26,14 +26,14 @@ Strong-Motion Data Tapes", Report OSMS 85-03, California Division of Mines and
 Geology, 1985.
 """
 
-from __future__ import annotations
-
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from rockframe.errors import RecordError
 from rockframe.records.checks import (
     LENGTH,
     Stated,
@@ -53,12 +53,7 @@ from rockframe.records.headers import first_match, without_blanks
 from rockframe.records.numbers import FixedWidth, number_or_none, uniform_step, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rockframe.errors import RecordError
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 FIRST_LINE: Final = re.compile(
     r"^\s*(?:FILE\s+\d{0,6}\s+OF\s+)?(?:UN)?CORRECTED ACCELEROGRAM", re.IGNORECASE
@@ -147,17 +142,15 @@ def description(header: list[str]) -> Metadata:
     if lines:
         metadata["description"] = "corrected" if is_corrected(lines) else "uncorrected"
     metadata |= _event(lines, place + (2 if second else 1))
-    for number, text in enumerate(lines):
-        station = _STATION.search(text)
-        if station is None:
-            continue
+    found = first_match(_STATION, lines)
+    if found is not None:
+        station, below = found
         if _COORDINATE.fullmatch(station.group(1)) is None:
             metadata["station"] = station.group(1)
-        if number + 1 < len(lines) and lines[number + 1]:
-            name = _WIDE_GAP.split(lines[number + 1])[0]
+        if below < len(lines) and lines[below]:
+            name = _WIDE_GAP.split(lines[below])[0]
             if _PROCESSING.search(name) is None:
                 metadata["station_name"] = name
-        break
     location = first_match(_LOCATION, lines)
     if location is not None:
         metadata["sensor_location"] = " ".join(location[0][1].split())

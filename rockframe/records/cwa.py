@@ -14,11 +14,9 @@ unit. Times are local (UTC + 8 h). Example::
 Reference: the header of the files itself; the columns follow ``#DataSequence``.
 """
 
-from __future__ import annotations
-
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -33,9 +31,7 @@ from rockframe.records.headers import Keys, needed, needed_rate, renamed, text_o
 from rockframe.records.numbers import FixedWidth, number_or_none, one_number, rows_below
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 _KEY: Final = re.compile(r"^#\s*([A-Za-z][A-Za-z ]{2,40}?)\s*(\([^()]{0,20}\))?\s*:\s*(.*?)\s*$")
 _MARKS: Final = frozenset(("stationcode", "samplerate", "datasequence", "amplitudeunit"))

@@ -1,7 +1,5 @@
 """Where the bytes of records come from: a path, a folder, an archive, memory or an open file."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import os
@@ -37,7 +35,9 @@ def read_source(given: RecordLike) -> Source:
     if is_archive(data) or packs_tar(io.BytesIO(data)):
         name, data = _only_member(name, data)
     elif is_gzip(data):
-        name, data = f"{name}/{_unpacked_name(name)}", unzipped(name, data)
+        base = base_name(name)
+        inner = base[:-3] if base.casefold().endswith(".gz") and len(base) > 3 else base
+        name, data = f"{name}/{inner}", unzipped(name, data)
     return source_of(name, data)
 
 
@@ -94,11 +94,6 @@ def _only_member(name: str, data: bytes) -> tuple[str, bytes]:
     if not found:
         raise RecordError(name, found="an archive without files", expected="a record file")
     return found[0]
-
-
-def _unpacked_name(name: str) -> str:
-    base = base_name(name)
-    return base[:-3] if base.casefold().endswith(".gz") and len(base) > 3 else base
 
 
 def _from_open(file: IO[bytes]) -> tuple[str, bytes]:
@@ -158,7 +153,7 @@ class Unread:
     reason: str  # what was found, and what was expected
 
     @classmethod
-    def of(cls, path: str, problem: RecordError) -> Unread:
+    def of(cls, path: str, problem: RecordError) -> "Unread":
         """Say of a file why it was not read."""
         where = "" if problem.line is None else f"line {problem.line}: "
         return cls(path, f"{where}found {problem.found}; expected {problem.expected}")

@@ -1,17 +1,12 @@
 """Headers in text: lines that a pattern finds, and keys with values, one per line."""
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING, Final, TypeAlias
+from collections.abc import Iterable, Mapping
+from typing import Final, TypeAlias
 
 from rockframe.records.checks import settle_time_step
 from rockframe.records.numbers import one_number, whole
 from rockframe.records.reader import Metadata, Request, Source, quoted_first_line
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
 
 Keys: TypeAlias = dict[str, tuple[str, int]]
 """Value and line, from 1, of each key."""

@@ -7,16 +7,15 @@ Reference: Federation of Digital Seismograph Networks, "FDSN StationXML": the el
 positive downwards, so that -90 is a component positive upwards.
 """
 
-from __future__ import annotations
-
 import importlib
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -24,11 +23,7 @@ from rockframe.records.components import DOWNWARDS, UNKNOWN, UPWARDS, Orientatio
 from rockframe.records.files import read_source
 from rockframe.records.reader import Metadata, Record, Request, Source, base_name
 from rockframe.records.unit_names import RecordUnit, acceleration_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 _LARGEST: Final = 8 * 2**20
 _MOST_FILES: Final = 20
@@ -104,7 +99,7 @@ class InstrumentResponses:
             return []
         return sorted(path for path in listed if path.suffix.casefold() == ".xml")
 
-    def _inventory(self, path: Path) -> _Inventory | None:
+    def _inventory(self, path: Path) -> "_Inventory | None":
         if path not in self._read:
             self._read[path] = None
             if len(self._read) <= _MOST_FILES and path.is_file():

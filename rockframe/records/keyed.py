@@ -4,11 +4,9 @@ References: Engineering Strong-Motion Database (ESM) and Italian Accelerometric 
 ASCII format ``HEADER_FORMAT: DYNA 1.2``; of the others the headers of the files themselves.
 """
 
-from __future__ import annotations
-
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.records.checks import LENGTH, Stated, record_of, settle_time_step, surplus
 from rockframe.records.components import UNKNOWN, FileComponent, choose_component, orientation_of
@@ -35,9 +33,7 @@ from rockframe.records.numbers import (
 )
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 _LONGEST_HEADER: Final = 40
 

@@ -10,12 +10,10 @@ Reference: National Research Institute for Earth Science and Disaster Resilience
 (NIED), "About K-NET ASCII format" and "KiK-net data format".
 """
 
-from __future__ import annotations
-
 import math
 import re
 from datetime import datetime, timedelta
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -25,9 +23,7 @@ from rockframe.records.headers import Keys, needed, needed_rate, text_of, withou
 from rockframe.records.numbers import NUMBER, cut_short, free_format, last_fields, one_number
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 UNIT: Final = "gal"
 

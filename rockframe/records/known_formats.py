@@ -1,7 +1,5 @@
 """The list of formats, and how to add one to it."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from dataclasses import replace

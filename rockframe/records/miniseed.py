@@ -10,8 +10,6 @@ version 2.4, and "FDSN StationXML". ObsPy is imported only here, when such a fil
 read.
 """
 
-from __future__ import annotations
-
 import importlib
 import io
 import math
@@ -19,9 +17,10 @@ import re
 import struct
 import sys
 import warnings
+from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -51,12 +50,7 @@ from rockframe.records.reader import (
     begins_otherwise,
 )
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Mapping
-
-    from rockframe.signals.arrays import Array
-
+from rockframe.signals.arrays import Array
 
 # sequence number, kind, then the codes of station, location (some write --), channel and network
 _RECORD: Final = re.compile(rb"[0-9 ]{6}[DRQM][ \x00]([A-Z0-9 ]{5}(?:[A-Z0-9 ]{2}|--)[A-Z0-9 ]{5})")

@@ -5,8 +5,6 @@ history. Nothing of the file is added to them: the metadata still name the file 
 the digest that the motion was first read from.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import warnings

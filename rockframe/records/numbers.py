@@ -3,23 +3,18 @@
 A fast way, and a careful one that names the line at fault.
 """
 
-from __future__ import annotations
-
 import math
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from rockframe.errors import RecordError
 from rockframe.records.reader import MAXIMUM_SAMPLES, Source, quoted_first_line
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rockframe.errors import RecordError
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 # written so that no digit can be matched in two ways: a failed match stays linear
 NUMBER: Final = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
@@ -257,10 +252,6 @@ class FixedWidth:
             for index, field in enumerate(printed)
         ]
         return np.array(checked, dtype=np.float64)
-
-    def at(self, source: Source, first: int) -> Fields:
-        """Give the fields of a header that begin in a line."""
-        return Fields(source, self, first)
 
 
 @dataclass(frozen=True)

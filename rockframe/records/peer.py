@@ -12,8 +12,6 @@ Some files set marks around header and data: ``*** Begin data ***`` above that l
 ``*** End Data ***`` below the last number.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import re

@@ -1,10 +1,9 @@
 """From a file to a record in SI units: format, reader, checks, provenance."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from rockframe.records.components import (
     named,
 )
 from rockframe.records.files import PathLike, RecordLike, read_source
-from rockframe.records.known_formats import WITH_RESPONSE, added_failed, by_name, recognised
+from rockframe.records.known_formats import WITH_RESPONSE, Format, added_failed, by_name, recognised
 from rockframe.records.miniseed import components_of_traces
 from rockframe.records.reader import (
     MAXIMUM_SAMPLES,
@@ -31,14 +30,8 @@ from rockframe.records.reader import (
 )
 from rockframe.records.unit_names import RecordUnit, argument_unit
 from rockframe.signals import Motion
-from rockframe.units import POSITIVE, TIME_STEP, to_si
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rockframe.records.known_formats import Format
-    from rockframe.signals.arrays import Array
-    from rockframe.units import QuantityLike
+from rockframe.signals.arrays import Array
+from rockframe.units import POSITIVE, TIME_STEP, QuantityLike, to_si
 
 _ANYTHING: Final = Request()
 

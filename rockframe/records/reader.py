@@ -1,21 +1,16 @@
 """What readers get and give: a file as bytes and lines, what is asked of it, the record."""
 
-from __future__ import annotations
-
 import hashlib
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Protocol, TypeAlias
+from typing import Any, Final, Protocol, TypeAlias
 
 from rockframe.errors import RecordError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from rockframe.records.unit_names import RecordUnit
-    from rockframe.signals import Motion
-    from rockframe.signals.arrays import Array
+from rockframe.records.unit_names import RecordUnit
+from rockframe.signals import Motion
+from rockframe.signals.arrays import Array
 
 Metadata: TypeAlias = dict[str, str | float | int]
 

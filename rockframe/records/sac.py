@@ -11,12 +11,10 @@ Reference: Incorporated Research Institutions for Seismology, "SAC User's Manual
 Data File Format, header versions 6 and 7.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -47,9 +45,7 @@ from rockframe.records.reader import (
     Source,
     begins_otherwise,
 )
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 _FLOATS: Final = 70
 _INTEGERS: Final = 40

@@ -9,8 +9,6 @@ Reference: U.S. Geological Survey, National Strong-Motion Program, "SMC- and
 BBF-format Data Files" (smcfmt.txt), sections 3 and 4.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Final
@@ -64,7 +62,7 @@ def _recognises(source: Source) -> bool:
 
 def _read(source: Source, request: Request) -> Record:
     kind = _kind(source)
-    integers = _INTEGER_LAYOUT.at(source, _INTEGERS)
+    integers = Fields(source, _INTEGER_LAYOUT, _INTEGERS)
     name, direction = _component(source, integers)
     component = FileComponent(
         name,
@@ -119,7 +117,7 @@ def _samples(source: Source, request: Request, kind: str, integers: Fields) -> R
         if not line.startswith("|"):
             found = f"{quoted_first_line(line)} among {comments} comment lines"
             raise source.refuse(found=found, expected="a line that begins with '|'", line=index)
-    reals = _REAL_LAYOUT.at(source, _REALS)
+    reals = Fields(source, _REAL_LAYOUT, _REALS)
     time_step = _time_step(source, request, reals)
     chosen = choose_unit(source, request, UNIT, None)
     values = _DATA_LAYOUT.read(source, first, count)

@@ -1,11 +1,9 @@
 """Plain text: columns of numbers, one of them or none the time."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -52,9 +50,7 @@ from rockframe.records.text_header import (
     unit_of_header,
 )
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 MOST_COLUMNS: Final = 12
 

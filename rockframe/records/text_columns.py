@@ -14,14 +14,14 @@ of their own, in any order, or one under the other::
 or the time step alone on top of one column.
 """
 
-from __future__ import annotations
-
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 
+from rockframe.errors import RecordError
 from rockframe.records.checks import USUAL_TIME_STEPS
 from rockframe.records.numbers import (
     NUMBER,
@@ -34,12 +34,7 @@ from rockframe.records.numbers import (
     with_e,
 )
 from rockframe.records.reader import HEADER_WIDTH, MAXIMUM_SAMPLES, Source, quoted_first_line
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rockframe.errors import RecordError
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 HEADER_LINES: Final = 20
 _MOST_COMMENTS: Final = 2_000
@@ -74,7 +69,7 @@ def read_table(source: Source, most_columns: int) -> Table:
         raise too_many(source, len(rows), line=lines[MAXIMUM_SAMPLES])
     body = "\n".join(rows)
     decimal_comma = _has_decimal_commas(source, lines, rows, body)
-    separator = _separator(body, decimal_comma=decimal_comma)
+    separator = ";" if ";" in body else "," if "," in body and not decimal_comma else None
     columns = len(_split(rows[0], separator))
     _check_header(source, header, separator, columns)
     if columns > most_columns:
@@ -188,12 +183,6 @@ def _has_decimal_commas(source: Source, lines: list[int], rows: list[str], body:
         expected = "decimal points, or ';' between columns with decimal commas"
         raise source.refuse(found=found, expected=expected, line=lines[comma])
     return True
-
-
-def _separator(body: str, *, decimal_comma: bool) -> str | None:
-    if ";" in body:
-        return ";"
-    return "," if "," in body and not decimal_comma else None
 
 
 def _fields(

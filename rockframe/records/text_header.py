@@ -1,11 +1,10 @@
 """What the lines above columns say: names, units, step, peak, and whether it is a spectrum."""
 
-from __future__ import annotations
-
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rockframe.records.checks import Stated
 from rockframe.records.components import UNKNOWN, Orientation, orientation_of
@@ -13,9 +12,6 @@ from rockframe.records.numbers import NUMBER, with_e
 from rockframe.records.reader import Source, quoted_first_line
 from rockframe.records.text_columns import Table, split_header
 from rockframe.records.unit_names import acceleration_unit, other_quantity
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 # brackets inside brackets once, as in [1/(s^2)]; no blank can be matched in two ways
 _BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")

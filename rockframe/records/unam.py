@@ -13,11 +13,9 @@ slashes. The columns, one for each channel, follow below their names::
 Reference: Instituto de Ingenieria, UNAM, "Archivo estandar de aceleracion", version 2.0.
 """
 
-from __future__ import annotations
-
 import re
-from functools import cache
-from typing import TYPE_CHECKING, Final
+from functools import cache, partial
+from typing import Final
 
 from rockframe.records.checks import LENGTH, Stated, record_of, settle_count, settle_time_step
 from rockframe.records.components import (
@@ -32,9 +30,7 @@ from rockframe.records.headers import Keys, needed, read_keys, renamed, text_of,
 from rockframe.records.numbers import FixedWidth, one_number, rows_below, whole
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
 from rockframe.records.unit_names import choose_unit
-
-if TYPE_CHECKING:
-    from rockframe.signals.arrays import Array
+from rockframe.signals.arrays import Array
 
 _TITLE: Final = re.compile(r"ARCHIVO ESTANDAR DE ACELERACION", re.IGNORECASE)
 _DATA: Final = re.compile(r"^\s*DATOS DE ACELERACION", re.IGNORECASE)
@@ -86,7 +82,7 @@ def _read(source: Source, request: Request) -> Record:
     for place, (said, line) in enumerate(directions[:channels]):
         name, direction = _direction(said)
         name = name or f"channel {place + 1}"
-        read = lambda place=place: samples(place)  # noqa: E731
+        read = partial(samples, place)
         components.append(FileComponent(name, read, direction, channel=place + 1, line=line))
     return choose_component(source, request, components)
 

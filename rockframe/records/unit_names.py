@@ -6,8 +6,6 @@ records* only; every other argument of rockframe goes through the general unit
 reader. What the file says and what the caller asks for is settled here, too.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass
@@ -17,7 +15,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.units import ACCELERATION, Measure, to_si
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # which imports this module
     from rockframe.records.reader import Request, Source
 
 
@@ -85,7 +83,9 @@ def normalised(name: str) -> str:
     text = re.sub(r"\s+", "", name.casefold())
     text = text.replace("**", "^").replace("²", "^2").replace("·", "").replace("⁻^2", "^-2")
     text = re.sub(r"^[µμ]m", "um", text)
-    return re.sub(r"^(centi|milli|micro|nano)?met(?:er|re)s?(?=/|s|$)", _short_metre, text)
+    short = {"centi": "cm", "milli": "mm", "micro": "um", "nano": "nm", None: "m"}
+    spelt_out = r"^(centi|milli|micro|nano)?met(?:er|re)s?(?=/|s|$)"
+    return re.sub(spelt_out, lambda found: short[found[1]], text)
 
 
 def acceleration_unit(name: str) -> RecordUnit | None:
@@ -99,7 +99,7 @@ def other_quantity(name: str) -> str | None:
 
 
 def choose_unit(
-    source: Source, request: Request, name: str | None, line: int | None
+    source: "Source", request: "Request", name: str | None, line: int | None
 ) -> tuple[RecordUnit, str, list[str]]:
     """Settle the unit of the samples between the file and the ``unit=`` argument.
 
@@ -163,22 +163,14 @@ def argument_unit(unit: object, *, owner: str) -> RecordUnit:
     known = acceleration_unit(text)
     if known is not None:
         return known
-    try:
-        factor = to_si(f"1 {text}", _TRY_UNIT, owner=owner, name="unit")
-    except (UnitsError, ComponentError) as problem:
-        factor = 0.0
-        cause: Exception | None = problem
-    else:
-        cause = None
-    if factor > 0.0:
-        return RecordUnit(text, factor)
     msg = (
         f"{owner}: unit needs the unit of an acceleration, got {shown(text)}; "
         "write for example unit='g', unit='cm/s^2' or unit='m/s^2'"
     )
-    raise UnitsError(msg) from cause
-
-
-def _short_metre(match: re.Match[str]) -> str:
-    short = {"centi": "c", "milli": "m", "micro": "u", "nano": "n", None: ""}
-    return short[match.group(1)] + "m"
+    try:
+        factor = to_si(f"1 {text}", _TRY_UNIT, owner=owner, name="unit")
+    except (UnitsError, ComponentError) as problem:
+        raise UnitsError(msg) from problem
+    if not factor > 0.0:
+        raise UnitsError(msg)
+    return RecordUnit(text, factor)

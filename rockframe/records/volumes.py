@@ -5,8 +5,6 @@ References: W. J. Cousins, "GNS Accelerogram Data Files, Standard Format", GNS S
 the files itself.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass
@@ -73,7 +71,7 @@ class _Block:
     @property
     def integers(self) -> Fields:
         """The integers of the header."""
-        return _GEONET_LAYOUT.at(self.source, self.index + _GEONET_TEXT)
+        return Fields(self.source, _GEONET_LAYOUT, self.index + _GEONET_TEXT)
 
     @property
     def data(self) -> int:
@@ -158,7 +156,7 @@ def _geonet_component(request: Request, block: _Block, count: int) -> FileCompon
 
 def _geonet_samples(request: Request, block: _Block, count: int) -> Record:
     source, text = block.source, block.text
-    reals = _GEONET_LAYOUT.at(source, block.index + 20)
+    reals = Fields(source, _GEONET_LAYOUT, block.index + 20)
     line, time_step = reals.line(26), reals.number(26, "time step (real 26)")
     check_time_step(source, time_step, line)
     said = _INTERVAL.search("\n".join(text))
@@ -301,7 +299,7 @@ def _bhrc_samples(source: Source, request: Request, first: int, text: list[str])
 
 
 def _bhrc_time_step(source: Source, request: Request, first: int) -> float:
-    reals = _BHRC_REALS.at(source, first + _BHRC_REALS_AT)
+    reals = Fields(source, _BHRC_REALS, first + _BHRC_REALS_AT)
     line = reals.line(_RATE)
     rate = one_number(reals.cell(_RATE) or "no sampling rate (real 7)", source, line)
     if not rate > 0.0:

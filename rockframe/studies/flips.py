@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Final
 
@@ -75,14 +76,11 @@ def follow(
     least, *others = row
     side = Side(1.0, {least: look(least)}, [least])
     whole = True
-
-    def wide() -> list[tuple[float, float]]:
-        return list(_wide(side, resolution, may_slide=may_slide))
-
+    wide = partial(_wide, side, resolution, may_slide=may_slide)
     try:
         for scale in others:
             side.add(scale, look(scale))
-        while (gaps := wide()) and len(side.places) < most:
+        while (gaps := list(wide())) and len(side.places) < most:
             near, far = max(gaps, key=lambda ends: (ends[1] - ends[0]) / ends[1])
             middle = 0.5 * (near + far)
             side.add(middle, look(middle))
@@ -93,7 +91,7 @@ def follow(
             _narrow(side, look, flip, width)
     except KeyboardInterrupt:
         whole = False
-    ends = [near for near, _ in _wide(side, resolution, may_slide=may_slide, beyond=True)]
+    ends = [near for near, _ in wide(beyond=True)]
     shown = _in_order(side)
     ends += [near for near, far in side.intervals()
              if None in (shown[near].overturned, shown[far].overturned)]  # fmt: skip

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -17,6 +17,7 @@ from rockframe.motion import GroundMotion
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import OSCILLATOR
+from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import in_unit
 from rockframe.studies.sweeps.case import store_of, unscaled_motions
 from rockframe.studies.sweeps.motions import ABBREVIATIONS, SPECTRAL, motion_of_case, named_motions
@@ -30,9 +31,6 @@ from rockframe.units import (
     to_ratio,
     to_si,
 )
-
-if TYPE_CHECKING:
-    from rockframe.simulation.system import System
 
 PeriodLike: TypeAlias = QuantityLike | tuple[Any, str] | Sequence[QuantityLike]
 
@@ -288,7 +286,7 @@ class ScaledIntensity:
 
     def __init__(
         self,
-        system: "System",
+        system: System,
         motion: GroundMotion,
         name: object,
         *,

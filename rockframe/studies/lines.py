@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
@@ -28,6 +28,7 @@ from rockframe.results.outcome import PEAK_SLIPS, Generic
 from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
+from rockframe.simulation.system import System
 from rockframe.studies.limit_states import interrupted
 from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
@@ -38,9 +39,6 @@ from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.sweep import folder_of, run_study
 from rockframe.units import Condition, Measure, to_ratio
 from rockframe.version import __version__
-
-if TYPE_CHECKING:
-    from rockframe.simulation.system import System
 
 SCALE: Final = "scale"
 VERDICT: Final = "verdict"
@@ -61,7 +59,7 @@ _MOST_SCALES: Final = 100_000
 class Rounds:
     """The sweeps of an analysis, one after the other: what is the same in all of them."""
 
-    scene: "System | Callable[..., System]"  # as for :func:`rockframe.sweep`
+    scene: System | Callable[..., System]  # as for :func:`rockframe.sweep`
     motions: Mapping[str, GroundMotion] | None
     run: Mapping[str, Any]  # arguments of each sweep, and who makes the runs
     store: Path | None
@@ -93,7 +91,7 @@ class Rounds:
 
 @contextmanager
 def rounds_of(
-    scene: "System | Callable[..., System]",
+    scene: System | Callable[..., System],
     motions: Mapping[str, GroundMotion] | None,
     run: Mapping[str, Any],
     *,
@@ -302,7 +300,7 @@ class FollowedLines:
 class Lines:
     """What is the same along each line, and how it is run."""
 
-    scene: "System | Callable[..., System]"  # as for :func:`rockframe.sweep`
+    scene: System | Callable[..., System]  # as for :func:`rockframe.sweep`
     motions: Mapping[str, GroundMotion]  # all of them
     # further values, and their unit, for each row of a table; one row without values if there are
     # none

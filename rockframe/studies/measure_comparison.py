@@ -114,10 +114,9 @@ def compare_intensities(
     values = scalar_of(runs, response, label or "", owner=_OWNER)
     floor = read_least(least, values, owner=_OWNER)
     named, clouds, kept = list[str](), list[Cloud](), list[Generic]()
-    one_alone = isinstance(measures, str | xr.DataArray)
-    for given in (
-        [measures] if one_alone else several(measures, owner=_OWNER, name="measures", of="measures")
-    ):
+    if isinstance(measures, xr.DataArray):
+        measures = [measures]
+    for given in several(measures, owner=_OWNER, name="measures", of="measures"):
         one, period = _with_period(given)
         measure = measure_in(runs, one, period, motions, owner=_OWNER)
         told = told_period(runs, [one], period, owner=_OWNER)

@@ -52,21 +52,21 @@ def part_slots() -> tuple[str, ...]:
 
 def described_parts(file: TomlFile, slot: str, given: object) -> list[Component | None]:
     """Build the part that a table describes, or those of an array of tables."""
-    if slot != RESTRAINER or not isinstance(given, list):
-        return [described_part(file, slot, given)]
-    tables: list[object] = given
-    return [described_part(file, slot, one, (i,)) for i, one in enumerate(tables)]
+    several = slot == RESTRAINER and isinstance(given, list)
+    return _each(file, (slot,), classes_in(slot), given, several=several)
 
 
-def described_part(
-    file: TomlFile, slot: str, given: object, number: tuple[int, ...] = ()
-) -> Component | None:
-    """Build the part that a table describes; `number` is its own in an array of tables."""
-    where: Place = (slot, *number)
-    table = file.table(where, given)
-    if table is None:
-        return None
-    return _described(file, where, classes_in(slot), table)
+def _each(
+    file: TomlFile, where: Place, known: Mapping[str, type[Component]], given: Any, *, several: bool
+) -> list[Component | None]:
+    """Build the part of a table, or those of several; those that cannot be are None."""
+    items: list[Any] = given if several else [given]
+    found: list[Component | None] = []
+    for number, item in enumerate(items):
+        place = (*where, number) if several else where
+        table = file.table(place, item)
+        found.append(None if table is None else _described(file, place, known, table))
+    return found
 
 
 def inner_parts(kind: type[Component]) -> Mapping[str, InnerParts]:
@@ -122,13 +122,8 @@ def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, An
         words = f"{name} must be an array of tables, {header} above each, got {shown(given)}"
         file.fault(where, words)
         return False
-    items: list[Any] = given if wanted.several else [given]
-    places = [(*where, i) for i in range(len(items))] if wanted.several else [where]
     known = {key: kind for slot in wanted.slots for key, kind in classes_in(slot).items()}
-    parts: list[Component | None] = []
-    for place, item in zip(places, items, strict=True):
-        inner = file.table(place, item)
-        parts.append(None if inner is None else _described(file, place, known, inner))
+    parts = _each(file, where, known, given, several=wanted.several)
     table[name] = parts if wanted.several else parts[0]
     return None not in parts
 

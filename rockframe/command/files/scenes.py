@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -151,9 +151,9 @@ class Described:
     system: System  # the parts, without the motion
     motion: GroundMotion | None  # of the ground
     # further arguments of :meth:`rockframe.System.simulate`
-    run: dict[str, Any] = field(default_factory=dict)
-    files: tuple[Path, ...] = ()  # all files that it was read from
-    project: str = ""  # what reports say of it, as results keep it
+    run: dict[str, Any]
+    files: tuple[Path, ...]  # all files that it was read from
+    project: str  # what reports say of it, as results keep it
 
 
 def read_scene(path: str | Path) -> Described:

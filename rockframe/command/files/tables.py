@@ -5,6 +5,7 @@ import tomllib
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from inspect import Parameter, signature
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, Final, Self, TypeAlias, TypeVar, cast
 
@@ -43,7 +44,7 @@ def lines_of(text: str) -> dict[Place, int]:
     table: Place = ()
     for line, statement in _statements(text):
         if statement.startswith("["):
-            names, several = _header(statement)
+            names, several = _names(tomllib.loads(statement)), statement.startswith("[[")
             table = _resolved(names[:-1], arrays) + names[-1:]
             if several:
                 arrays[table] = arrays.get(table, -1) + 1
@@ -51,7 +52,8 @@ def lines_of(text: str) -> dict[Place, int]:
                 table = (*table, arrays[table])
             found[table] = line
         else:
-            key = _until_equals(statement)
+            pieces = (match[0] for match in _PIECE.finditer(statement))
+            key = "".join(takewhile(lambda piece: piece != "=", pieces))
             names = _names(tomllib.loads(f"{key} = 0"))
             for depth in range(1, len(names) + 1):
                 found.setdefault(table + names[:depth], line)
@@ -75,11 +77,6 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
         line += piece.count("\n")
 
 
-def _header(statement: str) -> tuple[Place, bool]:
-    several = statement.startswith("[[")
-    return _names(tomllib.loads(statement)), several
-
-
 def _names(nested: Any) -> Place:
     """Give the keys of tables of which each holds one."""
     names: list[str] = []
@@ -100,15 +97,6 @@ def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
         if place in arrays:
             place = (*place, arrays[place])
     return place
-
-
-def _until_equals(statement: str) -> str:
-    key = ""
-    for match in _PIECE.finditer(statement):
-        if match[0] == "=":
-            break
-        key += match[0]
-    return key
 
 
 _WHERE: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
@@ -288,10 +276,7 @@ def made(
     """Call a function with a table that has been checked; note why that cannot be done."""
     try:
         return function(**table)
-    except AssemblyError as problem:
-        for words in problem.faults:
-            file.fault(key_in(words, where, table), words)
-    except StudyError as problem:
+    except (AssemblyError, StudyError) as problem:
         for words in problem.faults:
             file.fault(key_in(words, where, table), words)
     except (RockframeError, TypeError, ValueError) as problem:

@@ -211,7 +211,8 @@ def _of_part(slot: str, name: str, kind: type[Component]) -> Iterator[str]:
         keys = arguments_of(function)
         if not keys:
             continue
-        yield f'# or {CONSTRUCTOR} = "{way}": {_lowered(_summary(function))}'
+        words = _summary(function)
+        yield f'# or {CONSTRUCTOR} = "{way}": {words[:1].lower()}{words[1:]}'
         yield from _keys(", ".join(_marked(keys)))
 
 
@@ -223,12 +224,9 @@ def _of_component(
         yield first
     for name, one in kind.declared().items():
         if name not in inner_parts(kind):
-            yield from _of_parameter(name, one)
-
-
-def _of_parameter(name: str, one: Declared[Any, Any]) -> Iterator[str]:
-    must = "must be given: " if one.default is REQUIRED else ""
-    yield from _commented(f"# {name} = {_example(one)}", f"{must}{_without_markup(one.words)}")
+            must = "must be given: " if one.default is REQUIRED else ""
+            meaning = f"{must}{_without_markup(one.words)}"
+            yield from _commented(f"# {name} = {_example(one)}", meaning)
 
 
 def _example(one: Declared[Any, Any]) -> str:
@@ -311,10 +309,6 @@ def _written(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return f'"{value}"' if isinstance(value, str) else str(value)
-
-
-def _lowered(words: str) -> str:
-    return words[:1].lower() + words[1:]
 
 
 def _summary(documented: object) -> str:

@@ -7,7 +7,7 @@ from typing import Any, Final, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_names, one_of_words
+from rockframe.arguments import one_of_names, one_of_words, several
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
@@ -183,7 +183,8 @@ def fragility(
         return _of_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
     given = [named_column(runs, one) for one in _several(intensity)]
-    structures = structures_of(runs, pooled, given, owner=_OWNER)
+    together = several(pooled, owner=_OWNER, name="pooled", of="names")
+    structures = structures_of(runs, together, given, owner=_OWNER)
     of_capacities = one_of_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
@@ -223,7 +224,6 @@ def fragility(
                 found.append(trials_of_runs(verdict, along, by_motion=by_motion))
     over = dict(zip(structures.groups, structures.shape, strict=True))
     about: dict[str, Any] = {"trials": trials, "dispersions": dispersion}
-    together = (pooled,) if isinstance(pooled, str) else tuple(pooled)
     if together:
         about[POOLED] = ", ".join(together)
     dataset = fragility_dataset(
@@ -348,11 +348,11 @@ def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
 def _several(given: object) -> list[object]:
     if isinstance(given, str | xr.DataArray):
         return [given]
-    several = list(cast("Iterable[object]", given)) if isinstance(given, Iterable) else []
-    if not 1 <= len(several) <= _MOST_MEASURES:
+    listed = list(cast("Iterable[object]", given)) if isinstance(given, Iterable) else []
+    if not 1 <= len(listed) <= _MOST_MEASURES:
         msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(given)}"
         raise ComponentError(msg)
-    return several
+    return listed
 
 
 def _bands(given: str | None, usual: Bands, measures: int) -> Bands:

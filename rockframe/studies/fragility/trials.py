@@ -7,7 +7,7 @@ does not above it, and a dynamic analysis encloses it in a bracket.
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -15,7 +15,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import several
 from rockframe.errors import ComponentError, SchemaError, StudyError, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.variables.studies import CASE, MOTION
@@ -48,10 +47,9 @@ class Structures:
 
 
 def structures_of(
-    runs: xr.Dataset, pooled: Iterable[str], given: Sequence[object], *, owner: str
+    runs: xr.Dataset, pooled: Sequence[str], given: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
-    asked = several(pooled, owner=owner, name="pooled", of="names")
     axes = {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
     own = [str(one.name) for one in given if isinstance(one, xr.DataArray)]
     changed = [name for name in axes if name not in own and axes[name] != Changes.MOTION]
@@ -68,17 +66,17 @@ def structures_of(
     foreign = [dim for dim in dims if dim not in {*explained, *axes, *own, MOTION, CASE}]
     _check_motions(runs, foreign, owner, named=len(own) < len(given))
     known = [*(name for name in differing if runs[name].dims), *foreign]
-    if CASE in asked and CASE in dims:  # stands for all columns of its table
+    if CASE in pooled and CASE in dims:  # stands for all columns of its table
         columns = [name for name in known if CASE in runs[name].dims]
-        asked = [*(one for one in asked if one != CASE), *columns]
-    wrong = [one for one in asked if one not in (*changed, *foreign)]
+        pooled = [*(one for one in pooled if one != CASE), *columns]
+    wrong = [one for one in pooled if one not in (*changed, *foreign)]
     if wrong:
         msg = (
             f"{owner}: pooled names {', '.join(map(shown, wrong))}; what differs in these runs "
             f"beside motion and intensity: {', '.join(known) or 'nothing'}"
         )
         raise ComponentError(msg)
-    kept = [name for name in known if name not in asked]
+    kept = [name for name in known if name not in pooled]
     alone = [name for name in differing if not runs[name].dims]
     found = _grouped(runs, dims, kept, alone)
     sizes = [np.bincount(group).max() for group in found.groups.values()]
@@ -228,7 +226,7 @@ def trials_of_capacities(
     has_lower, has_upper = below > 0.0, np.isfinite(above)
     rows = [_in_lines(measure, sizes, SCALE) for measure in measures]
     lower, upper = (
-        np.log(np.column_stack([_at_scales(row, scales, scale) for row in rows]))
+        np.log(np.column_stack([at_scales(row, scales, scale) for row in rows]))
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
     told = has_lower | has_upper
@@ -275,10 +273,10 @@ def motion_numbers(runs: xr.DataArray) -> Generic:
     return np.unique(laid_out(runs[MOTION], runs).astype(str), return_inverse=True)[1]
 
 
-def _at_scales(measure: Generic, known: Array, scales: Array) -> Array:
-    """Give a measure of each line at its scale; measures are powers of the scale."""
-    near, far = measure[:, 0], measure[:, -1]
-    if measure.shape[1] == 1:
+def at_scales(measure: Generic, known: Array, scales: Array | float) -> Array:
+    """Give a measure at scales from those at known ones, of which it is a power."""
+    near, far = measure[..., 0], measure[..., -1]
+    if measure.shape[-1] == 1:
         return near
     power = np.log(far / near) / np.log(known[-1] / known[0])
     return near * (scales / known[0]) ** power

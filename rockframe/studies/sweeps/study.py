@@ -100,17 +100,10 @@ class Study:
         used, place = np.unique(number, return_inverse=True)
         every = list(self.motions.values())
         return SweepJob(
-            self.scene,
-            self.grid.of_cases(cases),
-            tuple(every[k] for k in used),
-            place,
-            self.arguments,
-            self.period,
-            self.histories,
-            self.patience,
-            self.screened,
+            self.scene, self.grid.of_cases(cases), tuple(every[k] for k in used), place,
+            self.arguments, self.period, self.histories, self.patience, self.screened,
             self.restrainers,
-        )
+        )  # fmt: skip
 
     @property
     def patience(self) -> float | None:
