@@ -78,11 +78,11 @@ def following_speed(system: Bodies, part: OnBase, k: int, left: bool, state: Vec
 @kernel
 def repin(
     system: Bodies, part: OnBase, k: int, old: int, new: int, state: Vector, memory: Vector
-) -> None:
+) -> float:
     """Project the momentum on the horizontal restraint of a new mode, :eq:`eq-repinning`.
 
-    The restraint's impulse does no work on what it lets through: the loss is that of the slip
-    between the old velocity and the new one.
+    The restraint's impulse, which is given, does no work on what it lets through: the loss is
+    that of the slip between the old velocity and the new one.
     """
     body = system.state_of(k, state)
     attitude = part.body.attitude(body.rotation)
@@ -91,13 +91,14 @@ def repin(
     mode = system.part_mode(new, k)
     if part.is_free(mode):
         system.set_sway(k, place, sway, state)
-        return
+        return 0.0
     pin = part.body.pin(mode.pivot)
     memory[HELD_PLACE + k] = place - part.body.about_pin(pin, attitude)
     slip = sway - part.body.reach(pin, attitude).rate * body.angular_velocity
     response = system.response(k, new, 0.0, 0.0, slip, state)
     system.respond(k, new, response, state)
     memory[REPINNING_LOSS] -= 0.5 * response.restraint * slip
+    return response.restraint
 
 
 @kernel
@@ -163,7 +164,7 @@ def repin_landing(
         system.velocities(state), memory[REPINNING_LOSS], memory[HELD_PLACE + k],
     )  # fmt: skip
     was_at = system.state_of(k, state).horizontal
-    repin(system, part, k, old, new, state, memory)
+    hold = repin(system, part, k, old, new, state, memory)
     body = system.state_of(k, state)
     held_speed, noise = end_speed(part, left, body)
     speed, after = speed - target, held_speed - target
@@ -176,6 +177,7 @@ def repin_landing(
     held = part.sway(system.part_mode(new, k), body, attitude)
     system.set_sway(k, was_at, held, state)
     system.blend_velocities(before, share, state)
+    system.note_blow(k, 0.0, 0.0, share * hold)
     memory[HELD_PLACE + k] = place
     memory[REPINNING_LOSS] = blend(lost, memory[REPINNING_LOSS], share_of_loss(share))
     now, _ = end_speed(part, left, system.state_of(k, state))

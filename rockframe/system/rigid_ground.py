@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from rockframe.errors import AssemblyError
 from rockframe.many import atan, cos, hypot, sin, sqrt, tan
-from rockframe.system.bodies import Restitutions, restitution_cautions
+from rockframe.system.bodies import ROUNDING, Restitutions, restitution_cautions
 from rockframe.system.rigid_base import REACTIONS
 from rockframe.system.setting import Setting
 from rockframe.system.statics import Statics, static_values
@@ -77,7 +77,20 @@ class RigidGroundSetting(Setting):
 
     def cautions(self) -> list[str]:
         """Give warnings about the restitution."""
-        return restitution_cautions(self.restitution, self.body.maximum_restitution)
+        found = restitution_cautions(self.restitution, self.body.maximum_restitution)
+        left, right = (
+            self.body.gyration_square_about(d) for d in (self.body.left, self.body.right)
+        )
+        # a block that lands on a corner has rocked about the other one
+        for side, one, ratio in zip(
+            ("left", "right"), self.restitution, (right / left, left / right), strict=True
+        ):
+            if one > sqrt(ratio) + ROUNDING:
+                found.append(
+                    f"impacts on the {side} corner, about which the block has more inertia than "
+                    f"about the other one, give energy with a restitution above {sqrt(ratio):.6g}"
+                )
+        return found
 
     def contact_model(self) -> "ContactModel":
         """Give Housner's equations."""

@@ -523,3 +523,23 @@ def test_certificates():
         if side == RIGHT:
             flip = certified.verdict_flip_scale.item()
             assert flip == pytest.approx(1.0 / 1.05, rel=2e-3)
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
+def test_a_restitution_that_gives_energy_is_told():
+    """Landing on the corner farther from the centre of mass at the rate of before gives energy."""
+    about_left, about_right = (INERTIA + MASS * (H**2 + s**2) for s in (B + E, B - E))
+    most = (about_right / about_left) ** 0.5
+
+    def run(restitution):
+        system = rf.System(BLOCK, rf.RigidGround(restitution=restitution))
+        start = rf.InitialState(rotation="0.1 rad")
+        return system.simulate(initial=start, duration="4 s", outputs=["energy"])
+
+    gains, loses = run(1.0), run(0.999 * most)
+    assert np.diff(gains.impact_energy).min() < 0.0
+    assert np.diff(loses.impact_energy).min() >= 0.0
+    told = "impacts on the left corner, about which the block has more inertia than about the other"
+    assert f"{told} one, give energy with a restitution above {most:.6g}" in gains.attrs["cautions"]
+    assert "on the right corner" not in gains.attrs["cautions"]
+    assert "give energy" not in loses.attrs["cautions"]

@@ -346,3 +346,25 @@ def test_no_landing_on_pads_upon_a_light_body_gives_energy(plate, ground, joint,
     taken = (run.impact_energy + run.repinning_energy).to_numpy()
     assert np.diff(taken).min() > -1e-9 * float(np.abs(run.input_energy).max())
     assert run.energy_residual < 1e-6
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")  # of impacts without a mode
+@pytest.mark.parametrize(
+    ("mass", "rule", "seed"),
+    [(10.0, "leading-corner", 11), (40.0, "contact-state", 3), (10.0, "centre", 6)],
+)
+def test_no_hold_out_of_flight_upon_a_light_body_gives_energy(mass, rule, seed):
+    """What would stop the slip of a body that lands is more than a light one below can hand on."""
+    tall = rf.Block(width="1.6 m", height="5.7 m", mass="1500 kg")
+    plate = rf.Block(width="2.2 m", height="1.5 m", mass=f"{mass} kg")
+    pads = rf.TwoSpringSupport(frequency_ratio=90, damping_ratio=0.0)
+    stack = rf.Stack(tall, plate, interfaces=[pads])
+    system = rf.System(stack, rf.RigidGround(), restraint=rule)
+    rng = np.random.default_rng(seed)
+    across = 5.0 * np.convolve(rng.normal(size=150), np.ones(6) / 6.0**0.5, "same")
+    upwards = 5.0 * rng.normal(size=150)
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "0.02 s", vertical=(upwards, "m/s^2"))
+    run = system.simulate(motion, outputs=["energy"], output_step="1 ms", second_look=False)
+    taken = (run.impact_energy + run.repinning_energy).to_numpy()
+    assert np.diff(taken).min() > -1e-9 * float(np.abs(run.input_energy).max())
+    assert run.energy_residual < 1e-6

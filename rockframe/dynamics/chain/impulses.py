@@ -162,8 +162,8 @@ class RigidImpulses(RigidCorners):
         So much of its friction that it turns no slip round, and then of all of it that it throws no
         end up: the less there is of it the less they rise.
         """
-        blow = Shares(1.0, 1.0)
-        if self.places()[k * PLACES + at.BLOW] <= 0.0:
+        blow, room, i = Shares(1.0, 1.0), self.places(), k * PLACES
+        if room[i + at.BLOW] <= 0.0 and room[i + at.BLOW_ALONG] == 0.0:
             return blow
         for phase in range(2):
             low, high, share = 0.0, 1.0, 1.0
