@@ -297,7 +297,7 @@ def _import(file: TomlFile, name: str) -> None:
     stem = path.stem
     if stem in sys.modules:
         found = getattr(sys.modules[stem], "__file__", None)
-        if found is None or not path.samefile(found):
+        if found is None or path.read_bytes() != Path(found).read_bytes():
             msg = f"{stem} is another module already, {found or 'a built-in one'}: rename the file"
             raise ImportError(msg)
         return

@@ -83,7 +83,7 @@ def test_the_motions_of_a_velocity_pulse_start_as_much_earlier_as_they_are_longe
     pulse = GroundMotion.mavroeidis_papageorgiou_pulse("80 cm/s", "0.5 Hz", 2.2, "0 deg")
     record = GroundMotion(pulse.si, metadata={"record_time": START})
     found = record.velocity_pulse()
-    lead = np.timedelta64(round(found.lead.m_as("us")), "us")
+    lead = np.timedelta64(round(float(found.lead.m_as("us"))), "us")
     assert lead > np.timedelta64(0, "us")
     for each in (found.extracted, found.residual):
         assert np.datetime64(START) - np.datetime64(each.metadata["record_time"]) == lead
