@@ -11,6 +11,7 @@ from reference_models.rigid_pair.pair import Body, Pair, Pattern, Phase
 import rockframe as rf
 from rockframe.dynamics.alone import rigid_body
 from rockframe.dynamics.base_numbers import rigid_numbers
+from rockframe.dynamics.bodies import ROTATION
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.impact import attempt, write_corners
 from rockframe.dynamics.chain.model import chain
@@ -207,3 +208,48 @@ def test_what_was_eliminated_is_forgotten_as_places_or_loads_change(change):
     assert room[last] != UNKNOWN
     changes()[change](system, state, room)
     assert room[last] == UNKNOWN
+    room[(system.body_count - 1) * PLACES + at.SOLVED] = 1.0
+    changes()[change](system, state, room)
+    assert not system.forces_stand(0, state, STILL)
+
+
+def column(count):
+    """Give the equations of equal blocks upon one another, and the mode in which all stand."""
+    stone, block = rf.RigidGround(friction=0.3), rf.Block(width="1 m", height="1 m", mass="1 t")
+    model = rf.System(rf.Stack(*[block] * count, interfaces=[stone] * (count - 1)), stone)
+    model = model.assembly.model
+    return model.system, *model.initial(Start())[:2]
+
+
+def test_forces_stand_for_the_mode_state_and_ground_that_they_were_solved_for_alone():
+    system, standing, state = column(12)
+    ground = Ground(0.5, 0.1)
+    system.find_forces(standing, state, ground)
+    assert system.forces_stand(standing, state, ground)
+    slips = system.with_part(standing, 0, system.part_mode(standing, 0)._replace(slides=True))
+    moved = state.copy()
+    moved[-1] = 1e-12
+    assert not system.forces_stand(slips, state, ground)
+    assert not system.forces_stand(standing, moved, ground)
+    assert not system.forces_stand(standing, state, Ground(0.5, 0.2))
+    large = 2**60  # beyond which floats do not tell modes apart
+    system.find_forces(standing, state, ground)
+    note = system.solved_room()
+    note[0], note[1] = large >> 32, 0.0
+    assert system.forces_stand(large, state, ground)
+    assert not system.forces_stand(large + 1, state, ground)
+
+
+def test_bodies_that_rest_on_the_ground_are_ground_to_those_above():
+    """The motion is that of which all forces are solved for, of one that rocks on two at rest."""
+    system, standing, state = column(3)
+    rocks = system.with_bearing(standing, 0b111101, 0)
+    state[ROTATION], state[system.coordinates() + ROTATION] = 0.02, -0.3
+    ground = Ground(0.7, -0.2)
+    every = np.array(system.find_forces(rocks, state, ground))
+    found = np.array(system.accelerate(rocks, state, ground))
+    assert not system.forces_stand(rocks, state, ground)
+    assert np.abs(every[: system.coordinates()]).max() > 1.0
+    np.testing.assert_allclose(found, every, rtol=1e-12, atol=1e-12)
+    at_rest = np.array(system.accelerate(standing, state * 0.0, ground))
+    np.testing.assert_array_equal(at_rest, 0.0 * at_rest)

@@ -23,6 +23,7 @@ from rockframe.dynamics.chain.motion import (
 )
 from rockframe.dynamics.chain.rows import (
     CONSTRAINT,
+    HALF_OF_BITS,
     PLACES,
     SOLVED_FOR,
     Rows,
@@ -161,7 +162,8 @@ class MovingBodies(Rows):
             self.accelerate_first(self.body_count, mode, state, ground),
             self.solved_room(),
         )
-        note[0], note[1], note[2] = mode, ground.x, ground.y
+        note[0], note[2], note[3] = mode >> HALF_OF_BITS, ground.x, ground.y
+        note[1] = mode - (mode >> HALF_OF_BITS << HALF_OF_BITS)
         for i in range(2 * self.coordinates()):
             note[SOLVED_FOR + i] = state[i]
         self.places()[(self.body_count - 1) * PLACES + at.SOLVED] = 1.0
@@ -173,7 +175,9 @@ class MovingBodies(Rows):
         note, solved = self.solved_room(), (self.body_count - 1) * PLACES + at.SOLVED
         # variables of links are not noted
         stand = (self.places()[solved] != 0.0) & (self.variables() == 0)
-        stand &= (note[0] == mode) & (note[1] == ground.x) & (note[2] == ground.y)
+        high = mode >> HALF_OF_BITS
+        stand &= (note[0] == high) & (note[1] == mode - (high << HALF_OF_BITS))
+        stand &= (note[2] == ground.x) & (note[3] == ground.y)
         for i in range(2 * self.coordinates()):
             stand &= note[SOLVED_FOR + i] == state[i]
         return bool(stand)

@@ -135,8 +135,8 @@ BED_MODES: Final = 2 * PIVOTS * ENDS
 RIGID_MODES: Final = 2 * 2 * ENDS  # what is held follows from the corners that bear
 
 
-SOLVED_FOR: Final = 3
-"""Mode and ground acceleration, before a state."""
+SOLVED_FOR: Final = 4
+"""Both halves of a mode, and ground acceleration, before a state."""
 
 
 @kernel
