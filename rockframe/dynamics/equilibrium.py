@@ -157,13 +157,19 @@ def of_loads(
     return found
 
 
-def of_bases(chain: "StandingChain", stands: "Sequence[Stand]") -> Matrix:
-    """Give minus the changes of what bases do with coordinates; of rigid ones there are none."""
+def of_bases(
+    chain: "StandingChain", stands: "Sequence[Stand]", *, from_rest: bool = False
+) -> Matrix:
+    """Give minus the changes of what bases do with coordinates; of rigid ones there are none.
+
+    With loads that grow `from_rest`, variables of a base's own follow them.
+    """
     found = np.zeros((2 * len(stands), 2 * len(stands)))
     for k, (standing, stand) in enumerate(zip(chain.bodies, stands, strict=True)):
         if not standing.corner:
             own = slice(2 * k, 2 * k + 2)
-            found[own, own] = np.array([of_base(standing, stand, name) for name in PLACES]).T
+            ways = [of_base(standing, stand, name, from_rest=from_rest) for name in PLACES]
+            found[own, own] = np.array(ways).T
     return found
 
 
@@ -202,7 +208,7 @@ class _Step:
         self.following = held.chain.following(stands) * self.sizes
         self.free = self.following.any(axis=0)
         self.following = self.following[:, self.free]
-        self.of_bases = of_bases(held.chain, stands)
+        self.of_bases = of_bases(held.chain, stands, from_rest=True)
         self.matrix, lacks = self._equations()
         try:
             found = np.linalg.solve(self.matrix, lacks)

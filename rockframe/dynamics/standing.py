@@ -205,24 +205,30 @@ def uplift_rotation(standing: StandingBody, press: float) -> float:
     return high
 
 
-def of_base(standing: StandingBody, stand: Stand, name: str) -> tuple[float, float]:
+def of_base(
+    standing: StandingBody, stand: Stand, name: str, *, from_rest: bool = False
+) -> tuple[float, float]:
     """Give minus the change of a base's moment and force with a coordinate or rate of its body.
 
-    Rates are moved over those of a vibration that settles as much as the body does.
+    Rates are moved over those of a vibration that settles as much as the body does. Variables of
+    the base's own keep their values, or are those of a load that has grown `from_rest`.
     """
     body, base = standing.part
     size = standing.allowed_rotation if name in (PLACES[0], RATES[0]) else standing.settlement
     step = STEP * size * (sqrt(body.gravity / standing.settlement) if name in RATES else 1.0)
+    contact, own = stand.mode.contact, stand.own
+
+    def force(by: float) -> BaseForce:
+        state = stand.state._replace(**{name: getattr(stand.state, name) + by})
+        line = body.base_line_at(state)
+        if from_rest and base.variables() > 0:
+            moved = np.array(own)
+            return base.force(base.starting(line, moved), line, moved)
+        return base.force(contact, line, own)
+
     moment = upward = 0.0
     for place, weight in STENCIL:
-        before, behind = (
-            base.force(
-                stand.mode.contact,
-                body.base_line_at(stand.state._replace(**{name: getattr(stand.state, name) + by})),
-                stand.own,
-            )
-            for by in (place * step, -place * step)
-        )
+        before, behind = force(place * step), force(-place * step)
         moment -= weight / step * (before.moment - behind.moment)
         upward -= weight / step * (before.upward - behind.upward)
     return moment, upward
