@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from rockframe.compiled import Matrix, Vector
-from rockframe.dynamics.standing import PLACES, STENCIL, STEP, of_base
+from rockframe.dynamics.standing import PLACES, ROUNDING, STENCIL, STEP, of_base
 from rockframe.dynamics.tied import force_at, is_broken
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ CLOSE: Final = 1e-12
 NEAR: Final = 0.05
 """Change of a rotation from what is foreseen, and by Newton's steps, that is too large [rad]."""
 LEAST_STEP: Final = 1e-3
-"""Least share of the path by which equilibrium is followed."""
+"""Least share of the path, or of the size of what changes, by which equilibrium is followed."""
 LEAST_SHARE: Final = 2.0**-30
 """Of the stretch within a step of a link that has not answered."""
 ANSWERED: Final = 1e3
@@ -91,10 +91,16 @@ class Path(NamedTuple):
         return Balance(*(now + share * (now - before) for now, before in pairs))
 
 
-def followed(held: Callable[[float], HeldBodies], path: Path, to: float = 1.0) -> Path | None:
-    """Follow a stable equilibrium along a path; None where it ends."""
-    way = to - path.at
-    step, least = way, LEAST_STEP * abs(way)
+def followed(
+    held: Callable[[float], HeldBodies], path: Path, to: float = 1.0, size: float = math.inf
+) -> Path | None:
+    """Follow a stable equilibrium along a path; None where it ends.
+
+    Ends of bases part within about a `size` of the path.
+    """
+    step = way = to - path.at
+    least_to_break = LEAST_STEP * abs(way)
+    least = min(least_to_break, LEAST_STEP * size)
     while path.at != to:
         ahead = to if abs(to - path.at) <= abs(step) else path.at + step
         bodies, guess = held(ahead), path.foreseen(ahead)
@@ -103,14 +109,14 @@ def followed(held: Callable[[float], HeldBodies], path: Path, to: float = 1.0) -
             found = None
         # without a link that would have held the bodies may be in balance, too
         breaks = found is not None and _breaks(bodies.chain, path.place, found)
-        if found is None or (breaks and abs(step) >= least):
+        if found is None or (breaks and abs(step) >= least_to_break):
             if abs(step) < least:
                 return None
             step *= 0.5
         elif breaks:
             path, step = Path(ahead, found), to - ahead
         else:
-            path = Path(ahead, found, (path.at, path.place))
+            path, step = Path(ahead, found, (path.at, path.place)), 2.0 * step
     return path
 
 
@@ -222,6 +228,9 @@ class _Step:
     def _link_moves(self, forces: Sequence[float]) -> None:
         """Tell how links go on, and whether nothing is left to be found."""
         allowed = CLOSE * (np.abs(self.coordinates) + self.sizes)
+        # no rotation is known closer than the greatest one with which it has a sum
+        known = ROUNDING * _greatest(self.coordinates[::2])
+        allowed += known * self.sizes / np.repeat(self.sizes[::2], 2)
         self.is_last = bool((np.abs(self.move) <= allowed).all())
         self.more_pull = np.zeros_like(self.pulls)
         self.more_stretch = [

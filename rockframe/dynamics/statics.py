@@ -330,8 +330,10 @@ class StandingChain(NamedTuple):
 
     def held(self, path: Path, rotation: float) -> tuple[Path | None, list[Stand] | None]:
         """Give how the bodies stand at a rotation of the highest one, followed along a path."""
-        highest = np.ones((1, len(self.bodies)))
-        further = followed(lambda at: HeldBodies(self, highest, np.array([at])), path, rotation)
+        highest, size = np.ones((1, len(self.bodies))), float(self.sizes[::2].min())
+        further = followed(
+            lambda at: HeldBodies(self, highest, np.array([at])), path, rotation, size
+        )
         return further, self._at(further)
 
     def _loaded(self, stands: Sequence[Stand], sums: Sequence[Sequence[float]]) -> Path | None:

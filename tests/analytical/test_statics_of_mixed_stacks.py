@@ -91,3 +91,18 @@ def test_a_tie_pulls_on_what_has_lifted():
     assert (tied.restoring_moment > free.restoring_moment + 1e3).all()
     other = held(*scene, tie, angles=-ABOVE_LIFT)  # slack to that side
     np.testing.assert_allclose(other.restoring_moment, -free.restoring_moment, rtol=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [8, 40, 1000])
+def test_on_joints_that_hardly_give_way_the_highest_body_rocks_about_its_corner(ratio):
+    """From a rotation of some microns over a metre on, far below those that are asked for."""
+    block = rf.Block(width="1 m", height="2 m", mass="10 t")
+    stiff = rf.TwoSpringSupport(frequency_ratio=1000, damping_ratio=0.1)
+    stack = rf.Stack(block, block, block, interfaces=[stiff, stiff])
+    base = rf.TwoSpringSupport(frequency_ratio=ratio, damping_ratio=0.1)
+    rotations = np.array([0.01, 0.05, 0.15])
+    found = rf.System(stack, stiff).moment_rotation((rotations, "rad")).restoring_moment
+    rocks = 1e4 * GRAVITY * (0.5 * np.cos(rotations) - np.sin(rotations))
+    assert found.values == pytest.approx(rocks, rel=1e-4)
+    softer = rf.System(stack, base).moment_rotation((rotations, "rad")).restoring_moment
+    assert (softer.values <= (1.0 + 1e-9) * found.values).all()

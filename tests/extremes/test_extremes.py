@@ -9,6 +9,8 @@ from extremes.scenes import BASES, RULES, SUBJECTS, Scene, scenes, usual
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import rockframe as rf
+
 MORE = int(os.environ.get("ROCKFRAME_EXTREMES", "1"))
 COUNT = 6 * MORE
 
@@ -51,3 +53,17 @@ def test_what_breaks_a_bound_is_named():
     assert verdict.steps > 100
     spoilt = type(verdict)("chatter", 2.0, 7, 5, finite=False)
     assert len(spoilt.failures) == 4
+
+
+@pytest.mark.parametrize("stiffness", ["2 TPa", "20 TPa", "2e15 Pa", "2e20 Pa"])
+def test_statics_above_soil_that_hardly_gives_way_are_those_on_the_ground(stiffness):
+    """Rotations of the soil are below what rounding leaves of those of the block."""
+    block = rf.Block(width="1 m", height="4 m", mass="10 t")
+    pads = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.05)
+    soil = rf.WinklerSoil(stiffness=stiffness, damping_ratio=0.2)
+    rotations = ("-0.24 rad", "-0.1 rad", "0.003 rad", "0.01 rad", "0.02 rad", "0.05 rad")
+    alone, stack = (
+        rf.System(block, *parts).moment_rotation(rotations).restoring_moment.to_numpy()
+        for parts in ((pads,), (pads, rf.CushionCap(height="0.5 m", mass="4 t"), soil))
+    )
+    assert stack == pytest.approx(alone, abs=1.0)
