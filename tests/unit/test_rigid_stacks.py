@@ -375,6 +375,16 @@ def test_no_hold_out_of_flight_upon_a_light_body_gives_energy(mass, rule, seed):
     assert run.energy_residual < 1e-6
 
 
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize("number", [122, 123])
+def test_bodies_that_come_to_rest_as_they_slip_give_no_energy(number):
+    """What ends bounces may pull; friction does not act then, since it would drive the slip."""
+    system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
+    run = system.simulate(motion, outputs=["energy"], accuracy="fast", second_look=False)
+    taken = (run.impact_energy + run.repinning_energy).to_numpy()
+    assert np.diff(taken).min() > -1e-10 * float(run.kinetic_energy.max())
+
+
 def sliding_upon_a_landing_body(restitution):
     """Give the model of a body that slips on one that lands on pads, and its events."""
     upper = rf.Block(width="0.6 m", height="2 m", mass="15 kg")
