@@ -385,6 +385,31 @@ def test_bodies_that_come_to_rest_as_they_slip_give_no_energy(number):
     assert np.diff(taken).min() > -1e-10 * float(run.kinetic_energy.max())
 
 
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize("seed", [2, 9])
+def test_a_short_slip_that_a_blow_has_turned_round_ends_against_its_friction(seed):
+    """On pads beneath two heavy bodies: friction of the sense it had would drive it."""
+    upper = rf.Block(width="0.9 m", height="3 m", mass="1860 kg")
+    middle = rf.Block(width="1.2 m", height="3.9 m", mass="315 kg")
+    plate = rf.Block(width="1.7 m", height="0.95 m", mass="6 kg")
+    joints = [
+        rf.RigidGround(friction=0.3), rf.RigidGround(friction=0.38, kinetic_friction=0.27),
+    ]  # fmt: skip
+    pads = rf.TwoSpringSupport(
+        frequency_ratio=47, damping_ratio=0.0, friction=0.46, kinetic_friction=0.32
+    )
+    stack = rf.Stack(upper, middle, plate, interfaces=joints, offsets=["2 cm", "1 cm"])
+    rng = np.random.default_rng(seed)
+    across = 4.0 * np.convolve(rng.normal(size=100), np.ones(6) / 6.0**0.5, "same")
+    upwards = 5.0 * rng.normal(size=100)
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "0.02 s", vertical=(upwards, "m/s^2"))
+    run = rf.System(stack, pads, restraint="centre").simulate(
+        motion, outputs=["energy"], output_step="1 ms", second_look=False
+    )
+    taken = (run.impact_energy + run.repinning_energy).to_numpy()
+    assert np.diff(taken).min() > -1e-9 * float(run.kinetic_energy.max())
+
+
 def sliding_upon_a_landing_body(restitution):
     """Give the model of a body that slips on one that lands on pads, and its events."""
     upper = rf.Block(width="0.6 m", height="2 m", mass="15 kg")
