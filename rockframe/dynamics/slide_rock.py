@@ -234,13 +234,15 @@ class SlideSwitches(SlideMotion):
         else:
             loads = self.loads(turned, state, ground)
             after = self.leaning(new, state, loads, False)
-            slip, rate = state[SIZE + SLIP], state[SIZE + ROTATION]
+            slip, rate, rise = state[SIZE + SLIP], state[SIZE + ROTATION], state[SIZE + RISE]
             leans, stands = after, False
             if self.creeps(slip):
                 state[SIZE + SLIP] = 0.0
                 leans = after if self.bears_in(after) >= FLIES_RIGHT else SLIPS * new + HELD
             if self.rebounds_little(leans, state, loads):
                 state[SIZE + ROTATION] = 0.0
+                if state[SIZE + SLIP] != 0.0:  # the bounces end with the momentum across the ground
+                    self.lie_flat(state, across, up)
                 base = self.standing(state, self.loads(turned, state, ground), False, FULL)
                 # a ground that tips the block over either corner allows no rest
                 if base // SLIPS == FULL:
@@ -249,7 +251,7 @@ class SlideSwitches(SlideMotion):
                 stands = base // SLIPS == FULL or (bounces and base // SLIPS == bore)
                 after = base if stands else after
             if not stands:
-                state[SIZE + SLIP], state[SIZE + ROTATION] = slip, rate
+                state[SIZE + SLIP], state[SIZE + ROTATION], state[SIZE + RISE] = slip, rate, rise
         memory[IMPACT_LOSS] += before - self.kinetic_energy(after, state)
         return self.with_contact(mode, after)
 

@@ -260,3 +260,24 @@ def test_friction_that_is_checked_holds_and_tells(base):
     ))  # fmt: skip
     assert bool(found.would_slide)
     assert "slip" not in found
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_block_that_comes_to_rest_as_it_slides_gains_no_energy(seed):
+    """Bounces give the momentum upwards that is left, and friction takes its part of that."""
+    rng = np.random.default_rng(seed)
+    across = 5.0 * np.convolve(rng.normal(size=100), np.ones(6) / 6.0**0.5, "same")
+    motion = rf.GroundMotion.from_arrays(
+        (across, "m/s^2"), "0.02 s", vertical=(3.0 * rng.normal(size=100), "m/s^2")
+    )
+    block = rf.Block(width="0.5 m", height="1.5 m", mass="1 t")
+    tie = rf.Restrainer(
+        on=("-0.25 m", "1.2 m"), to=("-1 m", "1.2 m"), stiffness="300 kN/m", slack="2 mm",
+        damping="2 kN*s/m",
+    )  # fmt: skip
+    ground = rf.RigidGround(friction=0.36, kinetic_friction=0.25)
+    found = rf.System(block, ground, tie).simulate(
+        motion, outputs=("energy",), output_step="1 ms", second_look=False
+    )
+    assert kinds_of(found).count("rest") > 2
+    assert np.diff(found.impact_energy.to_numpy()).min() >= -1e-14 * found.kinetic_energy.max()

@@ -10,9 +10,14 @@ from benchmarks.random_parts import drawn
 from plainly import plainly
 
 import rockframe as rf
+from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.impact import Near, next_set
-from rockframe.dynamics.events import ContactState, EventKind
+from rockframe.dynamics.events import IMPACT, ContactState, EventKind
+from rockframe.dynamics.protocol import Start
+from rockframe.dynamics.switching import end_speed
 from rockframe.errors import AssemblyError, ModelWarning
+from rockframe.solve.accuracy import accuracy_of
+from rockframe.solve.integrate import integrate
 from rockframe.solve.workspace import Status
 
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
@@ -368,3 +373,100 @@ def test_no_hold_out_of_flight_upon_a_light_body_gives_energy(mass, rule, seed):
     taken = (run.impact_energy + run.repinning_energy).to_numpy()
     assert np.diff(taken).min() > -1e-9 * float(np.abs(run.input_energy).max())
     assert run.energy_residual < 1e-6
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize("number", [122, 123])
+def test_bodies_that_come_to_rest_as_they_slip_give_no_energy(number):
+    """What ends bounces may pull; friction does not act then, since it would drive the slip."""
+    system, motion = drawn("stack of mixed bases", np.random.default_rng(number))
+    run = system.simulate(motion, outputs=["energy"], accuracy="fast", second_look=False)
+    taken = (run.impact_energy + run.repinning_energy).to_numpy()
+    assert np.diff(taken).min() > -1e-10 * float(run.kinetic_energy.max())
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize("seed", [2, 9])
+def test_a_short_slip_that_a_blow_has_turned_round_ends_against_its_friction(seed):
+    """On pads beneath two heavy bodies: friction of the sense it had would drive it."""
+    upper = rf.Block(width="0.9 m", height="3 m", mass="1860 kg")
+    middle = rf.Block(width="1.2 m", height="3.9 m", mass="315 kg")
+    plate = rf.Block(width="1.7 m", height="0.95 m", mass="6 kg")
+    joints = [
+        rf.RigidGround(friction=0.3), rf.RigidGround(friction=0.38, kinetic_friction=0.27),
+    ]  # fmt: skip
+    pads = rf.TwoSpringSupport(
+        frequency_ratio=47, damping_ratio=0.0, friction=0.46, kinetic_friction=0.32
+    )
+    stack = rf.Stack(upper, middle, plate, interfaces=joints, offsets=["2 cm", "1 cm"])
+    rng = np.random.default_rng(seed)
+    across = 4.0 * np.convolve(rng.normal(size=100), np.ones(6) / 6.0**0.5, "same")
+    upwards = 5.0 * rng.normal(size=100)
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "0.02 s", vertical=(upwards, "m/s^2"))
+    run = rf.System(stack, pads, restraint="centre").simulate(
+        motion, outputs=["energy"], output_step="1 ms", second_look=False
+    )
+    taken = (run.impact_energy + run.repinning_energy).to_numpy()
+    assert np.diff(taken).min() > -1e-9 * float(run.kinetic_energy.max())
+
+
+def sliding_upon_a_landing_body(restitution):
+    """Give the model of a body that slips on one that lands on pads, and its events."""
+    upper = rf.Block(width="0.6 m", height="2 m", mass="15 kg")
+    lower = rf.Block(width="0.8 m", height="0.65 m", mass="25 kg")
+    pads = rf.TwoSpringSupport(
+        frequency_ratio=60, damping_ratio=0.0, restitution=restitution, friction=0.6
+    )
+    stack = rf.Stack(upper, lower, interfaces=[rf.RigidGround(friction=0.2)])
+    model = rf.System(stack, pads, restraint="leading-corner").setting.compile()
+    rng = np.random.default_rng(0)
+    across = 3.0 * np.convolve(rng.normal(size=100), np.ones(6) / 6.0**0.5, "same")
+    upwards = 5.0 * rng.normal(size=100)
+    motion = rf.GroundMotion.from_arrays((across, "m/s^2"), "0.02 s", vertical=(upwards, "m/s^2"))
+    run = integrate(
+        model, Start(), motion.si, accuracy_of("standard"), duration=2.0, output_step=None,
+        stop_at_overturning=True,
+    )  # fmt: skip
+    return model.system, run.events
+
+
+@pytest.mark.parametrize("restitution", [0.001, 0.3])
+def test_ends_that_land_beneath_a_body_that_slips_keep_what_their_restitution_leaves(restitution):
+    """Whatever the body above takes of the blow, which is more or less than as it stood."""
+    system, events = sliding_upon_a_landing_body(restitution)
+    base, landings = system.on_base(1), 0
+    for i in np.flatnonzero(events.kind == IMPACT):
+        contact = system.part_mode(int(events.mode_before[i]), 1).contact
+        before, after = (
+            system.state_of(1, one[i]) for one in (events.state_before, events.state_after)
+        )
+        line = base.body.base_line_at(before)
+        for left in (True, False):
+            speed, _ = end_speed(base, left, before)
+            comes = not base.base.is_held(contact, left) and speed < -1e-3
+            if comes and abs(base.base.level(left, line, ())) < 1e-9:
+                kept = end_speed(base, left, after)[0] / speed
+                assert kept == pytest.approx(restitution, abs=1e-5), events.time[i]
+                landings += 1
+    assert landings > 20
+
+
+@pytest.mark.parametrize("restitution", [0.001, 0.3])
+def test_a_body_upon_one_that_lands_gets_no_more_than_friction_gives(restitution):
+    """Where no corner closes all impulses are rounding: these are no reason to stop a slip."""
+    system, events = sliding_upon_a_landing_body(restitution)
+
+    def velocity(mode, state):
+        system.energies(int(mode), state)
+        return np.array([system.places()[one] for one in (at.SPEED_X, at.SPEED_Y)])
+
+    blows = 0
+    for i in np.flatnonzero(events.kind == IMPACT):
+        change = velocity(events.mode_after[i], events.state_after[i])
+        change -= velocity(events.mode_before[i], events.state_before[i])
+        turned = system.state_of(1, events.state_before[i]).rotation
+        sine, cosine = math.sin(turned), math.cos(turned)
+        along, normal = change @ (cosine, -sine), change @ (sine, cosine)
+        assert abs(along) <= 0.2 * max(normal, 0.0) + 1e-4, events.time[i]
+        blows += normal > 1e-3
+    assert blows > 20

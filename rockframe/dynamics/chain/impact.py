@@ -219,14 +219,18 @@ def first_fault(
     system: Any, some: int, closed: int, impulsive: bool, least: float, noise: float
 ) -> int:
     """Give the first corner that is at fault by :eq:`eq-admissible`; -1 if none is."""
-    room, rows = system.places(), system.constraints()
+    room, rows, above = system.places(), system.constraints(), 0.0
     for corner in range(2 * system.body_count):
+        k, side = corner // 2, corner % 2
+        if side == 0:  # the mass that the body's base carries
+            above += system.number(k, at.MASS)
         if closed >> corner & 1 == 0:
             continue
-        k, side = corner // 2, corner % 2
         if some >> corner & 1 != 0:
             which = int(room[k * PLACES + at.LEFT_CORNER + side])
-            if rows[which * CONSTRAINT + at.FORCE] < -least:
+            # where nothing closes all impulses are rounding
+            none = noise * above if impulsive else 0.0
+            if rows[which * CONSTRAINT + at.FORCE] < -least - none:
                 return corner
             continue
         # under new forces a corner parts as its force is zero, and so is its acceleration

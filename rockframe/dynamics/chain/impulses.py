@@ -5,6 +5,7 @@ taken back, and bodies meet anew; the blow then ends where its end has the speed
 leaves it.
 """
 
+import math
 from typing import Final, NamedTuple
 
 from rockframe.compiled import Vector, inlined, kernel
@@ -31,6 +32,8 @@ from rockframe.dynamics.switching import end_speed
 
 MOST_SHARES: Final = 60
 """Shares of a blow that are tried, by halves: as many as a number has digits, and some."""
+MOST_BLOWS: Final = 1e3
+"""By how much a blow may be more than what bodies would answer as they stand."""
 
 
 SLIGHT: Final = 1e-9
@@ -42,6 +45,13 @@ class Shares(NamedTuple):
 
     press: float
     along: float
+
+
+class Met(NamedTuple):
+    """By how much an end rises faster as bodies meet anew, and how fast its body slips then."""
+
+    rises: float
+    driven: float  # to where friction has pushed
 
 
 class RigidImpulses(RigidCorners):
@@ -157,37 +167,66 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def shares_of_blow(self, k: int, ends: int, mode: int, closed: int, state: Vector) -> Shares:
-        """Give how much of a blow acts as bodies meet anew.
+        """Give how much of a blow acts as bodies meet anew, of its friction beside that.
 
-        So much of its friction that it turns no slip round, and then of all of it that it throws no
-        end up: the less there is of it the less they rise.
+        So much that an end has the speed that its restitution leaves it, and none more; and of its
+        friction so much that it turns no slip round.
         """
-        blow, room, i = Shares(1.0, 1.0), self.places(), k * PLACES
+        room, i = self.places(), k * PLACES
         if room[i + at.BLOW] <= 0.0 and room[i + at.BLOW_ALONG] == 0.0:
-            return blow
-        for phase in range(2):
-            low, high, share = 0.0, 1.0, 1.0
-            for tries in range(MOST_SHARES):
-                blow = Shares(share, blow.along) if phase == 1 else Shares(1.0, share)
-                if not self.is_too_much(k, ends if phase == 1 else 0, blow, mode, closed, state):
-                    low = share
-                    if tries == 0:
-                        break
-                else:
-                    high = share
-                share = 0.5 * (low + high)
-            blow = Shares(low, blow.along) if phase == 1 else Shares(1.0, low)
-        return blow
+            return Shares(1.0, 1.0)
+        rubs = self.driven_slip(k, mode, state) <= 0.0
+        low, high, share = 0.0, math.inf, 1.0
+        for _ in range(MOST_SHARES):
+            blow = Shares(share, self.share_along(k, rubs, share, mode, closed, state))
+            rises = self.try_blow(k, ends, blow, mode, closed, state).rises
+            if rises > 0.0:
+                high = share
+            else:
+                low = share
+            if rises == 0.0:
+                break
+            share = 0.5 * (low + high) if high < math.inf else 2.0 * share
+            if share > MOST_BLOWS:
+                low = 1.0
+                break
+        return Shares(low, self.share_along(k, rubs, low, mode, closed, state))
 
     @kernel
-    def is_too_much(
+    def share_along(
+        self, k: int, rubs: bool, press: float, mode: int, closed: int, state: Vector
+    ) -> float:
+        """Give how much of the friction acts beside a share of what presses: it opposes the slip.
+
+        Unless it does not even where all of the blow acts. The slip is linear in it as long as the
+        same corners bear.
+        """
+        if not rubs or self.places()[k * PLACES + at.BLOW_ALONG] == 0.0:
+            return 1.0
+        low, high = 0.0, 1.0
+        at_high = self.try_blow(k, 0, Shares(press, high), mode, closed, state).driven
+        if at_high <= 0.0:
+            return high
+        at_low = self.try_blow(k, 0, Shares(press, low), mode, closed, state).driven
+        for _ in range(MOST_SHARES):
+            if at_low >= 0.0:
+                break
+            share = low - (high - low) * at_low / (at_high - at_low)
+            found = self.try_blow(k, 0, Shares(press, share), mode, closed, state).driven
+            if found > 0.0:
+                high, at_high, at_low = share, found, 0.5 * at_low
+            else:
+                low, at_low, at_high = share, found, 0.5 * at_high
+        return low
+
+    @kernel
+    def try_blow(
         self, k: int, ends: int, blow: Shares, mode: int, closed: int, state: Vector
-    ) -> bool:
-        """Whether a blow throws ends up, or turns a slip round, as bodies meet anew."""
+    ) -> Met:
+        """Let bodies meet anew under shares of a blow, and take it back."""
         part, n, before = self.on_base(k), self.coordinates(), self.velocities(state)
         left, noise_left = end_speed(part, True, self.state_of(k, state))
         right, noise_right = end_speed(part, False, self.state_of(k, state))
-        drives = self.drives_slip(k, mode, state)
         self.take_back(k, blow, mode, state)
         place_bodies(self, mode, state, self.places())
         load_bodies(self, 0.0, 0.0, self.places())
@@ -195,19 +234,26 @@ class RigidImpulses(RigidCorners):
         self.change_velocities(state)
         left_after, more_left = end_speed(part, True, self.state_of(k, state))
         right_after, more_right = end_speed(part, False, self.state_of(k, state))
-        found = self.drives_slip(k, mode, state) and not drives
-        found |= ends & LEFT_ONLY != 0 and left_after > left + noise_left + more_left
-        found |= ends & RIGHT_ONLY != 0 and right_after > right + noise_right + more_right
+        rises, least = -math.inf, 0.0
+        if ends & LEFT_ONLY != 0:
+            rises, least = left_after - left, noise_left + more_left
+        if ends & RIGHT_ONLY != 0 and right_after - right > rises:
+            rises, least = right_after - right, noise_right + more_right
+        if abs(rises) <= least:
+            rises = 0.0
+        found = Met(rises, self.driven_slip(k, mode, state))
         for i in range(n):
             state[n + i] = before[i]
-        return bool(found)
+        return found
 
     @kernel
-    def drives_slip(self, k: int, mode: int, state: Vector) -> bool:
-        """Whether a body slips to where the friction of its blow has pushed it."""
+    def driven_slip(self, k: int, mode: int, state: Vector) -> float:
+        """Give how fast a body slips to where the friction of its blow has pushed it."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(self.part_mode(mode, k).pivot)
         reach = part.body.reach(pin, part.body.attitude(body.rotation))
         about, sway = reach.rate * body.angular_velocity, body.horizontal_velocity
         slip, along = sway - about, self.places()[k * PLACES + at.BLOW_ALONG]
-        return bool(along * slip > 0.0 and abs(slip) > SLIGHT * (abs(sway) + abs(about)))
+        if along == 0.0 or abs(slip) <= SLIGHT * (abs(sway) + abs(about)):
+            return 0.0
+        return math.copysign(slip, along * slip)

@@ -165,17 +165,19 @@ class SlipperyBases(SlippingBodies):
         body, n = self.on_base(k).body, self.coordinates()
         if not self.part_mode(mode, k).slides:
             return mode
-        slope = self.find_forces(mode, state, ground)
-        rate, _ = self.slip_rate(k, mode, state)
-        found = self.guards_of_slip(k, mode, state, slope, 0.0, 1.0)
+        rate, noise = self.slip_rate(k, mode, state)
+        # a blow may have turned it round since
+        slips = self.slipping(mode, k, rate) if abs(rate) > noise else mode
+        slope = self.find_forces(slips, state, ground)
+        found = self.guards_of_slip(k, slips, state, slope, 0.0, 1.0)
         slows = -found.slip_rate * math.sqrt(body.gravity * body.size())
         if rate * rate >= 2.0 * slows * REST_AMPLITUDE * body.size():
             return mode
-        had, time = self.energies_of_bodies(mode, state).kinetic, abs(rate) / slows
+        had, time = self.energies_of_bodies(slips, state).kinetic, abs(rate) / slows
         state[self.horizontal_of(k)] += 0.5 * rate * time  # as far as it comes
         for i in range(n):  # what the slip adds to velocities before it ends
             state[n + i] += slope[i] * time
-        new = self.with_slip(k, 0.0, mode, state, memory)
+        new = self.with_slip(k, 0.0, slips, state, memory)
         slope = self.find_forces(new, state, ground)
         for i in range(n):
             state[n + i] -= slope[i] * time

@@ -39,6 +39,8 @@ from rockframe.dynamics.sliding import NOISE as NOISE_OF_SLIP
 
 NOWHERE: Final = -1
 """In place of a pivot, where a body neither slips nor is held by friction."""
+SLICK: Final = 0.5
+"""In place of a sense of 1, of a slip on which friction does not act."""
 MOST_WAYS: Final = 81
 """Ways to slip that are tried of a set of corners: each base held, or slipping to a side."""
 
@@ -146,7 +148,7 @@ class TriedSlips(SlipperyBases, RigidChain):
     ) -> None:  # fmt: skip
         """Let the force of a corner that slips have friction, :eq:`eq-stack-slip`."""
         holds, i, ratio = which * CONSTRAINT + at.HOLDS, k * PLACES, 0.0
-        if sense != 0.0:
+        if abs(sense) == 1.0:
             ratio = -sense * self.friction_of(k, IMPULSIVE if impulsive else KINETIC)
             x, y = ratio * room[i + at.COSINE], -ratio * room[i + at.SINE]
             rows[holds] += x
@@ -310,7 +312,8 @@ class TriedSlips(SlipperyBases, RigidChain):
     def try_standing(self, mode: int, corners: int, state: Vector) -> None:
         """Let bodies stand on corners after an impact: those that slip go on, the others are held.
 
-        So is one whose slip would turn round: no friction does that.
+        So is one whose slip would turn round: no friction does that. Nor does friction act where
+        a base pulls: it would drive the slip.
         """
         room, turned = self.places(), True
         self.note_slips_before(mode, corners, state)
@@ -323,8 +326,11 @@ class TriedSlips(SlipperyBases, RigidChain):
                     pivot = self.tried_at(k, mode, corners, True)
                     rate, least = self.slip_on(k, pivot, state)
                     after = self.slips_on(k, pivot, True, state) + rate
-                    if sense * after < -least - NOISE_OF_SLIP * abs(after):
+                    if sense * after < -abs(sense) * (least + NOISE_OF_SLIP * abs(after)):
                         room[k * PLACES + at.SLIPS] = 0.0
+                        turned = True
+                    elif abs(sense) == 1.0 and self.pressed(k) < 0.0:
+                        room[k * PLACES + at.SLIPS] = SLICK * sense
                         turned = True
 
     @kernel

@@ -195,7 +195,10 @@ class Block:
             a = self.forces(leans, still, ground)[0]
             falls = -self.corner_acceleration(other, still, a)[1] / (self.left + self.right)
             if falls > 0.0 and new[5] ** 2 < 2.0 * falls * REST * angle:
-                flat = np.array([z[0], self.height, 0.0, slip, 0.0, 0.0])
+                # all bounces to come give the momentum upwards, and friction of that
+                most = self.kinetic * abs(z[4])
+                across = math.copysign(max(abs(z[3]) - most, 0.0), z[3]) if slip != 0.0 else 0.0
+                flat = np.array([z[0], self.height, 0.0, across, 0.0, 0.0])
                 resting, side = (
                     self.next_mode(flat, ground, None, "LR"),
                     1.0 if which == "R" else -1.0,
