@@ -453,3 +453,18 @@ def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
 def test_the_limits_are_those_of_the_manual():
     left_out = read("theory/validity.md").split("## Left out")[1].split("\n## ")[0]
     assert re.findall(r"^(\w.*)\n: ", left_out, re.MULTILINE) == [one.title for one in LIMITS]
+
+
+def test_a_case_that_was_picked_out_of_a_sweep_has_its_own_system(tmp_path):
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    runs = rf.sweep(system, pulse, width=["0.5 m", "0.62 m"], scale=[1.0, 1.5], progress=False)
+    one = runs.isel(width=1, scale=1, motion=0)
+    page = Page(rf.report(one, tmp_path / "case.html").read_text("utf-8"))
+    assert "0.62 m" in page.text
+    assert "0.5 m" not in page.text
+    assert "1.5 times sine pulse" in page.text
+    assert "Certificate" in page.text
+    with pytest.raises(SchemaError, match=r"sweep over width.*rf\.case\(dataset\)\.system"):
+        rf.System.from_dataset(one)
+    assert rf.System.from_dataset(runs) == system

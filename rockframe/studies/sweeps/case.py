@@ -171,6 +171,17 @@ def case(
     return SweepCase(system, motion, options)
 
 
+def system_of_case(dataset: xr.Dataset) -> System:
+    """Give the system of a sweep, with the values of those axes of which one was picked."""
+    values: dict[Axis, Any] = {}
+    for described in json.loads(dataset.attrs["axes_json"]):
+        name, unit = described["name"], described["unit"]
+        if described["changes"] in OF_SCENES and dataset[name].size == 1:
+            value = in_unit(dataset[name], unit).item()
+            values[Axis.from_dict(described, np.array([value]))] = value
+    return _system(_scene(None, cast("Mapping[str, Any]", dataset.attrs)), values)
+
+
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
     """Give the study that a dataset is of, if this process has made it."""
     return _studies.get(str(attributes.get("study_sha256")))
