@@ -95,7 +95,8 @@ def asce_7_22(
         for symbol, (name, value) in numbers.items()
     }
     body, weight = setting.body, setting.body.mass * setting.gravity
-    arm = min(body.left, body.right)
+    # a wall keeps it from tipping to one side
+    arm = body.centre_height * math.tan(min(setting.overturning_angles))
     base = given["S_DS"] * given["I_p"] * weight
     by_formula = 0.4 * base * given["H_f"] / given["R_mu"] * given["C_AR"] / given["R_po"]
     least, most = _LEAST * base, _MOST * base

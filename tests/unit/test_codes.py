@@ -161,6 +161,14 @@ def test_a_component_on_its_floor():
     assert rf.codes.asce_7_22(squat, spectral_acceleration=0.5).passed == {"tipping": True}
 
 
+@pytest.mark.parametrize(("side", "arm"), [("left", 0.4), ("right", 0.2)])
+def test_a_component_before_a_wall_tips_away_from_it(side, arm):
+    body = CABINET.replace(centre_of_mass=("0.9 m", "-0.1 m"))
+    system = rf.System(body, rf.RearWall(side=side))
+    check = rf.codes.asce_7_22(system, spectral_acceleration=1.0)
+    assert check.value("M_R") == pytest.approx(0.9 * check.value("W_p") * arm, rel=1e-12)
+
+
 def test_the_friction_of_a_ground_is_used_and_a_block_that_slides_is_no_mechanism():
     tiles = rf.System(CABINET, rf.RigidGround(friction=0.3))
     check = rf.codes.asce_7_22(tiles, spectral_acceleration=1.2)
