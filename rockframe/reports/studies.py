@@ -75,7 +75,7 @@ def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
     """Simulate a case that was picked out of a sweep; without its motion give what it holds."""
     try:
         return case(dataset, motions=motions).simulate(outputs=())
-    except StudyError:
+    except (SchemaError, StudyError):
         if motions is not None:
             raise
     own = system_of_case(dataset).assembly.json
