@@ -237,7 +237,7 @@ def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | Non
     if motion is None:
         return found
     digest = dataset.attrs.get("motion_sha256", motion.sha256)
-    if digest != motion.sha256:
+    if digest != motion.sha256 or dataset.attrs.get("motion") == "none":
         msg = (
             f"{_OWNER}: found a motion ({motion.name}) whose samples are not those of the run "
             f"({dataset.attrs.get('motion')}); expected the one that it was made with"

@@ -433,6 +433,23 @@ def test_the_motion_that_a_result_does_not_hold_can_be_handed_in(tmp_path):
         rf.report(run, tmp_path / "x.html", motion=record.scaled(2.0))
 
 
+def test_a_run_without_a_motion_takes_none(tmp_path):
+    system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
+    run = system.simulate(duration="2 s", initial=rf.InitialState(rotation="5 deg"))
+    with pytest.raises(SchemaError, match=r"not those of the run \(none\)"):
+        rf.report(run, tmp_path / "report.html", motion=rf.GroundMotion.sine_pulse())
+
+
+def test_a_certificate_of_another_run_is_none(tmp_path):
+    """Of runs that were joined nobody knows the motions: another one has the same verdict."""
+    system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
+    pulses = [rf.GroundMotion.sine_pulse(f"{peak} m/s^2", "2 Hz") for peak in (3.0, 4.0)]
+    joined = rf.concat([system.simulate(one, outputs=None) for one in pulses], "run")
+    for place, words in enumerate(("Certificate: the verdict", "run again, it ends otherwise")):
+        path = tmp_path / f"{place}.html"
+        assert words in rf.report(joined.isel(run=place), path, motion=pulses[0]).read_text("utf-8")
+
+
 def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
     browser = which("chromium") or which("google-chrome")
     if browser is None:
