@@ -95,7 +95,8 @@ def asce_7_22(
         for symbol, (name, value) in numbers.items()
     }
     body, weight = setting.body, setting.body.mass * setting.gravity
-    arm = min(body.left, body.right)
+    # a wall keeps it from tipping to one side
+    arm = body.centre_height * math.tan(min(setting.overturning_angles))
     base = given["S_DS"] * given["I_p"] * weight
     by_formula = 0.4 * base * given["H_f"] / given["R_mu"] * given["C_AR"] / given["R_po"]
     least, most = _LEAST * base, _MOST * base
@@ -103,6 +104,7 @@ def asce_7_22(
     lifting = _VERTICAL * given["S_DS"] * weight
     pressing, lifted = _RESISTING * weight, max(_RESISTING * weight - lifting, 0.0)
     tipping, resisting = force * body.centre_height, lifted * arm
+    anchored = tipping - (pressing - lifting) * arm  # also where F_v lifts it
     newton, moment = Unit.NEWTON, Unit.NEWTON_METRE
     factors = tuple(
         CheckedLine(name, value, Unit.ONE, "factor", "given") for name, value in given.items()
@@ -124,7 +126,7 @@ def asce_7_22(
         CheckedLine("M_R", pressing * arm, moment, "0.9 W_p times the lesser arm", "equilibrium"),
         CheckedLine("M_R, with F_v", resisting, moment, "0.9 W_p - F_v times the lesser arm",
                     "13.3.1"),
-        CheckedLine("M_anchors", max(tipping - resisting, 0.0), moment,
+        CheckedLine("M_anchors", max(anchored, 0.0), moment,
                     "what anchors must carry, M_OT - M_R, with F_v", "equilibrium"),
         CheckedLine("mu", force / pressing, Unit.ONE,
                     "friction to stay without anchors, F_p/(0.9 W_p)", "equilibrium"),

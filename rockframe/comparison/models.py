@@ -113,7 +113,9 @@ def model_ladder(system: System) -> dict[str, System]:
     slides = system.setting.slides and not system.parts.own
     if slides and "stack" not in present and squat(system.parts.the_block, ""):
         rows = ()  # held it would not rock
-    whole, held = given, Sliding.CHECKED if slides else system.sliding
+    # a wall holds a block that slides without it
+    holds = slides or "wall" in present
+    whole, held = given, Sliding.CHECKED if holds else system.sliding
     if slides and "stack" in present:  # whose bases hold where they have no friction
         given, held = {slot: _holding(part) for slot, part in given.items()}, system.sliding
     options: dict[str, Any] = {

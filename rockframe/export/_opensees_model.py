@@ -99,7 +99,7 @@ def solve(ops: Any, given: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     ops.analysis("Transient")
     step, steps = given["output_step"], given["steps_per_output"]
     rotation = [0.0]
-    for row in range(1, given["rotation"].size):
+    for row in range(1, given["outputs"]):
         if not all(step_in_parts(ops, step / steps) for _ in range(steps)):
             print(f"OpenSees did not converge before {row * step:.4g} s")
             break

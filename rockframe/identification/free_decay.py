@@ -57,7 +57,8 @@ def fit_free_decay(
         with the class, as in ``"TwoSpringSupport.damping_ratio"``.
     peaks : (rotations, unit), Quantity or ((times, unit), (rotations, unit)), optional
         Instead of `measured`: successive peaks of the rotation to both sides, with or without
-        their signs, with or without their times. The first is the release.
+        their signs, but for an eccentric block, with or without their times. The first is the
+        release.
     circumstances : str or sequence of str, optional
         What of the test is to be found as well, of ``"initial_rotation"``, ``"release_time"``
         and ``"gauge_offset"``. Unless given: of a history all three; of peaks the initial
@@ -128,7 +129,7 @@ def fit_free_decay(
     settings = accuracy_of(accuracy)
     trials = TrialSystems(system, names, _OWNER)
     data = read_history(measured, _OWNER) if peaks is None else read_peaks(peaks, _OWNER)
-    check_below_overturning(data, system.setting.overturning_angle, _OWNER)
+    check_below_overturning(data, system.setting.overturning_angles, _OWNER)
     sought = _sought(circumstances, data)
     unknown = (*names, *sought)
     if data.count <= len(unknown):

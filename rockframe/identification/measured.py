@@ -10,7 +10,8 @@ import xarray as xr
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.signals.arrays import Array
-from rockframe.units import ANGLE, TIME, Measure, to_si
+from rockframe.system.bodies import OverturningAngles
+from rockframe.units import ANGLE, TIME, Measure, check_own_unit, to_si
 
 _UNITS: Final = {"rotation": "deg", "time": "s"}
 _HISTORY: Final = (
@@ -103,14 +104,24 @@ def read_peaks(given: object, owner: str) -> MeasuredPeaks:
     return peaks
 
 
-def check_below_overturning(measured: History | MeasuredPeaks, theta: float, owner: str) -> None:
+def check_below_overturning(
+    measured: History | MeasuredPeaks, angles: OverturningAngles, owner: str
+) -> None:
     """Refuse a rotation from which no block comes back."""
+    if isinstance(measured, MeasuredPeaks) and not measured.signed and angles.left != angles.right:
+        msg = (
+            f"{owner}: peaks without their signs do not tell the sides of an eccentric block; give "
+            "them with their signs, negative to the left"
+        )
+        raise ComponentError(msg)
+    theta = np.where(measured.rotation < 0.0, angles.left, angles.right)
     beyond = np.flatnonzero(np.abs(measured.rotation) >= theta)
     if beyond.size:
+        first = int(beyond[0])
         msg = (
-            f"{owner}: {_place(measured, int(beyond[0]))} is "
-            f"{_angle(float(measured.rotation[beyond[0]]))}, not below the overturning angle "
-            f"{_angle(theta)}; check the unit, and the size of the block"
+            f"{owner}: {_place(measured, first)} is {_angle(float(measured.rotation[first]))}, "
+            f"not below the overturning angle {_angle(float(theta[first]))}; check the unit, and "
+            "the size of the block"
         )
         raise ComponentError(msg)
 
@@ -145,6 +156,8 @@ def _values(given: object, measure: Measure, owner: str, name: str) -> Array:
         pair = cast("tuple[object, ...]", given)
         if len(pair) == 2:
             values, unit = pair
+            if isinstance(unit, str):
+                check_own_unit(values, unit, owner=owner, name=name)
     if not isinstance(unit, str):
         example = _UNITS["time" if measure is TIME else "rotation"]
         msg = (

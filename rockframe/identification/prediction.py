@@ -221,16 +221,23 @@ def starts_of(
         offset = swings.offset
     first = float(measured.rotation[0] if peaks is None else peaks.rotation[0]) - offset
     starts = {name: place.unknown(name) for name, place in trials.places.items()}
+    angles, body = system.setting.overturning_angles, system.setting.body
     if system.setting.settlement is None and peaks is not None and peaks.rotation.size > 1:
+        swung = peaks.rotation - offset
+        left, right = (
+            math.hypot(arm, body.centre_height) / body.gyration_square_about(arm)
+            for arm in (body.left, body.right)
+        )
         found = restitution_of(
-            peaks.rotation - offset,
-            system.setting.overturning_angle,
+            swung,
+            np.where(swung < 0.0, angles.left, angles.right),
+            np.where(swung < 0.0, left / right, 1.0),
             small_rotation=system.rotation is Rotation.SMALL,
         )
         for name, place in trials.places.items():
             if place.argument == "restitution":
                 starts[name] = place.unknown(name).started_at(found)
-    limit = math.copysign(_LARGEST * system.setting.overturning_angle, first)
+    limit = math.copysign(_LARGEST * angles.on_side_of(first), first)
     rotation = Unknown(
         Circumstance.INITIAL_ROTATION, first, abs(first), min(limit, 0.0), max(limit, 0.0)
     ).started_at(first)

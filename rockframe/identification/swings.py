@@ -62,10 +62,11 @@ def swings_of(history: History, owner: str) -> Swings:
     )
 
 
-def restitution_of(peaks: Array, theta: float, *, small_rotation: bool) -> float:
+def restitution_of(peaks: Array, theta: Array, pull: Array, *, small_rotation: bool) -> float:
     """Give the restitution with which peaks decay on rigid ground.
 
-    By :eq:`eq-rigid-decay`.
+    By :eq:`eq-rigid-decay`, with the overturning angle of the side of each peak, and the pull of
+    gravity on the corner there, p^2, over that of any corner.
     """
     size = np.clip(np.abs(peaks), 1e-9 * theta, theta)
     if small_rotation:
@@ -74,7 +75,7 @@ def restitution_of(peaks: Array, theta: float, *, small_rotation: bool) -> float
         energy = 2.0 * np.sin(theta - 0.5 * size) * np.sin(0.5 * size)
         slope = np.sin(theta - size)
     weights = energy / np.maximum(slope, 1e-3 * theta)
-    gradient = np.polyfit(np.arange(size.size), np.log(energy), 1, w=weights)[0]
+    gradient = np.polyfit(np.arange(size.size), np.log(pull * energy), 1, w=weights)[0]
     return float(math.exp(0.5 * gradient))
 
 

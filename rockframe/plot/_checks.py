@@ -16,6 +16,7 @@ from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.shared_arguments import Argument, completed, with_raises
 from rockframe.simulation.system import System
+from rockframe.studies.sweeps.case import system_of_case
 from rockframe.units import POSITIVE, to_ratio
 from rockframe.units.shown import KINDS as SHOWN_KINDS
 from rockframe.units.shown import UnitsLike, reader_units
@@ -203,6 +204,8 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         raise SchemaError(msg)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
+        if "axes_json" in run.attrs:
+            return system_of_case(run)
         return System.from_dict(json.loads(text))
 
 

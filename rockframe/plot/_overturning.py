@@ -74,7 +74,7 @@ def overturning_map(
 
     given = drawable(dataset, "overturning_map", units)
     asked = units_of(units, "overturning_map").reader.chose(ACCELERATION) is not None
-    relative = "relative_pulse_frequency" in given.coords and not asked
+    relative = "relative_peak_ground_acceleration" in given.coords and not asked
     across = given["relative_pulse_frequency" if relative else "frequency"]
     up = given["relative_peak_ground_acceleration" if relative else "amplitude"]
     told = int(given.attrs["impacts_told_apart"])
@@ -93,7 +93,7 @@ def overturning_map(
         axes.plot(across, size * middle.isel(boundary=number), ".", color="black", ms=2.0)
     axes.set(
         xlabel=r"frequency over the block's, $\omega_p/p$ [-]" if relative else label_of(across),
-        ylabel=r"amplitude over that of uplift [-]" if relative else label_of(up),
+        ylabel=r"peak acceleration over that of uplift [-]" if relative else label_of(up),
     )
     words = ["stands", *(_after(k, told) for k in range(told + 1))]
     patches = [Patch(color=one, label=text) for one, text in zip(colours, words, strict=True)]

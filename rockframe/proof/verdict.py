@@ -2,11 +2,14 @@
 
 import math
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from typing import Final, NamedTuple
 
 SAFE: Final = "safe for ever"
 OVERTURNS: Final = "overturns"
 UNDECIDED: Final = "undecided"
+_DIGITS: Final = 12
+"""Of times in sentences, which are rounded outwards."""
 
 
 class Tolerances(NamedTuple):
@@ -52,6 +55,8 @@ class Proof:
         Into which the set was divided.
     safe_share, overturning_share : float
         Of the set, of which that verdict is proved [1].
+    analytic : bool
+        Whether the motion is polynomials between its samples, and not straight lines.
     """
 
     verdict: str
@@ -69,6 +74,7 @@ class Proof:
     parts: int = 1
     safe_share: float = 0.0
     overturning_share: float = 0.0
+    analytic: bool = False
 
     @property
     def decided(self) -> bool:
@@ -115,8 +121,10 @@ class Proof:
 
     def __str__(self) -> str:
         """Say what has been proved, and of what."""
-        of = "for the numbers of this block and this record, joined by straight lines, and for "
-        of += self.law
+        between = "this record, joined by straight lines,"
+        if self.analytic:
+            between = "this motion, the polynomials that runs take,"
+        of = f"for the numbers of this block and {between} and for {self.law}"
         within = {
             f"restitution within {self.restitution_tolerance:g}": self.restitution_tolerance,
             f"scale within {self.scale_tolerance:g}": self.scale_tolerance,
@@ -138,11 +146,17 @@ class Proof:
             )
         found = "does not overturn, however long it stands on the still ground afterwards"
         if self.verdict == OVERTURNS:
-            found = f"overturns between {self.earliest:.12g} s and {self.latest:.12g} s"
+            least = _rounded(self.earliest, ROUND_FLOOR)
+            found = f"overturns between {least} s and {_rounded(self.latest, ROUND_CEILING)} s"
         return (
             f"Proved: the block {found}; {of}, in interval arithmetic. It is a theorem on the "
             "model, and says nothing of how well that describes the block."
         )
+
+
+def _rounded(time: float, rounding: str) -> str:
+    """Write a time so that it is on the far side."""
+    return f"{float(Context(_DIGITS, rounding).create_decimal(time)):.{_DIGITS}g}"
 
 
 def outwards(value: object, direction: float) -> float:

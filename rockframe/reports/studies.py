@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe import plot
-from rockframe.errors import RockframeError, RockframeWarning, SchemaError
+from rockframe.errors import RockframeError, RockframeWarning, SchemaError, StudyError
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
@@ -19,6 +19,7 @@ from rockframe.reports.values import powers_in_html, table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
+from rockframe.studies.sweeps.case import system_of_case
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.units.shown import ReaderUnits
 
@@ -68,6 +69,19 @@ def worst_case(
     named = ", ".join(f"{name.replace('_', ' ')} {words}" for name, words in shown_as.items())
     system = found.system if found.motion is None else under(found.system, found.motion)
     return f"Simulated again: {named}." if named else "Simulated again.", (run, system)
+
+
+def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
+    """Simulate a case that was picked out of a sweep; without its motion give what it holds."""
+    try:
+        return case(dataset, motions=motions).simulate(outputs=())
+    except (SchemaError, StudyError):
+        if motions is not None:
+            raise
+    own = system_of_case(dataset).assembly.json
+    found = dataset.assign_attrs(system_json=own, verdict=cases_verdict(dataset))
+    del found.attrs["axes_json"]  # it is no part of a sweep any more
+    return found
 
 
 def under(system: System, motion: GroundMotion) -> System:

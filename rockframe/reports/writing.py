@@ -47,7 +47,8 @@ def report(
     ----------
     response : xarray.Dataset
         The result of one run; or of a sweep over motions or axes, a fragility, a critical scale
-        or another analysis; also one read back from a file.
+        or another analysis; also one read back from a file. A case that was picked out of a sweep
+        is simulated again, where its motion can be had.
     path : str or path
         Of the file; its name ends in ``.html``. A report that is there is replaced. Browsers
         print it to PDF, on sheets of A4.
@@ -137,6 +138,9 @@ def report(
     read = [source] if source else []
     # before the certificate, which takes a while
     checked_path(path, page.KIND, overwrite=overwrite, read=read)
+    if _is_run(dataset) and "axes_json" in dataset.attrs:  # picked out of a sweep
+        dataset = studies.run_of_case(dataset, motions if motion is None else motion)
+        motion = None  # the run has its own, which is scaled
     if _is_run(dataset):
         model = str(dataset.attrs["model"])
         heading = given or f"Rocking response, {model} model"
@@ -233,7 +237,7 @@ def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | Non
     if motion is None:
         return found
     digest = dataset.attrs.get("motion_sha256", motion.sha256)
-    if digest != motion.sha256:
+    if digest != motion.sha256 or dataset.attrs.get("motion") == "none":
         msg = (
             f"{_OWNER}: found a motion ({motion.name}) whose samples are not those of the run "
             f"({dataset.attrs.get('motion')}); expected the one that it was made with"

@@ -17,6 +17,7 @@ from rockframe.signals.motion import (
     integral_of,
     knots_of,
     roots_of,
+    slopes_of,
     turning_points,
 )
 from rockframe.signals.spectra import spectral_peaks
@@ -60,7 +61,12 @@ def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
     times = signal.times
     seconds = np.arange(0.0, math.ceil(times[-1]) + 1.0)
     at_seconds = np.interp(seconds, times, absolute_velocity_history(signal))
-    size = np.abs(signal.samples)
+    parts, starts, _ = _at_turns(signal.pieces)
+    count = len(signal.pieces)  # the parts behind them start at peaks
+    times = np.concatenate([times, starts[count:] * signal.time_step])
+    size = np.abs(np.concatenate([signal.samples, parts[count:, 0]]))
+    order = np.argsort(times, kind="stable")
+    times, size = times[order], size[order]
     # a sample at a full second belongs to the seconds on both its sides
     rounding = 1e-9 * signal.time_step
     first = np.searchsorted(times, seconds[:-1] - rounding, side="left")
@@ -100,8 +106,9 @@ def time_between_shares(history: Array, time_step: float, start: float, end: flo
 def exceedance(signal: Signal, level: float) -> tuple[float, float]:
     """Tell how long a level is exceeded [m s^-2]: from first to last time, and in all [s]."""
     first, last, total = np.inf, -np.inf, 0.0
+    pieces, starts, lengths = _at_turns(signal.pieces)
     for side in (1.0, -1.0):
-        above = side * signal.pieces
+        above = side * pieces
         above[:, 0] -= level
         starts_above, ends_above = above[:, 0] > 0.0, above.sum(axis=1) > 0.0
         enter, leave = np.zeros(len(above)), np.ones(len(above))
@@ -111,11 +118,37 @@ def exceedance(signal: Signal, level: float) -> tuple[float, float]:
         leave[crossed] = np.where(starts_above[crossed], at, 1.0)
         rows = np.flatnonzero(starts_above | ends_above)
         if rows.size:
-            total += float(np.sum(leave[rows] - enter[rows]))
-            first = min(first, float(rows[0] + enter[rows[0]]))
-            last = max(last, float(rows[-1] + leave[rows[-1]]))
+            total += float(np.sum(lengths[rows] * (leave[rows] - enter[rows])))
+            first = min(first, float(np.min(starts[rows] + lengths[rows] * enter[rows])))
+            last = max(last, float(np.max(starts[rows] + lengths[rows] * leave[rows])))
     bracketed = max(0.0, last - first)
     return bracketed * signal.time_step, total * signal.time_step
+
+
+def _at_turns(pieces: Array) -> tuple[Array, Array, Array]:
+    """Divide intervals where they turn; give the parts, and in intervals their starts and lengths.
+
+    A level may be passed and left again inside an interval, about its peak.
+    """
+    starts, lengths, powers = np.arange(float(len(pieces))), np.ones(len(pieces)), pieces.shape[1]
+    slopes = slopes_of(pieces)
+    rows = np.flatnonzero(slopes[:, 0] * slopes.sum(axis=1) < 0.0)
+    if not rows.size:
+        return pieces, starts, lengths
+    at, turning = roots_of(slopes[rows]), pieces[rows]
+    # Taylor's expansion about the turn
+    after = [
+        sum(math.comb(j, k) * turning[:, j] * at ** (j - k) for j in range(k, powers))
+        * (1.0 - at) ** k
+        for k in range(powers)
+    ]
+    parts = pieces.copy()
+    parts[rows], lengths[rows] = turning * at[:, None] ** np.arange(powers), at
+    return (
+        np.concatenate([parts, np.stack(after, axis=1)]),
+        np.concatenate([starts, rows + at]),
+        np.concatenate([lengths, 1.0 - at]),
+    )
 
 
 _TERMS: Final = 40

@@ -20,6 +20,8 @@ _AFTER_END: Final = "_after_end"
 """Of the names of samples that follow those of the histories."""
 _NEXT_STEP: Final = "; "
 """Between the steps of the history of a motion."""
+_SAME_SYSTEM: Final = ("motion", "start")
+"""What axes of sweeps change that leave the system as it is."""
 
 
 def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | int]:
@@ -40,6 +42,24 @@ def motion_words(attributes: Mapping[str, Any]) -> str:
     """Say of which motion a result is, and by how much that was scaled."""
     history = str(attributes.get("motion_history", "")).split(_NEXT_STEP)
     return shown_name(str(attributes["motion"]), history)
+
+
+def check_own_system(dataset: xr.Dataset) -> None:
+    """Refuse what was picked out of a sweep whose axes change the system that it describes."""
+    axes = json.loads(dataset.attrs.get("axes_json", "[]"))
+    changed = [
+        str(axis["name"])
+        for axis in axes
+        if axis["changes"] not in _SAME_SYSTEM
+        and axis["name"] in dataset.coords
+        and not dataset[axis["name"]].dims
+    ]
+    if changed:
+        msg = (
+            f"the dataset is of a part of a sweep over {', '.join(changed)}, whose system need not "
+            "be the one that was swept; rf.case(dataset).system is that of a case"
+        )
+        raise SchemaError(msg)
 
 
 def motion_after_end(

@@ -1,6 +1,6 @@
 """Proofs of verdicts, as users ask for them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Final
 
@@ -264,12 +264,14 @@ def proof_of(
     if isinstance(law, Alone):
         from rockframe.proof.pads.verdict import prove_pads
 
-        return prove_pads(law, mode, state, motion.si, slope, limits, scale=scale, within=within)
+        found = prove_pads(law, mode, state, motion.si, slope, limits, scale=scale, within=within)
+        return replace(found, analytic=motion.si.analytic)
     assert isinstance(law, BlockOnRigidGround)  # noqa: S101
     from rockframe.proof.course import prove_block
 
     begin = float(state[0]), float(state[1])
-    return prove_block(law, motion.si, slope, limits, begin, scale=scale, within=within)
+    found = prove_block(law, motion.si, slope, limits, begin, scale=scale, within=within)
+    return replace(found, analytic=motion.si.analytic)
 
 
 def _faults(system: Assembly) -> list[str]:

@@ -15,6 +15,7 @@ from rockframe.errors import ModelWarning, SchemaError, warn
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted, proposing
 from rockframe.simulation.provenance import (
+    check_own_system,
     description_by_names,
     motion_from_dataset,
     parts_and_options,
@@ -410,7 +411,8 @@ class System(SystemValue):
         Raises
         ------
         SchemaError
-            No dataset, or one that does not describe a system.
+            No dataset, or one that does not describe a system; or what was picked out of a
+            sweep over parameters: the system of a case is that of :func:`rockframe.case`.
 
         Examples
         --------
@@ -425,6 +427,7 @@ class System(SystemValue):
         if not isinstance(text, str):
             msg = "the dataset has no attribute 'system_json'; expected a result of simulate()"
             raise SchemaError(msg)
+        check_own_system(dataset)
         try:
             return cls._described(json.loads(text), motion_from_dataset(dataset))
         except _DAMAGED as problem:

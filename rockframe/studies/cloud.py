@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import whole_number
+from rockframe.arguments import several, whole_number
 from rockframe.errors import StudyError
 from rockframe.proposals import hinted
 from rockframe.results.outcome import Generic, overturns
@@ -19,12 +19,19 @@ from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import with_stripes
-from rockframe.studies.fragility.trials import laid_out, motion_numbers
+from rockframe.studies.fragility.trials import (
+    check_one_structure,
+    laid_out,
+    motion_numbers,
+    told_of_system,
+)
+from rockframe.studies.fragility.words import POOLED
 from rockframe.studies.intensities import (
     PERIOD_OF,
     PeriodLike,
     measure_in,
     measure_words,
+    named_column,
     told_period,
 )
 from rockframe.studies.limit_states import (
@@ -173,6 +180,7 @@ def cloud_analysis(
     least: Any = None,
     period: PeriodLike | None = None,
     motions: MotionsLike | None = None,
+    pooled: Iterable[str] = (),
     confidence: RatioLike = 0.95,
     seed: int = 0,
 ) -> xr.Dataset:
@@ -197,6 +205,8 @@ def cloud_analysis(
         Of a spectral intensity [s].
     motions : GroundMotion, or sequence or mapping of them, optional
         The records, where neither the dataset nor this process has them.
+    pooled : iterable of str, optional
+        Axes of which all values are taken for one structure, as for :func:`rockframe.fragility`.
     confidence : float, optional
         Of all bounds [1].
     seed : int, optional
@@ -219,7 +229,7 @@ def cloud_analysis(
     SchemaError
         Not the result of a sweep.
     StudyError
-        The runs are of several structures, or have no verdicts.
+        The runs are of several structures that are not `pooled`, or have no verdicts.
 
     Notes
     -----
@@ -251,6 +261,8 @@ def cloud_analysis(
     runs = check_runs(runs, owner=_OWNER)
     level = read_level(confidence, owner=_OWNER)
     seed = whole_number(seed, owner=_OWNER, name="seed", lowest=0)
+    together = several(pooled, owner=_OWNER, name="pooled", of="names")
+    check_one_structure(runs, together, [named_column(runs, intensity)], owner=_OWNER)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label or "", owner=_OWNER)
     levels = listed_limits(limits, owner=_OWNER)
@@ -263,10 +275,11 @@ def cloud_analysis(
     for one in ("cloud_response", "response_limit"):
         dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))
     dataset.attrs |= {
-        **{key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs},
+        **told_of_system(runs),
         **told_period(runs, [intensity], period, owner=_OWNER),
         "intensity": str(measure.name),
         "response": response if label is None else f"{response} {label}",
+        **({POOLED: ", ".join(together)} if together else {}),
     }
     return dataset.assign_attrs(verdict=_sentence(dataset, found.repeated))
 

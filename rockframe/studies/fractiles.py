@@ -17,6 +17,7 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_shares
+from rockframe.studies.fragility.trials import told_of_system
 from rockframe.studies.intensities import PeriodLike, measure_in, told_period
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
@@ -139,9 +140,8 @@ def fractile_curves(
         found[one].attrs["units"] = unit
     found["intensity_fractile"].attrs["units"] = measure.attrs.get("units", "1")
     told = told_period(runs, [intensity], period, owner=_OWNER)
-    kept = {key: runs.attrs[key] for key in ("model", "system_json") if key in runs.attrs}
     return found.assign_attrs(
-        {**kept, "intensity": name, **told,
+        {**told_of_system(runs), "intensity": name, **told,
          "response": response if label is None else f"{response} {label}",
          "verdict": _sentence(lines, along, responses, measure)}
     )  # fmt: skip

@@ -19,7 +19,7 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.words import measures_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.studies.sweeps.axes import free_values
-from rockframe.units import POSITIVE, to_ratio
+from rockframe.units import POSITIVE, Unit, check_own_unit, to_ratio
 
 _OWNER: Final = "annual_rate"
 _BY_RATE, _BY_PROBABILITY = ("intensity", "rate"), ("intensity", "probability", "years")
@@ -204,6 +204,11 @@ def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCu
 
 
 def _intensities(given: object, name: str, unit: str) -> Array:
+    pair = cast("tuple[Any, ...]", given) if isinstance(given, tuple) else ()
+    own_measure = unit == Unit.ONE or unit not in map(str, Unit)
+    if len(pair) == 2 and pair[1] == unit and own_measure:
+        check_own_unit(pair[0], unit, owner=_OWNER, name="intensity")
+        return np.asarray(free_values(list(pair[0]), "intensity")[0], dtype=np.float64)
     values, own = free_values(given, "intensity")
     if own != unit:
         msg = f"{_OWNER}: {name} is in {unit}, got {shown(given)}"

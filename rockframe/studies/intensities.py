@@ -178,6 +178,24 @@ def measure_in(
             f"{', '.join(map(str, dims))}, got {given.name!r} over {given.dims}"
         )
         raise ComponentError(msg)
+    return _of_these_runs(runs, given, owner)
+
+
+def _of_these_runs(runs: xr.Dataset, given: xr.DataArray, owner: str) -> xr.DataArray:
+    """Give numbers of one's own for the labels of the runs, in their order; NaN where none is."""
+    for dim in given.dims:
+        twice = dim in given.indexes and not given.indexes[dim].is_unique
+        if twice and dim in runs.indexes and given.indexes[dim].equals(runs.indexes[dim]):
+            continue
+        if dim in given.indexes and dim in runs.indexes and not twice:
+            given = given.reindex({dim: runs.indexes[dim]})
+        elif twice or given.sizes[dim] != runs.sizes[dim]:
+            found = "labels that stand twice" if twice else f"{given.sizes[dim]} values"
+            msg = (
+                f"{owner}: the intensity {given.name!r} has {found} along {str(dim)!r}, of which "
+                f"the runs have {runs.sizes[dim]}"
+            )
+            raise ComponentError(msg)
     return given
 
 

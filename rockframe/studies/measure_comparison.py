@@ -16,7 +16,7 @@ from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.signals.arrays import Array
 from rockframe.studies.cloud import Cloud, cloud_of, read_least
-from rockframe.studies.fragility.trials import laid_out
+from rockframe.studies.fragility.trials import check_one_structure, laid_out
 from rockframe.studies.intensities import (
     PERIOD_OF,
     PeriodLike,
@@ -45,6 +45,7 @@ def compare_intensities(
     against: Sequence[str] | Covariates = (),
     least: Any = None,
     motions: MotionsLike | None = None,
+    pooled: Iterable[str] = (),
 ) -> xr.Dataset:
     """Compare intensity measures by how well each tells the response.
 
@@ -67,6 +68,8 @@ def compare_intensities(
         Response below which a run counts as one in which nothing moved; zero unless given.
     motions : GroundMotion, or sequence or mapping of them, optional
         The records, where neither the dataset nor this process has them.
+    pooled : iterable of str, optional
+        As for :func:`rockframe.cloud_analysis`.
 
     Returns
     -------
@@ -83,7 +86,8 @@ def compare_intensities(
     SchemaError
         Not the result of a sweep.
     StudyError
-        Too few runs are between rest and overturning for a line.
+        Too few runs are between rest and overturning for a line, or they are of several
+        structures that are not `pooled`.
 
     Notes
     -----
@@ -116,8 +120,14 @@ def compare_intensities(
     named, clouds, kept = list[str](), list[Cloud](), list[Generic]()
     if isinstance(measures, xr.DataArray):
         measures = [measures]
-    for given in several(measures, owner=_OWNER, name="measures", of="measures"):
-        one, period = _with_period(given)
+    listed = [
+        _with_period(one) for one in several(measures, owner=_OWNER, name="measures", of="measures")
+    ]
+    together = several(pooled, owner=_OWNER, name="pooled", of="names")
+    check_one_structure(
+        runs, together, [named_column(runs, one) for one, _ in listed], owner=_OWNER
+    )
+    for one, period in listed:
         measure = measure_in(runs, one, period, motions, owner=_OWNER)
         told = told_period(runs, [one], period, owner=_OWNER)
         cloud, those, _ = cloud_of(runs, measure, values, least=floor, owner=_OWNER)

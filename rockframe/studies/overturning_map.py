@@ -1,7 +1,7 @@
 """Which pulses overturn a block: a map over their amplitude and frequency."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, Final, Unpack
 
 import numpy as np
@@ -15,6 +15,7 @@ from rockframe.results.schema import SCHEMA, with_variables
 from rockframe.results.variables.studies import MOTION
 from rockframe.shared_arguments import takes
 from rockframe.signals.arrays import Array
+from rockframe.signals.motion import greatest
 from rockframe.simulation.system import System
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.lines import SCALE, SOURCE, VERDICT, Lines, read_rising, read_width
@@ -26,6 +27,8 @@ from rockframe.units import ACCELERATION, FREQUENCY, RatioLike, quantity
 _OWNER: Final = "overturning_map"
 _STANDS: Final = -1.0
 _MOST_IMPACTS: Final = 1000
+_SAME_PEAK: Final = 1e-6
+"""Relative difference up to which pulses of an amplitude have the same peak."""
 
 
 @takes(SweepArguments, overturning=Overturning.CONTINUE)
@@ -66,7 +69,8 @@ def overturning_map(
         ``frequency``: ``boundary_count``, and over ``boundary``
         too ``amplitude_below`` and ``amplitude_above`` [m s^-2], ``impacts_below`` and
         ``impacts_above``, NaN beyond the last one. On rigid ground also the coordinates
-        ``relative_peak_ground_acceleration`` and ``relative_pulse_frequency`` [1].
+        ``relative_pulse_frequency`` and, where all pulses of an amplitude have one peak,
+        ``relative_peak_ground_acceleration`` [1].
         :func:`rockframe.case` gives any case back.
 
     Raises
@@ -128,7 +132,7 @@ def overturning_map(
         "impacts_above": _without_stands(after),
     }
     found = with_variables(found, of_frequencies, over=(MOTION,))
-    found = found.assign_coords(_labels(system, levels, frequencies))
+    found = found.assign_coords(_labels(system, levels, frequencies, motions.values()))
     found = found.swap_dims({SCALE: "amplitude", MOTION: "frequency"})
     found.attrs |= {
         "title": "Overturning by pulses",
@@ -173,7 +177,9 @@ def _without_stands(counts: Array) -> Array:
     return np.where(counts == _STANDS, np.nan, counts)
 
 
-def _labels(system: System, levels: Array, frequencies: Array) -> dict[str, Any]:
+def _labels(
+    system: System, levels: Array, frequencies: Array, pulses: Iterable[GroundMotion]
+) -> dict[str, Any]:
     """Give the coordinates; on rigid ground also those without a dimension."""
     rows = [("amplitude", SCALE, levels), ("frequency", MOTION, frequencies)]
     setting = system.setting
@@ -181,10 +187,11 @@ def _labels(system: System, levels: Array, frequencies: Array) -> dict[str, Any]
         uplift = min(setting.uplift_accelerations)
         angular = 2.0 * math.pi * frequencies
         own = setting.body.frequency_at(system.options.gravity)
-        rows += [
-            ("relative_peak_ground_acceleration", SCALE, levels / uplift),
-            ("relative_pulse_frequency", MOTION, angular / own),
-        ]
+        rows.append(("relative_pulse_frequency", MOTION, angular / own))
+        # of an amplitude of one; that need not be the peak, as of less than a quarter of a sine
+        peaks = np.array([greatest(one.si.horizontal.pieces) for one in pulses])
+        if np.ptp(peaks) <= _SAME_PEAK * peaks.max():
+            rows.append(("relative_peak_ground_acceleration", SCALE, levels * peaks[0] / uplift))
     found = {name: (dim, values, SCHEMA[name].attributes()) for name, dim, values in rows}
     found["frequency"][2]["long_name"] = "cyclic frequency of the pulse"
     return found

@@ -172,11 +172,18 @@ def _frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> Sprea
     distribution, unit = parts[0], (parts[1] if len(parts) > 1 else "")
     middle = float(distribution.ppf(0.5))
     axis = _axis(scene, name, f"{middle!r} {unit}" if unit else middle, owner)
-    if unit and axis.unit != Unit.ONE:
+    if unit:
+        pure = axis.unit == Unit.ONE
         measure = Measure("a value", Unit(str(axis.unit)), f"1 {unit}")
-        size = to_si(f"1 {unit}", measure, owner=owner, name=name)
+        one = f"1 {unit}"
+        size = (
+            to_ratio(one, owner=owner, name=name)
+            if pure
+            else to_si(one, measure, owner=owner, name=name)
+        )
         if size != 1.0:
-            msg = f"{owner}: {name} needs a distribution in {axis.unit}, got one in {unit}"
+            wanted = "of pure ratios" if pure else f"in {axis.unit}"
+            msg = f"{owner}: {name} needs a distribution {wanted}, got one in {unit}"
             raise ComponentError(msg)
     return Spread(axis.name, str(axis.unit), distribution)
 

@@ -257,6 +257,28 @@ def test_measures_of_a_sine_pulse():
         assert found[name].item() == pytest.approx(reached[1] - reached[0], rel=1e-4)
 
 
+@pytest.mark.parametrize("cycles", [0.37, 0.61, 1.13])
+@pytest.mark.parametrize("level", [0.99, 0.9999, 0.99999])
+def test_a_level_is_exceeded_between_two_samples(cycles, level):
+    """About the peak of a sine, which is no sample here, for less than an interval."""
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz", cycles=cycles)
+    assert not (np.abs(pulse.si.horizontal.samples) == 1.0).any()
+    width = 0.5 - math.asin(level) / math.pi
+    found = rf.intensity_measures(pulse, threshold=(level, "m/s^2"))
+    more = 0.5 * math.floor(cycles / 0.5 - 0.5)  # to the last peak
+    assert found.bracketed_duration.item() == pytest.approx(more + width, abs=1e-9)
+    slender = rf.Block(width=(2 * level / 9.80665, "m"), height="2 m", mass="1 t")
+    uplift = rf.intensity_measures(pulse, block=slender).uplift_duration
+    assert uplift.item() == pytest.approx((1.0 + more / 0.5) * width, abs=1e-9)
+
+
+def test_a_second_that_reaches_the_level_between_two_samples_counts():
+    pulse = rf.GroundMotion.sine_pulse((0.025 * 9.80665 * 1.0001, "m/s^2"), "1 Hz", cycles=0.37)
+    found = rf.intensity_measures(pulse)
+    standard = found.standardized_cumulative_absolute_velocity.item()
+    assert standard == pytest.approx(found.cumulative_absolute_velocity.item(), rel=1e-12)
+
+
 @pytest.mark.parametrize(("step", "lost"), [(0.01, 0.046), (0.02, 0.175)])
 def test_a_coarse_record_keeps_its_short_periods_when_it_is_refined(step, lost):
     """A swell of 12 Hz, of which there are 8.3 and 4.2 samples per period."""

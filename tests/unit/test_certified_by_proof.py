@@ -1,5 +1,6 @@
 """A run that is certified by a proof, in its dataset, on the command line and in the report."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning
 from rockframe.simulation import proving
 
+PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
 SHAPE = np.sin(np.pi * np.linspace(0.0, 1.0, 101))
 
 
@@ -96,3 +98,18 @@ def test_the_report_and_the_command_say_it(system, tmp_path, capsys):
     scene.write_text(f'{parts}[run]\ncertify = "proved"\n')
     assert main(["run", str(scene), "--motion", str(motion)]) == 0
     assert "Proof: Proved: the block" in " ".join(capsys.readouterr().out.split())
+
+
+def test_the_sentence_encloses_the_time_of_overturning(system):
+    proof = rf.prove(system, pulse(3.6))
+    least, most = re.search(r"between (\S+) s and (\S+) s;", str(proof)).groups()
+    assert float(least) <= proof.earliest <= proof.latest <= float(most)
+    assert float(most) - float(least) < 1e-10
+
+
+@pytest.mark.parametrize("base", [rf.RigidGround(), PADS])
+def test_the_sentence_says_what_is_between_the_samples(base):
+    standing = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"), base)
+    assert "this record, joined by straight lines" in str(rf.prove(standing, pulse(1.0)))
+    closed = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    assert "this motion, the polynomials that runs take" in str(rf.prove(standing, closed))

@@ -161,6 +161,22 @@ def test_a_component_on_its_floor():
     assert rf.codes.asce_7_22(squat, spectral_acceleration=0.5).passed == {"tipping": True}
 
 
+def test_anchors_of_a_component_that_the_vertical_force_lifts_carry_that_too():
+    check = rf.codes.asce_7_22(CABINET, spectral_acceleration=5.0)
+    values = {name: check.value(name) for name in ("M_OT", "W_p", "F_v", "M_R, with F_v")}
+    net = 0.9 * values["W_p"] - values["F_v"]
+    assert net < 0.0 == values["M_R, with F_v"]
+    assert check.value("M_anchors") == pytest.approx(values["M_OT"] - 0.3 * net, rel=1e-12)
+
+
+@pytest.mark.parametrize(("side", "arm"), [("left", 0.4), ("right", 0.2)])
+def test_a_component_before_a_wall_tips_away_from_it(side, arm):
+    body = CABINET.replace(centre_of_mass=("0.9 m", "-0.1 m"))
+    system = rf.System(body, rf.RearWall(side=side))
+    check = rf.codes.asce_7_22(system, spectral_acceleration=1.0)
+    assert check.value("M_R") == pytest.approx(0.9 * check.value("W_p") * arm, rel=1e-12)
+
+
 def test_the_friction_of_a_ground_is_used_and_a_block_that_slides_is_no_mechanism():
     tiles = rf.System(CABINET, rf.RigidGround(friction=0.3))
     check = rf.codes.asce_7_22(tiles, spectral_acceleration=1.2)

@@ -128,6 +128,18 @@ def test_other_misuse_is_refused(tmp_path):
     system.to_opensees(PULSE.scaled(0.5), path)  # over its own
 
 
+def test_a_rotation_between_two_outputs_has_no_row(tmp_path):
+    """A run that overturns ends between two of them; OpenSees goes on to the next."""
+    system = rf.System(BLOCK, PADS, restraint="centre")
+    strong = PULSE.scaled(3.0)
+    given = written(system, strong, tmp_path, free_vibration="3 s")["GIVEN"]
+    run = system.simulate(strong, free_vibration="3 s", output_step="0.01 s", outputs=())
+    assert run.overturned
+    assert given["outputs"] == run.sizes["time"]
+    assert given["rotation"].size == run.sizes["time"] - 1
+    np.testing.assert_allclose(given["rotation"], run.rotation[:-1], rtol=1e-8, atol=1e-30)
+
+
 def differences(system, motion, tmp_path, **options):
     """Run the file; give by how much peak and history differ [%]."""
     path = system.to_opensees(motion, tmp_path / "model.py", **options)

@@ -433,6 +433,23 @@ def test_the_motion_that_a_result_does_not_hold_can_be_handed_in(tmp_path):
         rf.report(run, tmp_path / "x.html", motion=record.scaled(2.0))
 
 
+def test_a_run_without_a_motion_takes_none(tmp_path):
+    system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
+    run = system.simulate(duration="2 s", initial=rf.InitialState(rotation="5 deg"))
+    with pytest.raises(SchemaError, match=r"not those of the run \(none\)"):
+        rf.report(run, tmp_path / "report.html", motion=rf.GroundMotion.sine_pulse())
+
+
+def test_a_certificate_of_another_run_is_none(tmp_path):
+    """Of runs that were joined nobody knows the motions: another one has the same verdict."""
+    system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
+    pulses = [rf.GroundMotion.sine_pulse(f"{peak} m/s^2", "2 Hz") for peak in (3.0, 4.0)]
+    joined = rf.concat([system.simulate(one, outputs=None) for one in pulses], "run")
+    for place, words in enumerate(("Certificate: the verdict", "run again, it ends otherwise")):
+        path = tmp_path / f"{place}.html"
+        assert words in rf.report(joined.isel(run=place), path, motion=pulses[0]).read_text("utf-8")
+
+
 def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
     browser = which("chromium") or which("google-chrome")
     if browser is None:
@@ -453,3 +470,18 @@ def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
 def test_the_limits_are_those_of_the_manual():
     left_out = read("theory/validity.md").split("## Left out")[1].split("\n## ")[0]
     assert re.findall(r"^(\w.*)\n: ", left_out, re.MULTILINE) == [one.title for one in LIMITS]
+
+
+def test_a_case_that_was_picked_out_of_a_sweep_has_its_own_system(tmp_path):
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
+    runs = rf.sweep(system, pulse, width=["0.5 m", "0.62 m"], scale=[1.0, 1.5], progress=False)
+    one = runs.isel(width=1, scale=1, motion=0)
+    page = Page(rf.report(one, tmp_path / "case.html").read_text("utf-8"))
+    assert "0.62 m" in page.text
+    assert "0.5 m" not in page.text
+    assert "1.5 times sine pulse" in page.text
+    assert "Certificate" in page.text
+    with pytest.raises(SchemaError, match=r"sweep over width.*rf\.case\(dataset\)\.system"):
+        rf.System.from_dataset(one)
+    assert rf.System.from_dataset(runs) == system

@@ -19,7 +19,17 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.signals.arrays import Array
-from rockframe.units import DENSITY, INERTIA, LENGTH, MASS, POSITIVE, Quantity, QuantityLike, to_si
+from rockframe.units import (
+    DENSITY,
+    INERTIA,
+    LENGTH,
+    MASS,
+    POSITIVE,
+    Quantity,
+    QuantityLike,
+    check_own_unit,
+    to_si,
+)
 
 
 @dataclass(frozen=True)
@@ -78,6 +88,7 @@ def read_points(given: object, *, owner: str, name: str) -> Array:
         raise ComponentError(msg)
     each: list[Any] = list(given)
     if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
+        check_own_unit(each[0], each[1], owner=owner, name=name)
         return _array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), wanted)
     if isinstance(given, np.ndarray):
         msg = f"{wanted}; got {shown(given)}, bare numbers"

@@ -9,7 +9,7 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -50,9 +50,8 @@ def structures_of(
     runs: xr.Dataset, pooled: Sequence[str], given: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
-    axes = {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
-    own = [str(one.name) for one in given if isinstance(one, xr.DataArray)]
-    changed = [name for name in axes if name not in own and axes[name] != Changes.MOTION]
+    axes, own = _axes(runs), _own(given)
+    changed = _changed(axes, own)
     dims = [str(dim) for dim in runs["status"].dims]
     differing = [name for name in changed if name in runs.coords or name in dims]
     lost = [name for name in changed if name not in differing]
@@ -88,6 +87,57 @@ def structures_of(
         )
         raise ComponentError(msg)
     return found
+
+
+def check_one_structure(
+    runs: xr.Dataset, pooled: Sequence[str], given: Sequence[object], *, owner: str
+) -> None:
+    """Refuse runs of several structures, but for those that are taken for one."""
+    changed = _changed(_axes(runs), _own(given))
+    several = [
+        name
+        for name in changed
+        if name in runs.coords and len(pd.unique(runs[name].to_numpy().ravel())) > 1
+    ]
+    wrong = [one for one in pooled if one not in (*changed, CASE)]
+    if wrong:
+        msg = (
+            f"{owner}: pooled names {', '.join(map(shown, wrong))}; what differs in these runs "
+            f"beside motion and intensity: {', '.join(several) or 'nothing'}"
+        )
+        raise ComponentError(msg)
+    rest = [one for one in several if one not in pooled]
+    if CASE in pooled:  # stands for all columns of its table
+        rest = [one for one in rest if CASE not in runs[one].dims]
+    if rest:
+        pick = f"pick one, for example runs.isel({rest[0]}=0), or " * (rest[0] in runs.dims)
+        msg = (
+            f"{owner}: the runs are of several structures, by {', '.join(rest)}; {pick}take all of "
+            f"them for one, by pooled={tuple(rest)}"
+        )
+        raise StudyError(msg)
+
+
+def told_of_system(runs: xr.Dataset) -> dict[str, Any]:
+    """Give the attributes that tell of the system of runs, which a sweep may have changed."""
+    changed = any(name in runs.coords for name in _changed(_axes(runs), ()))
+    names = ("model",) if changed else ("model", "system_json")
+    return {name: runs.attrs[name] for name in names if name in runs.attrs}
+
+
+def _axes(runs: xr.Dataset) -> dict[str, str]:
+    """Give what each axis of a sweep changes."""
+    return {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
+
+
+def _own(given: Sequence[object]) -> list[str]:
+    """Give the names of intensities that are numbers of the runs."""
+    return [str(one.name) for one in given if isinstance(one, xr.DataArray)]
+
+
+def _changed(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:
+    """Give the axes along which structures differ."""
+    return [name for name in axes if name not in own and axes[name] != Changes.MOTION]
 
 
 def _check_motions(runs: xr.Dataset, foreign: Sequence[str], owner: str, *, named: bool) -> None:

@@ -171,6 +171,19 @@ def case(
     return SweepCase(system, motion, options)
 
 
+def system_of_case(dataset: xr.Dataset) -> System:
+    """Give the system of a sweep, with the values of those axes of which one was picked."""
+    values: dict[Axis, Any] = {}
+    for described in json.loads(dataset.attrs["axes_json"]):
+        if described["changes"] not in OF_SCENES:
+            continue
+        along = _along(dataset, described["name"])
+        if along.size == 1:
+            value = in_unit(along, described["unit"]).item()
+            values[Axis.from_dict(described, np.array([value]))] = value
+    return _system(_scene(None, cast("Mapping[str, Any]", dataset.attrs)), values)
+
+
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
     """Give the study that a dataset is of, if this process has made it."""
     return _studies.get(str(attributes.get("study_sha256")))
@@ -244,10 +257,14 @@ def _value(
     dataset: xr.Dataset, name: str, place: Mapping[str, int], unit: str | None = None
 ) -> Any:
     """Give the value of a coordinate in the case, also of one that has been picked out."""
+    return _value_of(in_unit(_along(dataset, name), unit), place)
+
+
+def _along(dataset: xr.Dataset, name: str) -> xr.DataArray:
     if name not in dataset.coords:
         msg = f"{_OWNER}: found a sweep without its coordinate {name!r}; expected it, or its case"
         raise SchemaError(msg)
-    return _value_of(in_unit(dataset[name], unit), place)
+    return dataset[name]
 
 
 def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:

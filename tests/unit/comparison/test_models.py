@@ -83,3 +83,12 @@ def test_a_tied_block_is_held_before_it_slides():
     assert list(ladder)[-2:] == [
         "rigid ground with restrainers", "rigid ground with restrainers, sliding",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("options", [{}, {"rotation": "small"}])
+def test_a_block_that_a_wall_holds_is_held_without_it(options):
+    """Without the wall its ground has friction, and it would slide."""
+    wall, ground = rf.RearWall(side="left"), rf.RigidGround(friction=0.3)
+    ladder = rf.model_ladder(rf.System(BLOCK, ground, wall, **options))
+    assert list(ladder)[-1].startswith("rigid ground and wall")
+    assert not any(model.setting.slides for model in ladder.values())

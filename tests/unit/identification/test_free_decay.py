@@ -193,8 +193,31 @@ def test_what_is_no_test_is_refused():
         {"peaks": [6.0, 5.0, 4.0]},
         {"peaks": ([6.0, 5.0, 4.0], "s")},
         {"measured": xr.DataArray(SWING, coords={"time": TIME}, dims="time")},
+        {"measured": ((TIME, "s"), (xr.DataArray(SWING, attrs={"units": "rad"}), "deg"))},
+        {"measured": ((xr.DataArray(TIME, attrs={"units": "s"}), "ms"), (SWING, "rad"))},
+        {"peaks": (xr.DataArray([0.1, 0.08, 0.07], attrs={"units": "rad"}), "deg")},
     ],
 )
 def test_arrays_need_units(given):
     with pytest.raises(UnitsError):
         rf.fit_free_decay(START, **given)
+
+
+@pytest.mark.parametrize("rotation", ["finite", "small"])
+@pytest.mark.parametrize("first", ["6 deg", "-6 deg", "-12 deg"])
+def test_peaks_of_an_eccentric_block_tell_of_both_sides(first, rotation):
+    """To the left it may lean beyond the angle at which it overturns to the right."""
+    block = BLOCK.replace(centre_of_mass=("0.6 m", "0.03 m"))
+    ground = rf.RigidGround(restitution=0.7 if first.startswith("-12") else 0.85)
+    start = rf.InitialState(rotation=first)
+    system = rf.System(block, ground, rotation=rotation)
+    run = system.simulate(duration="6 s", initial=start, output_step="2 ms")
+    assert not run.overturned
+    swings = swings_of(History(run.time.to_numpy(), run.rotation.to_numpy()), "test")
+    peaks = swings.peaks.rotation[:7]
+    found = rf.fit_free_decay(rf.System(block, rotation=rotation), peaks=(peaks, "rad"))
+    assert found.fitted_value.item() == pytest.approx(ground.restitution, abs=1e-3)
+    # on rigid ground the peaks alone tell it all but exactly, :eq:`eq-rigid-decay`
+    assert found.trial_count <= 4
+    with pytest.raises(ComponentError, match="without their signs do not tell the sides"):
+        rf.fit_free_decay(rf.System(block), peaks=(np.abs(peaks), "rad"))

@@ -3,7 +3,9 @@
 import pytest
 
 import rockframe as rf
-from rockframe.errors import SchemaError
+from rockframe.errors import SchemaError, StudyError
+from rockframe.plot._checks import system_of_run
+from rockframe.studies.sweeps import case as of_cases
 
 BLOCK = rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t")
 PULSE = rf.GroundMotion.sine_pulse("5 m/s^2", "1 Hz")
@@ -32,6 +34,23 @@ def test_a_case_plays_up_to_its_end(fallen):
     assert "animation of 13 frames" in repr(rf.plot.animation(fallen))
 
 
+def test_a_case_is_drawn_with_its_own_block():
+    wide = BLOCK.replace(width="1.2 m")
+    runs = rf.sweep(
+        rf.System(BLOCK), PULSE, width=["0.8 m", "1.2 m"], scale=[0.5, 1.0], outputs=[], **QUIET
+    )
+    for dataset, width in ((runs.isel(width=1, scale=0, motion=0), 1.2), (runs, 0.8)):
+        assert system_of_run(dataset, "state").parts.the_block.width == width
+    picked, alone = (
+        rf.plot.state(one, "0.2 s").get_xlim()
+        for one in (
+            runs.isel(width=1, scale=1, motion=0),
+            rf.System(wide).simulate(PULSE, accuracy="fast"),
+        )
+    )
+    assert picked == pytest.approx(alone, rel=1e-6)
+
+
 def test_a_case_without_a_result_is_refused(fallen):
     with pytest.raises(SchemaError, match="got a case without a result"):
         rf.plot.response(fallen.assign(relative_rotation=fallen.relative_rotation * float("nan")))
@@ -58,6 +77,22 @@ def test_reports_take_cases_and_what_was_made_of_sweeps(fallen, tmp_path):
     for name, one in given.items():
         rf.report(one, path, certify=False, overwrite=True)
         assert path.stat().st_size > 10_000, name
+
+
+def test_a_report_on_a_case_without_its_motion_tells_of_that_case_alone(tmp_path):
+    record = rf.GroundMotion.from_arrays(([0.0, 5.0, 5.0, -5.0, 0.0], "m/s^2"), "0.2 s", name="r")
+    runs = rf.sweep(rf.System(BLOCK), record, width=["0.8 m", "1.2 m"], scale=[0.1, 1.0], **QUIET)
+    of_cases._studies.clear()  # as in another process
+    case, path = runs.isel(width=1, scale=0, motion=0), tmp_path / "report.html"
+    text = rf.report(case, path).read_text("utf-8")
+    assert "Of 1 of the 4 cases of the sweep 0 overturned and 1 did not" in text
+    assert "0.8 m" not in text
+    assert "1.2 m" in text
+    text = rf.report(case, path, motion=record, certify=False).read_text("utf-8")
+    assert "1.2 m" in text
+    assert "0.1 times r" in text
+    with pytest.raises(StudyError, match="not among those given"):
+        rf.report(case, path, motion=PULSE)
 
 
 def test_a_fragility_needs_the_motions_of_the_runs():

@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 import pint
 import pytest
+import xarray as xr
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -371,3 +372,11 @@ def test_an_outline_needs_its_mass_once(given, words):
     with pytest.raises(ComponentError, match=words) as caught:
         rf.Block.from_outline((RECTANGLE, "m"), **given)
     assert str(caught.value).startswith("Block.from_outline")
+
+
+def test_points_that_have_a_unit_of_their_own_have_no_other():
+    points = xr.DataArray(np.array([[0, 0], [500, 0], [500, 2000], [0, 2000.0]]))
+    points.attrs["units"] = "mm"
+    assert rf.Block.from_outline(points, unit="mm", mass="1 t").si.width == pytest.approx(0.5)
+    with pytest.raises(UnitsError, match="points is in 'mm' itself, and 'm'"):
+        rf.Block.from_outline(points, unit="m", mass="1 t")

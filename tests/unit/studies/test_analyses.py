@@ -493,6 +493,15 @@ def test_bad_spreads_are_told_all_at_once():
         rf.probability_of_overturning(SYSTEM, pulse, spread={})
 
 
+def test_a_distribution_in_another_unit_is_refused():
+    pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1.5 Hz")
+    given = {"scale": (stats.uniform(50, 100), "%"), "width": (stats.uniform(40, 20), "cm")}
+    with pytest.raises(StudyError, match="scale needs a distribution of pure ratios, got one in %"):
+        rf.probability_of_overturning(SYSTEM, pulse, spread=given)
+    with pytest.raises(StudyError, match="width needs a distribution in m, got one in cm"):
+        rf.probability_of_overturning(SYSTEM, pulse, spread=given)
+
+
 def test_the_ranking_is_that_of_sobol_indices():
     """Y = [a + 0.5 b > 0] of normal a, b: the first-order indices by integration."""
     rng = np.random.default_rng(8)

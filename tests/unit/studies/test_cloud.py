@@ -224,3 +224,37 @@ def test_runs_that_slide_without_rocking_are_not_said_to_stay():
     runs = rf.sweep(rf.System(block, floor), pulses, outputs=None, progress=False)
     assert (runs.peak_slip > 1e-5).all()
     assert "0 overturned and 6 show no peak relative rotation" in rf.cloud_analysis(runs).verdict
+
+
+@pytest.fixture(scope="module")
+def two_widths():
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    motions = {f"m{k}": pulse.scaled(3.0 + 0.1 * k) for k in range(6)}
+    return rf.sweep(SYSTEM, motions, width=["0.5 m", "0.6 m"], accuracy="fast", progress=False)
+
+
+def test_several_structures_are_a_cloud_only_on_request(two_widths):
+    with pytest.raises(StudyError, match=r"several structures, by width; .*isel\(width=0\)"):
+        rf.cloud_analysis(two_widths, "PGA")
+    pooled = rf.cloud_analysis(two_widths, "PGA", pooled=["width"])
+    assert pooled.sizes["run"] == 12
+    assert pooled.attrs["pooled"] == "width"
+    assert rf.cloud_analysis(two_widths.isel(width=1), "PGA").sizes["run"] == 6
+    with pytest.raises(ComponentError, match=r"pooled names 'wdth'; .*intensity: width"):
+        rf.cloud_analysis(two_widths, "PGA", pooled=["wdth"])
+
+
+def test_cases_of_many_structures_are_pooled_by_their_table(two_widths):
+    columns = {"width": ["0.5 m"] * 3 + ["0.6 m"] * 3, "motion": [*two_widths.motion.values]}
+    motions = {
+        f"m{k}": rf.GroundMotion.sine_pulse(f"{3 + 0.1 * k} m/s^2", "1 Hz") for k in range(6)
+    }
+    runs = rf.sweep(SYSTEM, motions, cases=columns, accuracy="fast", progress=False)
+    with pytest.raises(StudyError, match=r"by width; take all of them for one"):
+        rf.cloud_analysis(runs, "PGA")
+    assert rf.cloud_analysis(runs, "PGA", pooled=["case"]).sizes["run"] == 6
+
+
+def test_a_cloud_of_a_changed_system_does_not_tell_of_the_one_before(two_widths):
+    assert "system_json" not in rf.cloud_analysis(two_widths.isel(width=1), "PGA").attrs
+    assert "system_json" in rf.cloud_analysis(two_widths.isel(width=1).drop_vars("width")).attrs

@@ -110,3 +110,12 @@ def test_what_cannot_be_is_refused(options, error, words):
         rf.fractile_curves(runs, **options)
     with pytest.raises(StudyError, match="expected motions, and one scale"):
         rf.fractile_curves(runs.isel(scale=0))
+
+
+def test_curves_of_a_changed_system_do_not_tell_of_the_one_before():
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    pulses = {f"{k}": rf.GroundMotion.sine_pulse(f"{3 + k} m/s^2", "1 Hz") for k in range(3)}
+    given = {"scale": [1.0, 1.5], "accuracy": "fast", "progress": False}
+    assert "system_json" in rf.fractile_curves(rf.sweep(system, pulses, **given)).attrs
+    runs = rf.sweep(system, pulses, width=["0.5 m", "0.6 m"], **given)
+    assert "system_json" not in rf.fractile_curves(runs.isel(width=1)).attrs

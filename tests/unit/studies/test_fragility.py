@@ -311,6 +311,21 @@ def test_a_fragility_over_two_measures_and_one_of_ones_own(runs):
         rf.fragility(runs, "magnitude")
 
 
+def test_numbers_of_ones_own_are_those_of_the_labels(runs):
+    measure = rf.intensity_measures(motions())
+    own = (measure.peak_ground_velocity * runs.scale).rename("mine").assign_attrs(units="m s^-1")
+    expected = rf.fragility(runs, own)
+    more = xr.concat([own, own.isel(motion=[0]).assign_coords(motion=["none"])], "motion")
+    for given in (own.isel(motion=slice(None, None, -1)), more.rename("mine")):
+        found = rf.fragility(runs, given)
+        np.testing.assert_array_equal(found.median_intensity, expected.median_intensity)
+    with pytest.raises(ComponentError, match="has 2 values along 'motion', of which"):
+        rf.fragility(runs, own.drop_vars("motion").isel(motion=slice(2)))
+    twice = own.assign_coords(motion=["seed 0"] * own.sizes["motion"])
+    with pytest.raises(ComponentError, match="labels that stand twice along 'motion'"):
+        rf.fragility(runs, twice)
+
+
 def test_files_hold_a_fragility(runs, tmp_path):
     for found in (rf.fragility(runs), rf.fragility(runs, ("PGA", "PGV"))):
         found.to_netcdf(tmp_path / "fragility.nc")

@@ -118,6 +118,29 @@ def test_hazard_in_other_forms_is_the_same(curve):
     assert rf.annual_rate(curve, array).annual_rate.item() == pytest.approx(one, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("unit", "size"), [("g", G), ("cm/s^2", 0.01), ("1", 1.0), ("m s^-2", 1.0)]
+)
+def test_numbers_of_ones_own_have_a_hazard_in_their_unit(unit, size):
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    motions = {f"m{k}": pulse.scaled(2.0 + 0.7 * k) for k in range(6)}
+    runs = rf.sweep(system, motions, free_vibration="3 s", accuracy="fast", progress=False)
+    own = xr.DataArray(2.0 + 0.7 * np.arange(6), dims="motion", name="mine") / size
+    found = rf.fragility(runs, own.assign_attrs(units=unit))
+    expected = rf.annual_rate(rf.fragility(runs, "PGA"), TABLE).annual_rate
+    values = VALUES * G / size
+    for given in (
+        {"intensity": (values, unit), "rate": RATES},
+        xr.DataArray(RATES, dims="a", coords={"a": ("a", values, {"units": unit})}),
+    ):
+        rate = rf.annual_rate(found, given).annual_rate
+        np.testing.assert_allclose(rate, expected, rtol=1e-9)
+    other = xr.DataArray(values, attrs={"units": "mm"})
+    with pytest.raises(UnitsError, match="is in 'mm' itself"):
+        rf.annual_rate(found, {"intensity": (other, unit), "rate": RATES})
+
+
 def test_each_structure_and_limit_state_has_its_rate():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = [

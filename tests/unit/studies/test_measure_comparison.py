@@ -9,7 +9,7 @@ import xarray as xr
 from scipy import stats
 
 import rockframe as rf
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, StudyError
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies.cloud import Cloud
 from rockframe.studies.measure_comparison import _dependence
@@ -145,3 +145,12 @@ def test_spectral_measures_are_told_apart_by_their_periods(runs):
 def test_what_cannot_be_is_refused(runs, options, words):
     with pytest.raises(ComponentError, match=words):
         rf.compare_intensities(runs, **options)
+
+
+def test_several_structures_are_compared_only_on_request():
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    motions = {f"m{k}": pulse.scaled(3.0 + 0.1 * k) for k in range(6)}
+    runs = rf.sweep(SYSTEM, motions, width=["0.5 m", "0.6 m"], accuracy="fast", progress=False)
+    with pytest.raises(StudyError, match="several structures, by width"):
+        rf.compare_intensities(runs, ["PGA", "PGV"])
+    assert rf.compare_intensities(runs, ["PGA"], pooled=["width"]).sizes["measure"] == 1
