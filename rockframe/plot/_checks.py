@@ -205,7 +205,7 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
         if "axes_json" in run.attrs:
-            return system_of_case(run)
+            return system_of_case(run, owner=f"rf.plot.{function}")
         return System.from_dict(json.loads(text))
 
 
