@@ -18,7 +18,7 @@ from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME, unit_behind
 from rockframe.studies.confidence import SHARE
-from rockframe.studies.sweeps.axes import in_unit
+from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
@@ -166,16 +166,10 @@ def check_runs(given: object, *, owner: str) -> xr.Dataset:
             "attributes"
         )
         raise SchemaError(msg)
-    # what a user has put into another unit, for a figure say
     if "scale" in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
         scales = in_unit(runs["scale"], Unit.ONE, owner=owner)
         runs = runs.assign_coords(scale=scales.variable)
-    other = [
-        name for name, values in runs.data_vars.items()
-        if name in SCHEMA and values.attrs.get("units") not in (None, SCHEMA[str(name)].unit)
-    ]  # fmt: skip
-    units = {name: SCHEMA[str(name)].unit for name in other}
-    return runs.assign({name: in_unit(runs[name], units[name], owner=owner) for name in other})
+    return in_units_of_schema(runs, owner=owner)
 
 
 def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:

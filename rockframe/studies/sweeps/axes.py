@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.units import (
     Measure,
@@ -217,6 +218,16 @@ def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArr
     found = np.reshape(products(np.ravel(labels).astype(float).tolist(), factor), labels.shape)
     attributes = {**labels.attrs, "units": unit}
     return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)
+
+
+def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
+    """Give variables in their units, where a user has put them into others, for a figure say."""
+    other = {
+        name: SCHEMA[str(name)].unit for name, values in dataset.data_vars.items()
+        if name in SCHEMA and values.attrs.get("units") not in (None, SCHEMA[str(name)].unit)
+    }  # fmt: skip
+    found = {name: in_unit(dataset[name], unit, owner=owner) for name, unit in other.items()}
+    return dataset.assign(found)
 
 
 def faults_of_values(name: str, values: Generic) -> list[str]:
