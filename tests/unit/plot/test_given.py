@@ -135,8 +135,9 @@ def test_a_history_in_another_unit_is_drawn_by_it():
     system = rf.System(rf.Block(width="0.6 m", height="2 m", mass="400 kg"))
     run = system.simulate(rf.GroundMotion.sine_pulse("-4 m/s^2", "1.5 Hz"), free_vibration="1 s")
     turned = run.assign(rotation=np.rad2deg(run.rotation).assign_attrs(units="deg"))
+    turned = turned.assign_coords(time=("time", 1000 * run.time.values, {"units": "ms"}))
     drawn = [
-        rf.plot.response(one, panels="rotation").figure.axes[0].lines[0].get_ydata()
+        rf.plot.response(one, panels="rotation").figure.axes[0].lines[0].get_xydata()
         for one in (turned, run)
     ]
     np.testing.assert_allclose(*drawn, rtol=1e-12, atol=1e-15)
