@@ -16,8 +16,9 @@ from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.shared_arguments import Argument, completed, with_raises
 from rockframe.simulation.system import System
+from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
 from rockframe.studies.sweeps.case import system_of_case
-from rockframe.units import POSITIVE, to_ratio
+from rockframe.units import POSITIVE, Unit, to_ratio
 from rockframe.units.shown import KINDS as SHOWN_KINDS
 from rockframe.units.shown import UnitsLike, reader_units
 
@@ -152,7 +153,9 @@ def checked_run(given: object, function: str) -> xr.Dataset:
 
     Histories of a case of a sweep go on behind that, as NaN, as long as those of other cases.
     """
-    given = _checked(given, function, RUN)
+    owner = f"rf.plot.{function}"
+    given = in_units_of_schema(_checked(given, function, RUN), owner=owner)
+    given = given.assign_coords(time=in_unit(given["time"], Unit.SECOND, owner=owner).variable)
     for name in (*RUN.known, *RUN.needed):
         if given[name].dtype.kind not in "fiub":
             raise _got(function, f"one whose {name!r} holds no numbers")
@@ -205,7 +208,7 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
         if "axes_json" in run.attrs:
-            return system_of_case(run)
+            return system_of_case(run, owner=f"rf.plot.{function}")
         return System.from_dict(json.loads(text))
 
 

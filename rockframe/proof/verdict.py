@@ -10,6 +10,8 @@ OVERTURNS: Final = "overturns"
 UNDECIDED: Final = "undecided"
 _DIGITS: Final = 12
 """Of times in sentences, which are rounded outwards."""
+_APART: Final = 0.01
+"""Of the time in which a rotation near overturning grows e-fold, up to which an instant is told."""
 
 
 class Tolerances(NamedTuple):
@@ -94,8 +96,8 @@ class Proof:
             return self.verdict == OVERTURNS
         return self.verdict == SAFE or self.earliest > end
 
-    def objections(self, overturned: bool | None, end: float) -> list[str]:
-        """Say where a run up to a time ends otherwise, or too early."""
+    def objections(self, overturned: bool | None, end: float, frequency: float) -> list[str]:
+        """Say where a run up to a time ends otherwise, too early, or overturns at another one."""
         if overturned is None or not self.decided:
             return []
         if not self.agrees(overturned, end) and not self.earliest <= end <= self.latest:
@@ -103,6 +105,10 @@ class Proof:
             return [f"the run is wrong, or the proof is: the block {ends} in the run. {self}"]
         if self.verdict == OVERTURNS and not overturned:
             return [f"the block is proved to overturn after the end of the run. {self}"]
+        apart = max(self.earliest - end, end - self.latest)
+        if overturned and self.verdict == OVERTURNS and apart * frequency > _APART:
+            words = f"the block overturns in the run at {end:.6g} s, which is off by {apart:.3g} s"
+            return [f"{words}: take a greater accuracy. {self}"]
         return []
 
     def values(self, overturned: bool | None, end: float) -> dict[str, float | bool]:

@@ -78,7 +78,7 @@ def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
     except (SchemaError, StudyError):
         if motions is not None:
             raise
-    own = system_of_case(dataset).assembly.json
+    own = system_of_case(dataset, owner="report").assembly.json
     found = dataset.assign_attrs(system_json=own, verdict=cases_verdict(dataset))
     del found.attrs["axes_json"]  # it is no part of a sweep any more
     return found

@@ -130,6 +130,7 @@ def concat(
     kept = [name for name in parts[0].data_vars if name in common]
     rows = [part[kept].drop_encoding() for part in parts]
     rows = [row if dim in row.dims else row.expand_dims(dim) for row in rows]
+    _refuse_unlike_units(rows)
     try:
         joined = xr.concat(
             _with_motions(_with_all_places(rows, dim), dim),
@@ -169,6 +170,16 @@ def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
     if 0 < having < len(runs):
         msg = f"{_OWNER}: {having} of {len(runs)} datasets have the dimension {dim!r}; expected "
         raise SchemaError(msg + "all or none")
+
+
+def _refuse_unlike_units(rows: Sequence[xr.Dataset]) -> None:
+    """Refuse numbers in several units, of which xarray would make one row without a unit."""
+    for name in set[Any].union(*(set(row.variables) for row in rows)):
+        units = dict.fromkeys(row[name].attrs.get("units") for row in rows if name in row.variables)
+        if len(units) > 1:
+            found = " and ".join("no unit" if one is None else str(one) for one in units)
+            msg = f"{_OWNER}: {name} is in {found}; put it into one unit in all of them"
+            raise SchemaError(msg)
 
 
 def _with_all_places(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:

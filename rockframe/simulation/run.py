@@ -194,9 +194,9 @@ def run(
         shown = response.summary()
         values |= proof.values(shown.overturned, summary.end_time)
         attributes |= proof.attributes()
-        cautions += [
-            (SolverWarning, text) for text in proof.objections(shown.overturned, summary.end_time)
-        ]
+        frequency = system.setting.body.frequency_at(system.setting.gravity)
+        objections = proof.objections(shown.overturned, summary.end_time, frequency)
+        cautions += [(SolverWarning, text) for text in objections]
     # said of every run: what only some datasets say, xarray.concat would take for all
     attributes["cautions"] = NONE
     for kind, text in cautions:

@@ -143,7 +143,7 @@ def fractile_curves(
     return found.assign_attrs(
         {**told_of_system(runs), "intensity": name, **told,
          "response": response if label is None else f"{response} {label}",
-         "verdict": _sentence(lines, along, responses, measure)}
+         "verdict": _sentence(lines, low, high, measure)}
     )  # fmt: skip
 
 
@@ -303,11 +303,20 @@ def _levels(given: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
     return found
 
 
-def _sentence(lines: Sequence[_Line], along: Array, responses: Array, measure: xr.DataArray) -> str:
-    """Tell how many motions overturned, and by which intensity half of them."""
-    fell = np.isinf(responses)
+def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataArray) -> str:
+    """Tell how many motions overturned, and at which least intensity half of them do."""
+    falls = [
+        [(max(first, low), last) for first, last in one.falls if last >= low and first <= high]
+        for one in lines
+    ]
     unit = unit_behind(measure.attrs)
-    text = f"Of {len(lines)} motions {int(fell.any(axis=1).sum())} overturned at some "
-    text += f"{str(measure.name).replace('_', ' ')} from {along[0]:.4g} to {along[-1]:.4g}{unit}"
-    half = np.flatnonzero(fell.sum(axis=0) >= 0.5 * len(lines))
-    return f"{text}, half of them at {along[half[0]]:.4g}{unit}." if len(half) else f"{text}."
+    motions = f"{len(lines)} motion{'s' if len(lines) > 1 else ''}"
+    text = f"Of {motions} {sum(map(bool, falls))} overturned at some "
+    text += f"{str(measure.name).replace('_', ' ')} from {low:.4g} to {high:.4g}{unit}"
+    # the number of those that overturn rises where one begins to, and nowhere else
+    for begin in sorted(first for each in falls for first, _ in each):
+        fell = sum(any(first <= begin <= last for first, last in each) for each in falls)
+        if fell >= 0.5 * len(lines):
+            of_them = "half of them" if len(lines) > 1 else "first"
+            return f"{text}, {of_them} at {begin:.4g}{unit}."
+    return f"{text}."

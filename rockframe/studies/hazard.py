@@ -208,8 +208,8 @@ def _intensities(given: object, name: str, unit: str) -> Array:
     own_measure = unit == Unit.ONE or unit not in map(str, Unit)
     if len(pair) == 2 and pair[1] == unit and own_measure:
         check_own_unit(pair[0], unit, owner=_OWNER, name="intensity")
-        return np.asarray(free_values(list(pair[0]), "intensity")[0], dtype=np.float64)
-    values, own = free_values(given, "intensity")
+        return np.asarray(free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
+    values, own = free_values(given, "intensity", owner=_OWNER)
     if own != unit:
         msg = f"{_OWNER}: {name} is in {unit}, got {shown(given)}"
         raise UnitsError(msg)

@@ -236,7 +236,7 @@ def intensity_in(
     if intensity.name in runs.coords and intensity.period is None:
         return runs[intensity.name]
     before = motions_of_runs(runs, motions, owner=owner)
-    factor = _factors(runs, before)
+    factor = _factors(runs, before, owner)
     measured = of_motions(runs, before, intensity.of)
     found = measured * np.abs(factor) ** POWERS[intensity.name]
     return found.assign_attrs(intensity.attributes()).rename(intensity.name)
@@ -276,13 +276,13 @@ def of_motions(
     return xr.DataArray(values.reshape(names.shape), dims=names.dims, coords=names.coords)
 
 
-def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion]) -> xr.DataArray:
+def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion], owner: str) -> xr.DataArray:
     """Give the factor by which the motion of each case was multiplied."""
     axes = [one for one in json.loads(runs.attrs["axes_json"]) if one["changes"] == MOTION]
     if not axes:
         return xr.DataArray(1.0)
     name = axes[0]["name"]
-    labels = in_unit(runs[name], axes[0]["unit"])
+    labels = in_unit(runs[name], axes[0]["unit"], owner=owner)
     if name == "scale":
         return labels
 

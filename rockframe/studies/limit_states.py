@@ -18,6 +18,7 @@ from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME, unit_behind
 from rockframe.studies.confidence import SHARE
+from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
 from rockframe.units import NOT_NEGATIVE, Condition, Measure, Unit, to_ratio, to_si
 
 UPLIFT: Final = "uplift"
@@ -154,7 +155,7 @@ def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
 
 
 def check_runs(given: object, *, owner: str) -> xr.Dataset:
-    """Refuse what is not the result of a sweep."""
+    """Refuse what is not the result of a sweep; give its variables in the units of the schema."""
     runs = checked_dataset(given, owner=owner)
     missing = [name for name in _NEEDED if name not in runs]
     if missing or not set(_TOLD) <= set(runs.attrs):
@@ -165,7 +166,10 @@ def check_runs(given: object, *, owner: str) -> xr.Dataset:
             "attributes"
         )
         raise SchemaError(msg)
-    return runs
+    if "scale" in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
+        scales = in_unit(runs["scale"], Unit.ONE, owner=owner)
+        runs = runs.assign_coords(scale=scales.variable)
+    return in_units_of_schema(runs, owner=owner)
 
 
 def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:

@@ -56,7 +56,8 @@ def earthquake_sequences(
         Earthquakes in their order, such as a main shock and its aftershocks. Where their time
         steps differ, intervals are divided, down to a 64th; the motions stay what they are.
     pause : str or Quantity, optional
-        Still ground after each of them [s].
+        Still ground after each of them [s], in whole time steps of its sequence, and at least one
+        between two motions; what it comes to is in the result.
 
     Returns
     -------
@@ -64,7 +65,7 @@ def earthquake_sequences(
         The scalars of runs over ``sequence`` and ``earthquake``: what has happened from the
         start of the sequence until the pause after that earthquake is over, NaN beyond the last
         one; and over ``sequence`` ``overturning_earthquake``, the number of the one that
-        overturned the block, 0 if none did.
+        overturned the block, 0 if none did, and ``pause`` [s].
 
     Raises
     ------
@@ -110,11 +111,12 @@ def earthquake_sequences(
         "sequence": np.array(list(joined), dtype=object),
         NUMBER: np.arange(1, longest + 1),
         "overturning_earthquake": np.where(fell.any(axis=1), fell.argmax(axis=1) + 1, 0),
+        "pause": np.array([_pause(each[0], rest) for each in named.values()]),
     }
     found = with_variables(arranged, labels)
     of_all = "1 sequence" if len(joined) == 1 else f"all {len(joined)} sequences"
     verdict = f"Of {of_all} {int(fell.any(axis=1).sum())} overturned."
-    return found.assign_attrs(title="Earthquakes in sequence", pause=rest, verdict=verdict)
+    return found.assign_attrs(title="Earthquakes in sequence", verdict=verdict)
 
 
 def _sequences(given: object) -> dict[str, list[GroundMotion]]:
@@ -171,15 +173,26 @@ def _of_one_step(motions: list[GroundMotion]) -> list[GroundMotion]:
 
 def _joined(first: GroundMotion, second: GroundMotion | None, rest: float) -> GroundMotion:
     """Join motions, or put still ground after one."""
-    still = max(1, round(rest / first.si.time_step)) if second is not None or rest > 0.0 else 0
-    if still == 0:
+    if second is None and rest == 0.0:
         return first
+    still = _steps(first, rest)
     both = [one for one in (first, second) if one is not None]
     horizontal = _after([one.si.horizontal for one in both], still)
     vertical = None
     if any(one.si.vertical is not None for one in both):
         vertical = _after([one.si.vertical or _level(one.si.horizontal) for one in both], still)
     return GroundMotion(Motion(horizontal, vertical), name=", then ".join(one.name for one in both))
+
+
+def _steps(motion: GroundMotion, rest: float) -> int:
+    """Give the number of time steps in which the ground stands still."""
+    return max(1, round(rest / motion.si.time_step))
+
+
+def _pause(motion: GroundMotion, rest: float) -> float:
+    """Give the pause in a sequence; as it was asked where that is whole steps."""
+    found = _steps(motion, rest) * motion.si.time_step
+    return rest if math.isclose(found, rest, rel_tol=_SAME_STEP) else found
 
 
 def _level(horizontal: Signal) -> Signal:

@@ -61,6 +61,24 @@ def test_a_contradiction_is_told_loudly(system, monkeypatch):
     assert "the run is wrong" in run.attrs["cautions"]
 
 
+@pytest.mark.parametrize(("base", "peak"), [(rf.RigidGround(), 3.6), (PADS, 4.5)])
+@pytest.mark.parametrize("away", [-0.3, 0.3])
+def test_another_instant_of_overturning_is_told(base, peak, away, monkeypatch):
+    """The verdict is proved, but the run is of another course."""
+    given = proving.proof_of
+
+    def later(*arguments, **options):
+        proof = given(*arguments, **options)
+        return replace(proof, earliest=proof.earliest + away, latest=proof.latest + away)
+
+    standing = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"), base)
+    monkeypatch.setattr("rockframe.simulation.run.proof_of", later)
+    with pytest.warns(SolverWarning, match=r"in the run at .* s, which is off by 0\.3 s"):
+        run = standing.simulate(pulse(peak), free_vibration="10 s", certify="proved", outputs=None)
+    assert bool(run.verdict_proved)
+    assert "off by 0.3 s" in run.attrs["cautions"]
+
+
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("accuracy", ["fast", "standard", "reference"])
 def test_an_instant_of_overturning_a_little_off_is_no_contradiction(system, accuracy):

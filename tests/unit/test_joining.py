@@ -299,3 +299,15 @@ def test_sweeps_of_which_one_has_gaps_are_that_of_all(tmp_path):
         assert joined[name].attrs.get("flag_values", flags).dtype == flags.dtype
     assert np.isnan(joined.overturned[2, 0])  # a stack of one body is refused
     assert rf.case(joined, count=3, scene=drums).system == drums(3)
+
+
+def test_numbers_in_several_units_are_not_joined():
+    """They would stand in one row, without a unit."""
+    one, two = run(STANDS), run(FALLS)
+    turned = one.assign(peak_rotation=np.rad2deg(one.peak_rotation).assign_attrs(units="deg"))
+    with pytest.raises(SchemaError, match="concat: peak_rotation is in deg and rad; put it into"):
+        rf.concat([turned, two], "run")
+    wide = [rf.sweep(SYSTEM, PULSE, width=[width], progress=False) for width in ("0.8 m", "0.9 m")]
+    wide[0] = wide[0].assign_coords(width=("width", [800.0], {"units": "mm"}))
+    with pytest.raises(SchemaError, match="concat: width is in mm and m; put it into one unit"):
+        rf.concat(wide, "width")

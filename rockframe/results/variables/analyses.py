@@ -284,6 +284,7 @@ SEQUENCES: Final = (
     *rows_over(("earthquake",), earthquake=("number of the earthquake in its sequence", int)),
     *rows_over(
         ("sequence",),
+        pause="still ground between two earthquakes [s]",
         overturning_earthquake=(
             "number of the earthquake that overturned the block, 0 if none did",
             int,

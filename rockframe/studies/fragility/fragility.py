@@ -261,7 +261,7 @@ def _of_counts(
         raise ComponentError(msg)
     intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
     which = Intensity.read(measure, period, owner=_OWNER)
-    values, unit = free_values(intensity, "intensity")
+    values, unit = free_values(intensity, "intensity", owner=_OWNER)
     if unit != which.attributes()["units"]:
         msg = f"{_OWNER}: {which.name} is in {which.attributes()['units']}, got {shown(intensity)}"
         raise UnitsError(msg)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.units import (
     Measure,
@@ -73,24 +74,24 @@ class Axis:
         return cls(values=values, **{**described, "changes": Changes(described["changes"])})
 
 
-def numbers_of(given: object, measure: Measure, name: str) -> Generic:
+def numbers_of(given: object, measure: Measure, name: str, *, owner: str = OWNER) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
     given = _beside_own_unit(given)
     if measure.unit == Unit.ONE:
         if (pair := _with_unit(given)) is not None:
-            check_own_unit(*pair, owner=OWNER, name=name)
-            factor = to_ratio(f"1 {pair[1]}", owner=OWNER, name="unit")
+            check_own_unit(*pair, owner=owner, name=name)
+            factor = to_ratio(f"1 {pair[1]}", owner=owner, name="unit")
             if np.ma.isMaskedArray(pair[0]) and np.ma.getmaskarray(pair[0]).any():
-                msg = f"{OWNER}: {name} has masked values; fill them in first"
+                msg = f"{owner}: {name} has masked values; fill them in first"
                 raise ComponentError(msg)
             given = products([float(one) for one in items_of(pair[0])], factor)
         found = items_of(_as_python(given))
         if not all(type(one) is float and math.isfinite(one) for one in found):
             example = measure.example
-            found = [to_ratio(one, owner=OWNER, name=name, example=example) for one in found]
+            found = [to_ratio(one, owner=owner, name=name, example=example) for one in found]
     else:
-        _refuse_bare(given, measure, name)
-        found = to_si_values(_as_python(given), measure, owner=OWNER, name=name)
+        _refuse_bare(given, measure, name, owner)
+        found = to_si_values(_as_python(given), measure, owner=owner, name=name)
     return np.array(found, dtype=np.float64)
 
 
@@ -100,13 +101,13 @@ def _beside_own_unit(given: object) -> object:
     return given if own in (None, "", str(Unit.ONE)) else (given, own)
 
 
-def _refuse_bare(given: object, measure: Measure, name: str) -> None:
+def _refuse_bare(given: object, measure: Measure, name: str, owner: str) -> None:
     """Refuse numbers without a unit, and say how several are given one."""
     first = next(iter(items_of(given)), None)
     if isinstance(given, tuple) or not isinstance(first, Real | np.number):
         return
     msg = (
-        f"{OWNER}: {name} needs {measure.needed}, got bare numbers; write for example "
+        f"{owner}: {name} needs {measure.needed}, got bare numbers; write for example "
         f"{name}=(values, {str(measure.unit)!r}) or {name}=[{measure.example!r}, ...]"
     )
     raise UnitsError(msg)
@@ -117,25 +118,26 @@ def words_of(given: object, read: Callable[[object], object]) -> Generic:
     return np.array([str(read(word)) for word in items_of(given)])
 
 
-def free_values(given: object, name: str) -> tuple[Generic, str | None]:
+def free_values(given: object, name: str, *, owner: str = OWNER) -> tuple[Generic, str | None]:
     """Read values for an argument of which only the user knows what it is."""
     given = _beside_own_unit(given)
     unit = _unit_in(given)
     if unit is not None:
-        measure = _measure_of(unit, name)
-        return numbers_of(given, measure, name), str(measure.unit)
+        measure = _measure_of(unit, name, owner)
+        return numbers_of(given, measure, name, owner=owner), str(measure.unit)
     items = _as_python(items_of(given))
     array = np.array(items)
     if array.ndim != 1 or array.dtype.kind not in "iufbU":
-        msg = f"{OWNER}: {name} needs numbers, words or quantities in a row, got {shown(given)}"
+        msg = f"{owner}: {name} needs numbers, words or quantities in a row, got {shown(given)}"
         raise ComponentError(msg)
     if array.dtype.kind == "U" and not all(isinstance(item, str) for item in items):
-        msg = f"{OWNER}: {name} needs values of one sort, got {shown(given)}"
+        msg = f"{owner}: {name} needs values of one sort, got {shown(given)}"
         raise ComponentError(msg)
     if array.dtype.kind in "iu":
         return array.astype(np.int64), str(Unit.ONE)
     if array.dtype.kind == "f":
-        return numbers_of(items, Measure("a number", Unit.ONE, "2"), name), str(Unit.ONE)
+        measure = Measure("a number", Unit.ONE, "2")
+        return numbers_of(items, measure, name, owner=owner), str(Unit.ONE)
     return array, None
 
 
@@ -166,18 +168,18 @@ def _unit_in(given: object) -> str | None:
     return None
 
 
-def _measure_of(unit: str, name: str) -> Measure:
+def _measure_of(unit: str, name: str, owner: str) -> Measure:
     """Find the kind of quantity that has a unit."""
     for known in Unit:
         measure = Measure("a quantity", known, f"1 {known}")
         with suppress(UnitsError, ComponentError):
             if known == Unit.ONE:
-                to_ratio(f"1 {unit}", owner=OWNER, name=name)
+                to_ratio(f"1 {unit}", owner=owner, name=name)
             else:
-                to_si(f"1 {unit}", measure, owner=OWNER, name=name)
+                to_si(f"1 {unit}", measure, owner=owner, name=name)
             return measure
     known = ", ".join(str(one) for one in Unit)
-    msg = f"{OWNER}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
+    msg = f"{owner}: {name} has the unit {shown(unit)}; expected that of a quantity in {known}"
     raise UnitsError(msg)
 
 
@@ -202,20 +204,30 @@ def _as_python(given: Any) -> Any:
     return given
 
 
-def in_unit(labels: xr.DataArray, unit: str | None) -> xr.DataArray:
+def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:
     """Give the labels of an axis in its unit, where a user has put them into another one."""
     own = labels.attrs.get("units")
     if unit is None or own in (None, unit):
         return labels
     name = str(labels.name)
     if unit == Unit.ONE:
-        factor = to_ratio(f"1 {own}", owner=OWNER, name=name)
+        factor = to_ratio(f"1 {own}", owner=owner, name=name)
     else:
         measure = Measure("a value", Unit(unit), f"1 {unit}")
-        factor = to_si(f"1 {own}", measure, owner=OWNER, name=name)
+        factor = to_si(f"1 {own}", measure, owner=owner, name=name)
     found = np.reshape(products(np.ravel(labels).astype(float).tolist(), factor), labels.shape)
     attributes = {**labels.attrs, "units": unit}
     return xr.DataArray(found, labels.coords, labels.dims, labels.name, attributes)
+
+
+def in_units_of_schema(dataset: xr.Dataset, *, owner: str) -> xr.Dataset:
+    """Give variables in their units, where a user has put them into others, for a figure say."""
+    other = {
+        name: SCHEMA[str(name)].unit for name, values in dataset.data_vars.items()
+        if name in SCHEMA and values.attrs.get("units") not in (None, SCHEMA[str(name)].unit)
+    }  # fmt: skip
+    found = {name: in_unit(dataset[name], unit, owner=owner) for name, unit in other.items()}
+    return dataset.assign(found)
 
 
 def faults_of_values(name: str, values: Generic) -> list[str]:

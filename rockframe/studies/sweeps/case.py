@@ -153,7 +153,7 @@ def case(
     name = _value(dataset, MOTION, place)
     motion = unscaled_motions(attributes, [name], motions, kept)[name]
     system = _system(
-        _scene(None if scene is None else scene_of(scene), attributes),
+        _scene(None if scene is None else scene_of(scene), attributes, _OWNER),
         {axis: one for axis, one in values.items() if axis.changes in OF_SCENES},
     )
     motion = system.motion if motion is None else motion
@@ -171,17 +171,17 @@ def case(
     return SweepCase(system, motion, options)
 
 
-def system_of_case(dataset: xr.Dataset) -> System:
+def system_of_case(dataset: xr.Dataset, *, owner: str) -> System:
     """Give the system of a sweep, with the values of those axes of which one was picked."""
     values: dict[Axis, Any] = {}
     for described in json.loads(dataset.attrs["axes_json"]):
         if described["changes"] not in OF_SCENES:
             continue
-        along = _along(dataset, described["name"])
+        along = _along(dataset, described["name"], owner)
         if along.size == 1:
-            value = in_unit(along, described["unit"]).item()
+            value = in_unit(along, described["unit"], owner=owner).item()
             values[Axis.from_dict(described, np.array([value]))] = value
-    return _system(_scene(None, cast("Mapping[str, Any]", dataset.attrs)), values)
+    return _system(_scene(None, cast("Mapping[str, Any]", dataset.attrs), owner), values)
 
 
 def remembered(attributes: Mapping[str, Any]) -> Study | None:
@@ -232,7 +232,7 @@ def _position_of(labels: xr.DataArray, name: str, wanted: Any, unit: str | None)
                 number = float(wanted)
         else:
             own = Unit(labels.attrs["units"] if unit is None else unit)
-            values = np.atleast_1d(in_unit(labels, own).to_numpy())
+            values = np.atleast_1d(in_unit(labels, own, owner=_OWNER).to_numpy())
             if own == Unit.ONE:
                 number = to_ratio(wanted, owner=_OWNER, name=name)
             else:
@@ -257,12 +257,12 @@ def _value(
     dataset: xr.Dataset, name: str, place: Mapping[str, int], unit: str | None = None
 ) -> Any:
     """Give the value of a coordinate in the case, also of one that has been picked out."""
-    return _value_of(in_unit(_along(dataset, name), unit), place)
+    return _value_of(in_unit(_along(dataset, name, _OWNER), unit, owner=_OWNER), place)
 
 
-def _along(dataset: xr.Dataset, name: str) -> xr.DataArray:
+def _along(dataset: xr.Dataset, name: str, owner: str) -> xr.DataArray:
     if name not in dataset.coords:
-        msg = f"{_OWNER}: found a sweep without its coordinate {name!r}; expected it, or its case"
+        msg = f"{owner}: found a sweep without its coordinate {name!r}; expected it, or its case"
         raise SchemaError(msg)
     return dataset[name]
 
@@ -271,7 +271,7 @@ def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:
     return along.isel({dim: place[str(dim)] for dim in along.dims}).item()
 
 
-def _scene(given: SweptScene | None, attributes: Mapping[str, Any]) -> SweptScene:
+def _scene(given: SweptScene | None, attributes: Mapping[str, Any], owner: str) -> SweptScene:
     if "system_json" in attributes:
         system = System.from_dict(json.loads(attributes["system_json"]))
         return SystemScene(system.assembly)
@@ -279,7 +279,7 @@ def _scene(given: SweptScene | None, attributes: Mapping[str, Any]) -> SweptScen
         return given
     if (known := remembered(attributes)) is not None:
         return known.scene
-    msg = f"{_OWNER}: the scene was the function {attributes['function']}; give it as scene="
+    msg = f"{owner}: the scene was the function {attributes['function']}; give it as scene="
     raise StudyError(msg)
 
 

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -127,3 +128,16 @@ def test_one_run_is_drawn_whole(made):
         rf.plot.response(made["run"].drop_vars(["uplift_angle", "contact_state"]))
     with pytest.raises(SchemaError, match=r"rf\.plot\.tradeoff needs .* lacks 'history_error'"):
         rf.plot.tradeoff(made["rungs"].drop_vars("history_error"))
+
+
+def test_a_history_in_another_unit_is_drawn_by_it():
+    """The rotation over the overturning angle took degrees for radians."""
+    system = rf.System(rf.Block(width="0.6 m", height="2 m", mass="400 kg"))
+    run = system.simulate(rf.GroundMotion.sine_pulse("-4 m/s^2", "1.5 Hz"), free_vibration="1 s")
+    turned = run.assign(rotation=np.rad2deg(run.rotation).assign_attrs(units="deg"))
+    turned = turned.assign_coords(time=("time", 1000 * run.time.values, {"units": "ms"}))
+    drawn = [
+        rf.plot.response(one, panels="rotation").figure.axes[0].lines[0].get_xydata()
+        for one in (turned, run)
+    ]
+    np.testing.assert_allclose(*drawn, rtol=1e-12, atol=1e-15)

@@ -681,3 +681,15 @@ def test_spectra_name_what_is_no_block():
     pulse = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
     with pytest.raises(rf.errors.ComponentError, match="got a RockingFrame"):
         rf.rocking_spectrum(rf.System(frame), pulse, periods=["4 s"])
+
+
+def test_a_sequence_tells_the_pause_that_it_made():
+    """Pauses are whole time steps, and of each sequence its own."""
+    fine = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "4 ms")
+    coarse = rf.GroundMotion.from_arrays((np.zeros(50), "m/s^2"), "10 ms")
+    given = {"coarse": [coarse, coarse], "fine": [fine, fine]}
+    found = rf.earthquake_sequences(SYSTEM, given, pause="4 ms", **QUIET)
+    assert found.pause.dims == ("sequence",)
+    assert found.pause.attrs["units"] == "s"
+    np.testing.assert_allclose(found.pause, [0.01, 0.004], rtol=1e-12)
+    assert "pause" not in found.attrs

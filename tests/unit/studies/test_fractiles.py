@@ -119,3 +119,26 @@ def test_curves_of_a_changed_system_do_not_tell_of_the_one_before():
     assert "system_json" in rf.fractile_curves(rf.sweep(system, pulses, **given)).attrs
     runs = rf.sweep(system, pulses, width=["0.5 m", "0.6 m"], **given)
     assert "system_json" not in rf.fractile_curves(runs.isel(width=1)).attrs
+
+
+def test_the_verdict_tells_the_capacity_and_not_the_next_point_of_the_curve():
+    """The least intensity at which half of the motions overturn is that of a run."""
+    rows = [[0.1, 0.2, 0.3, 1.0, 1.0], [0.2, 0.3, 0.6, 1.0, 1.0], [0.1, 0.1, 0.1, 0.1, 0.1]]
+    fell = np.array([[0, 0, 0, 1, 1], [0, 0, 0, 1, 1], [0, 0, 0, 0, 0]], dtype=bool)
+    runs = made(rows, fell).assign_coords(scale=[0.5, 1.0, 1.5, 1.9991, 2.5])
+    verdict = rf.fractile_curves(runs).attrs["verdict"]
+    assert verdict.endswith(
+        "Of 3 motions 2 overturned at some scale from 0.5 to 2.5, half of them at 1.999."
+    )
+    alone = rf.fractile_curves(runs.isel(motion=[0])).attrs["verdict"]
+    assert alone == "Of 1 motion 1 overturned at some scale from 0.5 to 2.5, first at 1.999."
+
+
+def test_a_range_of_overturning_between_two_points_of_the_curve_counts():
+    """One that is narrower than the distance of the points at which curves are given."""
+    runs = rf.incremental_dynamic_analysis(
+        SYSTEM, rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz"), scale=[0.5, 1, 1.5, 2, 50],
+        free_vibration="5 s", progress=False,
+    )  # fmt: skip
+    capacity = float(runs.capacity_scale.sel(limit_state="overturning").squeeze())
+    assert f"first at {capacity:.4g}" in rf.fractile_curves(runs).attrs["verdict"]

@@ -194,3 +194,11 @@ def test_what_is_no_hazard_is_refused(curve, given, error, words):
 def test_what_is_no_fragility_over_one_measure_is_refused(curve):
     with pytest.raises(SchemaError, match="found no fragility"):
         rf.annual_rate(curve.drop_vars("exceedance_probability"), TABLE)
+
+
+def test_refusals_of_intensities_are_signed_by_what_was_called(curve):
+    for wrong in ([1 + 2j], ([0.1, 0.2], "bananas"), [[0.1, 0.2]]):
+        with pytest.raises((ComponentError, UnitsError), match=r"^annual_rate: "):
+            rf.annual_rate(curve, TABLE | {"intensity": wrong})
+        with pytest.raises((ComponentError, UnitsError), match=r"^fragility: "):
+            rf.fragility(COUNTS | {"intensity": wrong}, "PGA")

@@ -193,3 +193,41 @@ def test_a_block_that_comes_back_from_beyond_the_angle_exceeds_what_it_reached()
         assert exceeds(found, state).item() == exceeded
         least = np.inf if limit == "overturning" else 1.0
         assert (demands(found, state).item() >= least) == bool(exceeded)
+
+
+def test_responses_that_were_put_into_another_unit_are_read_in_it():
+    """Such as for a figure: limit states, levels and measures go by the unit that they have."""
+    motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}
+    block = rf.Block(width="0.6 m", height="2 m", mass="400 kg")
+    runs = rf.sweep(rf.System(block), motions, scale=[2, 4, 6], **HOW)
+    turned = runs.assign(
+        peak_rotation=np.rad2deg(runs.peak_rotation).assign_attrs(units="deg"),
+        peak_relative_rotation=(100 * runs.peak_relative_rotation).assign_attrs(units="percent"),
+    )
+    for ask in (
+        lambda given: rf.fragility(given, "PGA", limits=[("peak_rotation", "5 deg"), 0.3]),
+        lambda given: rf.fractile_curves(given, "PGA", "peak_rotation", levels=([2, 4], "deg")),
+        lambda given: rf.fractile_curves(given, "PGA"),
+        lambda given: rf.cloud_analysis(
+            given.isel(scale=1), "PGA", response="peak_rotation", limits=["5 deg"]
+        ),
+        lambda given: rf.compare_intensities(given.isel(scale=1), ["PGA", "PGV"]),
+    ):
+        xr.testing.assert_allclose(ask(turned), ask(runs), rtol=1e-12)
+    wrong = runs.assign(peak_rotation=runs.peak_rotation.assign_attrs(units="m"))
+    with pytest.raises(UnitsError, match=r"^fragility: peak_rotation"):
+        rf.fragility(wrong, "PGA", limits=[("peak_rotation", "5 deg")])
+
+
+def test_capacities_go_by_scales_in_another_unit():
+    """Those of a dynamic analysis are multiples of the motion, whatever its scales are in."""
+    motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}
+    block = rf.Block(width="0.6 m", height="2 m", mass="400 kg")
+    runs = rf.incremental_dynamic_analysis(rf.System(block), motions, scale=[2, 4, 6, 8], **HOW)
+    turned = runs.assign_coords(scale=("scale", 100 * runs.scale.values, {"units": "percent"}))
+    for ask in (
+        lambda given: rf.fragility(given, "PGA", trials="capacities").median_intensity,
+        lambda given: rf.fractile_curves(given, "PGA").response_fractile,
+        lambda given: rf.fractile_curves(given).response_fractile,
+    ):
+        xr.testing.assert_allclose(ask(turned), ask(runs), rtol=1e-12)
