@@ -216,6 +216,51 @@ class TestMechanics:
             assert response[name].values[-1] > 1e-3
         assert float(response.energy_residual) <= 1e-8
 
+    @pytest.mark.parametrize("rotation", [-0.24, -0.1, 0.003, 0.02, 0.05, 0.2])
+    def test_statics_of_a_stack_follow_pads_that_yield(self, pads, rotation):
+        """Where bilinear pads have stored least of what it takes to press them from rest."""
+        system = rf.System(BLOCK, pads, CAP, SOIL, coupling="coupled")
+        g, weight = 9.80665, 9.80665e4
+        stiffness = 0.5e4 * (15 * math.sqrt(3 * g / (4 * math.hypot(0.5, 2.0)))) ** 2
+        strength, hardening = 0.6 * weight, 0.1
+        settlement, of_cap_too = 0.5 * weight / stiffness, 1.4 * weight / 20e6
+
+        def pressed(height):
+            down, at_yield = max(0.0, -height), strength / stiffness
+            beyond = max(0.0, down - at_yield)
+            return 0.5 * stiffness * (down**2 - (1.0 - hardening) * beyond**2)
+
+        def of_soil(left, right):  # energy of a bed whose ends are at heights
+            places = (np.arange(4000) + 0.5) / 4000
+            down = np.maximum(0.0, -(left + (right - left) * places))
+            return 0.5 * 20e6 * np.mean(down**2)
+
+        def energy(held, cap, sunk, press):
+            turned = held - cap
+            normal = 2.0 * math.cos(turned) - press + settlement
+            ends = [-press + side * 0.5 * math.sin(turned) for side in (1.0, -1.0)]
+            down = sunk - of_cap_too
+            across = 2.0 * math.sin(turned)  # both pads bear, so that its middle is held
+            rise = (0.5 + normal) * math.cos(cap) - across * math.sin(cap) - down
+            of_cap = 4e3 * g * (0.25 * math.cos(cap) - down)
+            bed = of_soil(0.5 * math.sin(cap) - sunk, -0.5 * math.sin(cap) - sunk)
+            return weight * rise + of_cap + bed + sum(pressed(one) for one in ends)
+
+        def least(held):
+            sizes = np.array([1e-3, 1e-3, 1e-2])
+            found = np.array([held / 50.0 / 1e-3, 1.0, 1.0])
+            for method in ("Nelder-Mead", "BFGS", "Nelder-Mead"):
+                close = {"xatol": 1e-9, "fatol": 1e-9, "maxiter": 4000}
+                found = minimize(
+                    lambda x: energy(held, *(x * sizes)), found, method=method,
+                    options={"gtol": 1e-6} if method == "BFGS" else close,
+                ).x  # fmt: skip
+            return energy(held, *(found * sizes))
+
+        moment = (least(rotation + 1e-4) - least(rotation - 1e-4)) / 2e-4
+        held = system.moment_rotation(f"{rotation} rad").restoring_moment.item()
+        assert held == pytest.approx(moment, rel=1e-4)
+
     @every_scene
     def test_a_mirrored_motion_gives_mirrored_histories(self, pads, scene):
         """Bit for bit on pads alone; the moments of soil are rounded otherwise on either side."""
@@ -597,51 +642,6 @@ class TestRegistration:
         )
         lift = 0.1 * 1e4 * 9.80665 * 2 * 0.5 * math.sin(rotation)
         assert tied - pads == pytest.approx(lift, rel=1e-9)
-
-    @pytest.mark.parametrize("rotation", [-0.24, -0.1, 0.003, 0.02, 0.05, 0.2])
-    def test_statics_of_a_stack_follow_pads_that_yield(self, pads, rotation):
-        """Where bilinear pads have stored least of what it takes to press them from rest."""
-        system = rf.System(BLOCK, pads, CAP, SOIL, coupling="coupled")
-        g, weight = 9.80665, 9.80665e4
-        stiffness = 0.5e4 * (15 * math.sqrt(3 * g / (4 * math.hypot(0.5, 2.0)))) ** 2
-        strength, hardening = 0.6 * weight, 0.1
-        settlement, of_cap_too = 0.5 * weight / stiffness, 1.4 * weight / 20e6
-
-        def pressed(height):
-            down, at_yield = max(0.0, -height), strength / stiffness
-            beyond = max(0.0, down - at_yield)
-            return 0.5 * stiffness * (down**2 - (1.0 - hardening) * beyond**2)
-
-        def of_soil(left, right):  # energy of a bed whose ends are at heights
-            places = (np.arange(4000) + 0.5) / 4000
-            down = np.maximum(0.0, -(left + (right - left) * places))
-            return 0.5 * 20e6 * np.mean(down**2)
-
-        def energy(held, cap, sunk, press):
-            turned = held - cap
-            normal = 2.0 * math.cos(turned) - press + settlement
-            ends = [-press + side * 0.5 * math.sin(turned) for side in (1.0, -1.0)]
-            down = sunk - of_cap_too
-            across = 2.0 * math.sin(turned)  # both pads bear, so that its middle is held
-            rise = (0.5 + normal) * math.cos(cap) - across * math.sin(cap) - down
-            of_cap = 4e3 * g * (0.25 * math.cos(cap) - down)
-            bed = of_soil(0.5 * math.sin(cap) - sunk, -0.5 * math.sin(cap) - sunk)
-            return weight * rise + of_cap + bed + sum(pressed(one) for one in ends)
-
-        def least(held):
-            sizes = np.array([1e-3, 1e-3, 1e-2])
-            found = np.array([held / 50.0 / 1e-3, 1.0, 1.0])
-            for method in ("Nelder-Mead", "BFGS", "Nelder-Mead"):
-                close = {"xatol": 1e-9, "fatol": 1e-9, "maxiter": 4000}
-                found = minimize(
-                    lambda x: energy(held, *(x * sizes)), found, method=method,
-                    options={"gtol": 1e-6} if method == "BFGS" else close,
-                ).x  # fmt: skip
-            return energy(held, *(found * sizes))
-
-        moment = (least(rotation + 1e-4) - least(rotation - 1e-4)) / 2e-4
-        held = system.moment_rotation(f"{rotation} rad").restoring_moment.item()
-        assert held == pytest.approx(moment, rel=1e-4)
 
     def test_a_stiffer_tie_holds_more(self):
         rf.register(TiedPads)

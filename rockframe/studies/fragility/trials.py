@@ -68,13 +68,7 @@ def structures_of(
     if CASE in pooled and CASE in dims:  # stands for all columns of its table
         columns = [name for name in known if CASE in runs[name].dims]
         pooled = [*(one for one in pooled if one != CASE), *columns]
-    wrong = [one for one in pooled if one not in (*changed, *foreign)]
-    if wrong:
-        msg = (
-            f"{owner}: pooled names {', '.join(map(shown, wrong))}; what differs in these runs "
-            f"beside motion and intensity: {', '.join(known) or 'nothing'}"
-        )
-        raise ComponentError(msg)
+    _check_pooled(pooled, (*changed, *foreign), known, owner)
     kept = [name for name in known if name not in pooled]
     alone = [name for name in differing if not runs[name].dims]
     found = _grouped(runs, dims, kept, alone)
@@ -99,13 +93,7 @@ def check_one_structure(
         for name in changed
         if name in runs.coords and len(pd.unique(runs[name].to_numpy().ravel())) > 1
     ]
-    wrong = [one for one in pooled if one not in (*changed, CASE)]
-    if wrong:
-        msg = (
-            f"{owner}: pooled names {', '.join(map(shown, wrong))}; what differs in these runs "
-            f"beside motion and intensity: {', '.join(several) or 'nothing'}"
-        )
-        raise ComponentError(msg)
+    _check_pooled(pooled, (*changed, CASE), several, owner)
     rest = [one for one in several if one not in pooled]
     if CASE in pooled:  # stands for all columns of its table
         rest = [one for one in rest if CASE not in runs[one].dims]
@@ -123,6 +111,19 @@ def told_of_system(runs: xr.Dataset) -> dict[str, Any]:
     changed = any(name in runs.coords for name in _changed(_axes(runs), ()))
     names = ("model",) if changed else ("model", "system_json")
     return {name: runs.attrs[name] for name in names if name in runs.attrs}
+
+
+def _check_pooled(
+    pooled: Sequence[str], known: Sequence[str], differing: Sequence[str], owner: str
+) -> None:
+    """Refuse axes to pool that are none."""
+    wrong = [one for one in pooled if one not in known]
+    if wrong:
+        msg = (
+            f"{owner}: pooled names {', '.join(map(shown, wrong))}; what differs in these runs "
+            f"beside motion and intensity: {', '.join(differing) or 'nothing'}"
+        )
+        raise ComponentError(msg)
 
 
 def _axes(runs: xr.Dataset) -> dict[str, str]:
