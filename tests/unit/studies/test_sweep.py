@@ -1,6 +1,7 @@
 """Running a sweep: cases that fail, histories, who runs it, interrupts, and cases alone."""
 
 import itertools
+import json
 import logging
 import os
 import signal
@@ -34,6 +35,7 @@ from rockframe.simulation.soundness import STILL_MOVING
 from rockframe.solve.workspace import Status
 from rockframe.studies.sweeps import case as of_cases
 from rockframe.studies.sweeps import labelling
+from rockframe.studies.sweeps.axes import OF_SCENES, Changes
 
 BLOCK = rf.Block(width="0.8 m", height="3.6 m", mass="4 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
@@ -457,3 +459,28 @@ def test_axes_of_the_initial_state_begin_runs_where_they_say(monkeypatch):
         rf.sweep(system, initial_rotation=["40 deg"], duration="1 s", accuracy="fast")
     with pytest.raises(StudyError, match="initial_rotation needs an angle"):
         rf.sweep(system, initial_rotation=[0.1], duration="1 s")
+
+
+@pytest.mark.parametrize(
+    ("axis", "changes"),
+    [
+        ({"width": ["0.8 m", "1 m"]}, Changes.PART),
+        ({"gravity": ["9.81 m/s^2", "1.62 m/s^2"]}, Changes.OPTION),
+        ({"scale": [0.5, 1.0]}, Changes.MOTION),
+        ({"initial_rotation": ["0 rad", "0.01 rad"]}, Changes.START),
+    ],
+)
+def test_a_part_of_a_sweep_tells_no_system_that_is_another_ones(axis, changes):
+    """Axes that change the system leave the one that was swept in the attributes."""
+    runs = rf.sweep(SYSTEM, PULSE, **axis, **FAST)
+    (name,) = axis
+    kinds = {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
+    assert kinds[name] == changes
+    assert rf.System.from_dataset(runs) == SYSTEM
+    picked = runs.isel({name: 1, "motion": 0})
+    if changes not in OF_SCENES:
+        assert rf.System.from_dataset(picked) == SYSTEM
+        return
+    with pytest.raises(SchemaError, match=f"part of a sweep over {name}, .*rf.case"):
+        rf.System.from_dataset(picked)
+    assert rf.case(picked).system != SYSTEM
