@@ -84,10 +84,10 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    left_out = {"benchmarks"} if config.option.markexpr else {"benchmarks", "long"}
+    left_out = {"benchmarks"} if config.option.markexpr else {"benchmarks", "long", "wide"}
     # a file, folder or test that is named is run with all that it holds
     if any(Path(argument).resolve() != _ROOT for argument in config.args):
-        left_out.discard("long")
+        left_out -= {"long", "wide"}
     kept, others = [], []
     for item in items:
         item.add_marker(getattr(pytest.mark, item.path.relative_to(_ROOT).parts[0]))

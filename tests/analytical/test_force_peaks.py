@@ -90,6 +90,7 @@ def test_the_table_of_steps_grows(monkeypatch):
     assert grown.drop_attrs().identical(whole.drop_attrs())
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("base", [PADS, SOIL], ids=["pads", "bed"])
 def test_peaks_are_not_those_of_friction_that_stops_a_new_held_point(base):
     """A base that never slips has the forces of one that is held, whatever its friction."""

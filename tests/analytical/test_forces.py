@@ -154,6 +154,7 @@ ON_PADS = {
 }
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("where", ON_PADS)
 def test_the_moment_of_the_base_is_that_of_its_pads(where):
     """Held in the middle, the horizontal reaction has no lever about it."""

@@ -52,6 +52,7 @@ def half_sine(seconds=1.0, up=0.0, step=0.005):
     return rf.GroundMotion.from_arrays((across, "m/s^2"), f"{step} s", **vertical)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(("h_b", "radius", "seconds", "up", "off", "low", "high"), CASES)
 def test_both_sides_of_a_critical_scale_are_proved_and_runs_agree(
     h_b, radius, seconds, up, off, low, high

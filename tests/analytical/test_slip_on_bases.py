@@ -287,6 +287,7 @@ def test_a_corner_of_a_squat_body_keeps_nothing_of_its_speed_on_pads():
     assert abs(found.rotation[-1]) < 1e-3
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(
     ("number", "ends"),
     [(733, "0.76 s"), (379, "1.88 s"), (1318, "1.74 s"), (358, "2.05 s")],

@@ -47,6 +47,7 @@ def apart(one, other, name="rotation"):
 # firm soil -----------------------------------------------------------------------------------
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("rotation", ["finite", "small"])
 @pytest.mark.parametrize("rule", RULES)
 def test_on_firm_soil_the_stack_moves_as_a_block_on_pads(rule, rotation):

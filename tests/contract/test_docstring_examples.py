@@ -49,6 +49,7 @@ def examples_in(name):
     return [one for one in doctest.DocTestFinder().find(module) if one.examples]
 
 
+@pytest.mark.wide
 def test_examples_in_docstrings():
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
     told: list[str] = []

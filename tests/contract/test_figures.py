@@ -176,6 +176,7 @@ def test_all_figures_are_here_and_take_the_three():
         )
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
 def test_units_are_those_of_the_reader(name, given):
     draw, kinds = getattr(rf.plot, name), DRAWN[name][1]
@@ -197,6 +198,7 @@ def test_units_are_those_of_the_reader(name, given):
         draw(given(name), units={"force": "mm"})
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("name", sorted(set(DRAWN) - {"player"}))
 def test_figures_are_drawn_where_they_are_told_to(name, given):
     draw, what = getattr(rf.plot, name), given(name)
@@ -248,6 +250,7 @@ SENTENCE = (
 )
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("width", [3.0, 3.4, 4.0, 4.6, 5.0, 5.6, 6.0, 7.0])
 @pytest.mark.parametrize("size", [8.0, 10.0, 14.0])
 def test_titles_never_break_inside_a_unit(given, width, size):

@@ -85,6 +85,7 @@ CHECKS = (
 )
 
 
+@pytest.mark.wide
 def test_every_file(subtests, scene, motion_name, response, tmp_path):
     before = response.copy(deep=True)
     known = {

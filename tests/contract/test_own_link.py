@@ -75,6 +75,7 @@ def test_the_page_names_files_that_are_there():
     assert "rockframe.dynamics" not in FILE.read_text()
 
 
+@pytest.mark.wide
 def test_links_of_several_laws_are_in_one_scene(example):
     rope, tie = example.Rope(**POINTS, reach="1 m", name="rope"), rf.Restrainer(**POINTS)
     load = rf.Load(at=("0 m", "3 m"), vertical="2 kN")

@@ -25,30 +25,12 @@ PAGES = [
 ]
 SNIPPET = re.compile(r"```(python|console|toml)\n(.*?)```(?:\n+```text\n(.*?)```)?", re.DOTALL)
 FILE = re.compile(r"# (\S+\.toml)\n")
-LONG = (
-    "analyses",
-    "clouds_and_hazard",
-    "command_line",
-    "dynamic_analysis",
-    "fragility",
-    "model_and_accuracy",
-    "plots",
-    "proved_verdicts",
-    "stacks",
-    "statue",
-    "suites",
-    "tradeoff",
-)
-"""Pages that take more than a second."""
 RECORDS = {"record.AT2": "NIS090.AT2", "TCU128-N.AT2": "PEERSMD_CHICHI_TCU128-N.AT2"}
 
 
+@pytest.mark.wide
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-@pytest.mark.parametrize(
-    "page",
-    [pytest.param(page, marks=[pytest.mark.long] * (page.stem in LONG)) for page in PAGES],
-    ids=[page.name for page in PAGES],
-)
+@pytest.mark.parametrize("page", PAGES, ids=[page.name for page in PAGES])
 def test_snippets_run_from_first_to_last(page, tmp_path, monkeypatch, capsys, request):
     if page.stem != "reports":  # of one page figures of reports are drawn
         request.getfixturevalue("no_pictures")

@@ -212,6 +212,7 @@ QUICK = ("stiff wall", "frame", "tendon")
 """Scenes of which even these take little."""
 
 
+@pytest.mark.wide
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize(
     ("name", "capability"),

@@ -66,6 +66,7 @@ def compare(kind, numbers):
             assert all(apart <= most[name] for name, apart in found.items()), (kind, number, found)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("kind", DRAWN)
 def test_a_scene_of_another_size_moves_alike(kind):
     compare(kind, range(FEW))

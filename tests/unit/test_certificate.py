@@ -569,6 +569,7 @@ def test_sub_steps_that_just_do_for_the_run_are_certified():
     assert "larger or smaller" in run.attrs["certificate"]
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(
     "parts",
     [

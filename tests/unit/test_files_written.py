@@ -136,6 +136,7 @@ def write_others():
     Path("all.toml").write_text(STUDY.replace("record.AT2", "kept/*.*"))
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("words", REFUSED)
 def test_no_command_replaces_what_is_read_or_of_another_kind(words, folder, capsys):
     write_others()

@@ -174,6 +174,7 @@ SLIDING = {
 }  # fmt: skip
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("name", SLIDING)
 def test_what_slid_is_said_first_of_runs_and_sweeps(name, tmp_path):
     system = rf.System(*SLIDING[name])

@@ -208,6 +208,7 @@ def test_more_links_than_can_be_numbered_are_refused():
         _ = rf.System(column, *[tie] * 8).simulate(duration="0.1 s")
 
 
+@pytest.mark.wide
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(
     ("number", "ends"),
@@ -239,6 +240,7 @@ def test_changes_of_contact_come_to_an_end(number, ends):
     assert int(found.status) == Status.COMPLETED
 
 
+@pytest.mark.wide
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_a_slip_does_not_begin_against_its_force():
     """A drum, nearly weightless, would slip and stick in turn: it tilts as it begins to slip."""

@@ -56,6 +56,7 @@ def test_a_case_without_a_result_is_refused(fallen):
         rf.plot.response(fallen.assign(relative_rotation=fallen.relative_rotation * float("nan")))
 
 
+@pytest.mark.wide
 def test_cases_of_stacks_lack_what_is_drawn_of_their_bodies():
     stone = rf.RigidGround()
     system = rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[stone]), stone)

@@ -213,6 +213,7 @@ def test_moments_and_phases_are_those_of_system_and_run(runs):
     assert phase.get_ylabel() == "rate of the rotation [° s$^{-1}$]"
 
 
+@pytest.mark.wide
 def test_moments_of_the_highest_body_stand_over_its_rotation_on_the_one_below():
     stack = rf.Stack(BLOCK, rf.Block(width="1 m", height="0.8 m", mass="2 t"), interfaces=[PADS])
     run = rf.System(stack, PADS).simulate(PULSE, outputs=("base_overturning_moment",))

@@ -109,6 +109,7 @@ def test_traces_and_strips_are_those_of_the_run():
     plt.close(panels.figure)
 
 
+@pytest.mark.wide
 def test_the_slips_of_all_bodies_that_slide_are_traced():
     stone = rf.RigidGround(friction=0.2)
     stack = rf.Stack(

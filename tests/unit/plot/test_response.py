@@ -39,6 +39,7 @@ def test_a_part_of_the_time_has_the_mean_colour_of_its_states():
     np.testing.assert_allclose(mixed_colours(state, 1), [np.mean(expected, axis=0)], atol=1e-12)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("dpi", [60, 100, 300])
 def test_what_is_narrower_than_a_pixel_is_mixed(dpi):
     run = rf.System(BLOCK).simulate(PULSE, duration="40 s", output_step="1 ms")

@@ -152,6 +152,7 @@ def test_the_tails_keep_their_digits():
     assert np.isfinite(log_likelihood(far, np.array([[-300.0], [40.0]]))).all()
 
 
+@pytest.mark.wide
 def test_bands_hold_as_often_as_they_say():
     """Clusters of dependent trials: bands that take them for independent are too narrow."""
     rng = np.random.default_rng(11)

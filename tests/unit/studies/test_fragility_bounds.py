@@ -184,6 +184,7 @@ def held(samples, dispersion, bands):
     return shares, float(fitted.sum())
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize("motions", [10, 20])
 def test_bounds_by_sandwich_hold_as_often_as_is_said(motions):
     rng, samples = np.random.default_rng(8), []

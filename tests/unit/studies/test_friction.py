@@ -72,6 +72,7 @@ def test_cases_of_a_sweep_say_what_single_runs_say(base):
     assert rf.table(runs).would_slide.sum() == slide
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(not COMPILED, reason="lanes are compiled")
 @pytest.mark.parametrize("accuracy", ["fast", "screen"])
 def test_cases_with_a_limit_leave_the_lanes_and_the_others_stay(monkeypatch, accuracy):

@@ -88,6 +88,7 @@ def test_lanes_give_what_single_runs_give(monkeypatch, parts, options):
     check_scene(monkeypatch, "fast", parts, options)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(
     ("parts", "options"),
     [

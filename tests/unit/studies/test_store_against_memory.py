@@ -115,6 +115,7 @@ def test_every_analysis_that_has_a_store_is_here():
     assert having == set(ANALYSES)
 
 
+@pytest.mark.wide
 @pytest.mark.parametrize(
     "run", [pytest.param(run, id=f"{name} {k}") for name, several in ANALYSES.items()
             for k, run in enumerate(several)],
