@@ -326,6 +326,8 @@ def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Slidi
             " Friction needed: more than any, where the base holds without pressing "
             f"({when:.4g} s); more than 1 for {lasted:.3g} s in all."
         )
+    if most == 0.0:
+        return ""
     level = "more than 1" if most > 2.0 else "more than half of it"
     return f" Friction needed: {most:.3g}, {level} for {lasted:.3g} s in all."
 

@@ -323,7 +323,10 @@ def test_a_verdict_tells_the_friction_that_it_needed():
     lasted = response.peak_friction_demand_duration.item()
     told = f"Friction needed: {needed:.3g}, more than half of it for {lasted:.3g} s in all."
     assert response.attrs["verdict"].endswith(told)
-    assert "Friction" not in SCENES["rigid ground"].simulate(PULSE, outputs=None).attrs["verdict"]
+    at_rest = SCENES["rigid ground"].simulate(PULSE.scaled(0.0))
+    assert at_rest.peak_friction_demand == 0.0
+    for other in (at_rest, SCENES["rigid ground"].simulate(PULSE, outputs=None)):
+        assert "Friction" not in other.attrs["verdict"]
     assert "friction to rock, at least b/h    0.25\n" in rf.System(BLOCK).describe()
 
 
