@@ -1,7 +1,8 @@
 """From a model, a start and a ground motion to a trajectory."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -30,7 +31,7 @@ from rockframe.dynamics.protocol import (
 from rockframe.signals import Motion
 from rockframe.solve import workspace as at
 from rockframe.solve.accuracy import Accuracy, substeps_of
-from rockframe.solve.bookkeeping import ON_SAMPLE, ROUNDING
+from rockframe.solve.bookkeeping import ROUNDING
 from rockframe.solve.driver import advance
 from rockframe.solve.equations import (
     BoundEquations,
@@ -39,6 +40,7 @@ from rockframe.solve.equations import (
     runs_as_python,
     steps_as_machine_code,
 )
+from rockframe.solve.histories import Histories
 from rockframe.solve.schemes import STAGES
 from rockframe.solve.trajectory import Events, Steps, Trajectory, run_counts, steps_of
 from rockframe.solve.workspace import (
@@ -48,7 +50,6 @@ from rockframe.solve.workspace import (
     NO_STEPS,
     TERMS,
     EventTable,
-    Output,
     Pieces,
     Progress,
     Status,
@@ -223,6 +224,89 @@ def _steps_at_once(equations: BoundEquations) -> int:
     return STEPS_CALLING_BACK if steps_as_machine_code(equations) else STEPS_AT_ONCE
 
 
+class InPython:
+    """How long a run takes in plain Python, as long as its steps are not there as machine code."""
+
+    def __init__(self, duration: float, interval: float, over_its_own: float) -> None:
+        self.taken = 0.0  # so far [s]
+        self._rest = 0.0  # what it may still take [s]
+        self._duration, self._interval = duration, interval
+        self._over_its_own = over_its_own  # the rest and what follows, over the rest
+
+    @contextmanager
+    def counted(self, equations: BoundEquations, clock: Vector) -> Generator[None]:
+        """Count what some steps take, and estimate the rest from how far they come."""
+        began = seconds_as_python()
+        with still_taking(self._rest):
+            yield
+        self._rest = 0.0
+        if not steps_as_machine_code(equations):
+            self.taken += seconds_as_python() - began
+            if self.taken > TELLING:
+                parts = self._duration / max(float(clock[at.TIME]), self._interval)
+                self._rest = self.taken * (parts - 1.0) * self._over_its_own
+
+
+class Tables:
+    """Tables of events and, in a number of intervals of the motion, of steps, which grow."""
+
+    def __init__(
+        self, run: Begun, model: ContactModel, intervals: float | None, *, exact: bool
+    ) -> None:
+        self._width, self._exact = len(run.state), exact
+        self.events = EventTable(
+            np.empty((EVENT_ROOM, 1 + 2 * self._width + len(run.memory))),
+            np.empty((EVENT_ROOM, 3), dtype=np.int64),
+        )
+        self.steps = NO_STEPS
+        self._closed: Steps | None = None
+        if intervals is not None:
+            expected = STEPS_PER_INTERVAL * intervals * max(run.substeps, 1)
+            room = STEP_ROOM + math.ceil(min(expected, MOST_STEPS_KEPT))
+            row = BESIDE + 2 * self._width - model.system.coordinates()
+            self.steps = StepTable(np.empty(room * row), np.empty(room * CODES, dtype=np.int64))
+
+    def make_room(self, counters: Integers) -> bool:
+        """Make tables longer that are full; whether they could, all steps being kept."""
+        if counters[at.EVENTS] >= len(self.events.codes):
+            self.events = EventTable(*_longer(*self.events))
+        if not has_no_room(self.steps.codes, counters):
+            return True
+        grows = bool(counters[at.STEPS_KEPT] < MOST_STEPS_KEPT)
+        if grows:
+            self.steps = StepTable(*_longer(*self.steps))
+        return grows
+
+    def close(self, counters: Integers, *, complete: bool = True) -> Steps:
+        """Give the steps, and keep no more; say whether they are those of the whole run."""
+        if self._closed is None:
+            found = steps_of(self.steps, counters, self._width, exact=self._exact)
+            self._closed, self.steps = replace(found, complete=complete), NO_STEPS
+        return self._closed
+
+    def events_so_far(self, counters: Integers) -> Events:
+        """Give the events by their columns."""
+        count, width = int(counters[at.EVENTS]), self._width
+        values, codes = self.events.values[:count], self.events.codes[:count]
+        return Events(
+            time=values[:, 0].copy(),
+            kind=codes[:, 0].copy(),
+            mode_before=codes[:, 1].copy(),
+            mode_after=codes[:, 2].copy(),
+            state_before=values[:, 1 : 1 + width].copy(),
+            state_after=values[:, 1 + width : 1 + 2 * width].copy(),
+            memory=values[:, 1 + 2 * width :].copy(),
+        )
+
+
+def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
+    """Give the arrays of a table with as much room again."""
+    return (
+        np.concatenate([values, np.empty_like(values)]),
+        np.concatenate([codes, np.empty_like(codes)]),
+    )
+
+
 def integrate(
     model: ContactModel,
     start: Start | Ending,
@@ -267,122 +351,55 @@ def integrate(
         model, start, accuracy, interval=STILL_INTERVAL if motion is None else motion.time_step,
         duration=duration, output_step=output_step, stop_at_overturning=stop_at_overturning,
     )  # fmt: skip
-    mode, state, memory = run.mode, run.state, run.memory
-    clock, counters = run.clock, run.counters
-    rows = 0 if output_step is None else 1 + math.floor(duration / output_step * (1.0 + 1e-12))
-    width = len(state)
-    out_state = np.empty((rows, width))
-    out_mode = np.empty(rows, dtype=np.int64)
-    out_work = np.zeros((rows if with_work else 0, 2))
+    memory, clock, counters = run.memory, run.clock, run.counters
+    interval, exact = float(run.controls[at.TIME_STEP]), accuracy.rtol is not None
     pieces = pieces_of(motion)
-    # that many samples are taken from the table of steps, so that steps go on at them
-    sampled = 0
-    if rows:
-        out_state[0], out_mode[0] = state, mode
-        counters[at.OUTPUTS] = 1
-        if keep_steps and not with_work:
-            intervals = max(map(len, pieces))
-            sampled = _on_samples(intervals, run.controls[at.TIME_STEP], output_step or 0.0, rows)
-            counters[at.OUTPUTS] += sampled
-
+    histories = Histories(
+        run.mode, run.state, counters,
+        duration=duration, output_step=output_step, with_work=with_work,
+    )  # fmt: skip
+    if keep_steps and not with_work:
+        histories.expect_in_steps(pieces, interval)
+    tables = Tables(run, model, duration / interval if keep_steps else None, exact=exact)
+    equations = equations_of(model.system, fixed_steps=not exact, with_work=with_work)
+    workspace = make_workspace(equations, run.state, run.reference, run.limits)
     progress = Progress(run.controls, clock, counters)
-    first_steps: Steps | None = None
-    exact = accuracy.rtol is not None
-
-    def take_samples(steps: Steps) -> Integers:
-        """Count the first outputs by the steps that end there, and take their modes."""
-        # each first row at a multiple of the output step, or a share before it
-        passed = np.floor(steps.time / (output_step or 1.0) + ON_SAMPLE)
-        which = 1 + np.flatnonzero(passed[1:] > passed[:-1])[:sampled]
-        count = 1 + len(which)
-        out_mode[1:count] = steps.mode[which]
-        if count <= sampled:  # there are no more
-            counters[at.OUTPUTS] = count
-        return which
-
-    taken = np.empty(0, dtype=np.int64)
-    steps = NO_STEPS
-    if keep_steps:
-        intervals = duration / run.controls[at.TIME_STEP]
-        expected = STEPS_PER_INTERVAL * intervals * max(run.substeps, 1)
-        room = STEP_ROOM + math.ceil(min(expected, MOST_STEPS_KEPT))
-        row = BESIDE + 2 * width - model.system.coordinates()
-        steps = StepTable(np.empty(room * row), np.empty(room * CODES, dtype=np.int64))
-    events = EventTable(
-        np.empty((EVENT_ROOM, 1 + 2 * width + len(memory))),
-        np.empty((EVENT_ROOM, 3), dtype=np.int64),
-    )
-    equations = equations_of(model.system, fixed_steps=accuracy.rtol is None, with_work=with_work)
-    workspace = make_workspace(equations, state, run.reference, run.limits)
-    as_python, rest = 0.0, 0.0  # time that it took in plain Python, and may still take
+    waiting = InPython(duration, interval, 1.0 if exact else AND_AGAIN)
     while True:
-        began = seconds_as_python()
         tried = counters[at.STEPS] + counters[at.REJECTED]
         counters[at.PAUSE_AT] = min(tried + _steps_at_once(equations), counters[at.MAX_STEPS])
-        output = Output(out_state, out_mode, out_work, steps)
-        with still_taking(rest):
+        with waiting.counted(equations, clock):
             result = advance(
-                equations, run.tolerance, memory, pieces, progress, output, events, workspace
-            )
-        if not steps_as_machine_code(equations):
-            as_python += seconds_as_python() - began
-            rest = as_python * (duration / max(clock[at.TIME], run.controls[at.TIME_STEP]) - 1.0)
-            rest = rest * (1.0 if exact else AND_AGAIN) if as_python > TELLING else 0.0
-        else:
-            rest = 0.0
+                equations, run.tolerance, memory, pieces, progress,
+                histories.output(tables.steps), tables.events, workspace,
+            )  # fmt: skip
         if result not in (at.MORE_ROOM, at.PAUSED):
             break
-        if counters[at.EVENTS] >= len(events.codes):
-            events = EventTable(*_longer(*events))
-        if has_no_room(steps.codes, counters):
-            if counters[at.STEPS_KEPT] < MOST_STEPS_KEPT:
-                steps = StepTable(*_longer(*steps))
-            else:
-                first_steps, steps = steps_of(steps, counters, width, exact=exact), NO_STEPS
-                first_steps = replace(first_steps, complete=False)
-                taken, sampled = take_samples(first_steps), 0
-
+        if not tables.make_room(counters):
+            histories.read_from_steps(tables.close(counters, complete=False))
     if not COMPILED or not runs_as_python(equations):  # of which more has been said
-        say_slow(as_python)
-
-    kept = first_steps
-    if keep_steps and kept is None:
-        kept = steps_of(steps, counters, width, exact=exact)
-    if sampled and kept is not None:
-        taken = take_samples(kept)
-    stored = int(counters[at.OUTPUTS])
-    time: Vector = np.arange(stored, dtype=np.float64) * (output_step or 1.0)
-    end = float(clock[at.TIME])
-    out_state, out_mode, out_work = out_state[:stored], out_mode[:stored], out_work[:stored]
-    happened = _events(events, int(counters[at.EVENTS]), width)
-    at_once = int(np.count_nonzero(happened.time == 0.0))
-    if rows and at_once:  # before that, nothing was as it is shown
-        out_state[0] = happened.state_after[at_once - 1]
-        out_mode[0] = happened.mode_after[at_once - 1]
-    unfinished = result != at.COMPLETED
-    if rows and unfinished and end - time[-1] > ON_SAMPLE * (output_step or 1.0):
-        # the instant at which the run ended belongs to its history
-        time = np.concatenate([time, np.array([end])])
-        out_state = np.vstack([out_state, workspace.state])
-        out_mode = np.append(out_mode, counters[at.MODE])
-        if with_work:
-            out_work = np.vstack([out_work, [clock[at.DISSIPATED], clock[at.SUPPLIED]]])
+        say_slow(waiting.taken)
+    steps = tables.close(counters) if keep_steps else None
+    if steps is not None:
+        histories.read_from_steps(steps)
+    events = tables.events_so_far(counters)
+    time = histories.end(events, clock, workspace.state, finished=result == at.COMPLETED)
     return Trajectory(
         time=time,
-        other_state=out_state,
-        mode=out_mode,
-        work=out_work,
-        start_mode=mode,
+        other_state=histories.state,
+        mode=histories.mode,
+        work=histories.work,
+        start_mode=run.mode,
         start_memory=run.start_memory,
-        events=happened,
+        events=events,
         status=Status(result),
         **run_counts(clock, counters),
         substeps=run.substeps,
         ending=Ending(int(counters[at.MODE]), workspace.state.copy(), memory.copy()),
         start_energy=float(clock[at.START_ENERGY]),
         as_python=runs_as_python(equations),
-        steps=kept,
-        outputs_in_steps=taken,
+        steps=steps,
+        outputs_in_steps=histories.in_steps,
     )
 
 
@@ -418,44 +435,12 @@ def make_workspace(
     )
 
 
-def _on_samples(intervals: int, interval: float, output_step: float, rows: int) -> int:
-    """Count the output times behind the start that are samples of the motion: steps end there."""
-    every = round(output_step / interval)
-    if every < 1:
-        return 0
-    count = min(rows - 1, intervals // every)
-    last = count * output_step
-    apart = abs(last - count * every * interval) + ROUNDING * last
-    return count if apart <= 0.5 * ON_SAMPLE * output_step else 0
-
-
-def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
-    """Give the arrays of a table with as much room again."""
-    return (
-        np.concatenate([values, np.empty_like(values)]),
-        np.concatenate([codes, np.empty_like(codes)]),
-    )
-
-
 def pieces_of(motion: Motion | None) -> Pieces:
     """Give the polynomials of both directions."""
     if motion is None:
         return Pieces(_STILL, _STILL)
     vertical = _STILL if motion.vertical is None else motion.vertical.pieces
     return Pieces(motion.horizontal.pieces, vertical)
-
-
-def _events(table: EventTable, count: int, width: int) -> Events:
-    values, codes = table.values[:count], table.codes[:count]
-    return Events(
-        time=values[:, 0].copy(),
-        kind=codes[:, 0].copy(),
-        mode_before=codes[:, 1].copy(),
-        mode_after=codes[:, 2].copy(),
-        state_before=values[:, 1 : 1 + width].copy(),
-        state_after=values[:, 1 + width : 1 + 2 * width].copy(),
-        memory=values[:, 1 + 2 * width :].copy(),
-    )
 
 
 _STILL: Matrix = np.zeros((0, 2))
