@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Final
+from typing import Final, NamedTuple, Self
 
 from rockframe.codes.check import peaks_of, read_motions, rocking_block, scene_words
 from rockframe.components import Block
@@ -82,69 +82,32 @@ def asce_7_22(
     """
     system = System(block) if isinstance(block, Block) else block
     setting = rocking_block(system, _OWNER, slides=True)
-    numbers = {
-        "S_DS": ("spectral_acceleration", spectral_acceleration),
-        "I_p": ("importance", importance),
-        "H_f": ("height_factor", height_factor),
-        "R_mu": ("ductility_factor", ductility_factor),
-        "C_AR": ("resonance_factor", resonance_factor),
-        "R_po": ("strength_factor", strength_factor),
-    }
-    given = {
+    factors = {
         symbol: to_ratio(value, owner=_OWNER, name=name, condition=POSITIVE, example="1.5")
-        for symbol, (name, value) in numbers.items()
+        for symbol, name, value in (
+            ("S_DS", "spectral_acceleration", spectral_acceleration),
+            ("I_p", "importance", importance),
+            ("H_f", "height_factor", height_factor),
+            ("R_mu", "ductility_factor", ductility_factor),
+            ("C_AR", "resonance_factor", resonance_factor),
+            ("R_po", "strength_factor", strength_factor),
+        )
     }
-    body, weight = setting.body, setting.body.mass * setting.gravity
-    # a wall keeps it from tipping to one side
-    arm = body.centre_height * math.tan(min(setting.overturning_angles))
-    base = given["S_DS"] * given["I_p"] * weight
-    by_formula = 0.4 * base * given["H_f"] / given["R_mu"] * given["C_AR"] / given["R_po"]
-    least, most = _LEAST * base, _MOST * base
-    force = min(max(by_formula, least), most)
-    lifting = _VERTICAL * given["S_DS"] * weight
-    pressing, lifted = _RESISTING * weight, max(_RESISTING * weight - lifting, 0.0)
-    tipping, resisting = force * body.centre_height, lifted * arm
-    anchored = tipping - (pressing - lifting) * arm  # also where F_v lifts it
-    newton, moment = Unit.NEWTON, Unit.NEWTON_METRE
-    factors = tuple(
-        CheckedLine(name, value, Unit.ONE, "factor", "given") for name, value in given.items()
-    )
-    forces = (
-        CheckedLine("W_p", weight, newton, "weight", "of the block"),
-        CheckedLine("F_p, formula", by_formula, newton,
-                    "0.4 S_DS I_p W_p (H_f/R_mu) (C_AR/R_po)", "13.3-1"),
-        CheckedLine("F_p, least", least, newton, "0.3 S_DS I_p W_p", "13.3.1"),
-        CheckedLine("F_p, greatest", most, newton, "1.6 S_DS I_p W_p", "13.3.1"),
-        CheckedLine("F_p", force, newton, "horizontal force at the centre of mass", "13.3.1"),
-        CheckedLine("F_v", lifting, newton,
-                    "vertical force at the same time, up or down, 0.2 S_DS W_p", "13.3.1"),
-    )  # fmt: skip
-    needed = force / lifted if lifted > 0.0 else math.inf
-    statics = (
-        CheckedLine("M_OT", tipping, moment, "F_p times the height of the centre of mass",
-                    "equilibrium"),
-        CheckedLine("M_R", pressing * arm, moment, "0.9 W_p times the lesser arm", "equilibrium"),
-        CheckedLine("M_R, with F_v", resisting, moment, "0.9 W_p - F_v times the lesser arm",
-                    "13.3.1"),
-        CheckedLine("M_anchors", max(anchored, 0.0), moment,
-                    "what anchors must carry, M_OT - M_R, with F_v", "equilibrium"),
-        CheckedLine("mu", force / pressing, Unit.ONE,
-                    "friction to stay without anchors, F_p/(0.9 W_p)", "equilibrium"),
-        CheckedLine("mu, with F_v", needed, Unit.ONE, "F_p/(0.9 W_p - F_v)", "13.3.1"),
-    )  # fmt: skip
-    verdicts = [
-        CheckedVerdict("tipping", tipping <= resisting,
-                       f"M_OT {tipping:.4g} N m, M_R, with F_v {resisting:.4g} N m", "chapter 13")
-    ]  # fmt: skip
     there = None if system.parts.ground is None else system.parts.ground.friction
     if friction is not None:
         there = to_ratio(friction, owner=_OWNER, name="friction", condition=POSITIVE, example="0.4")
-    if there is not None:
-        verdicts.append(
-            CheckedVerdict("sliding", needed <= there,
-                           f"needed with F_v {needed:.4g}, there is {there:.4g}", "equilibrium")
-        )  # fmt: skip
-    lines = {"Factors": factors, "Forces": forces, "Statics, without anchors": statics}
+    forces = _Forces.of(factors, setting.body.mass * setting.gravity)
+    # a wall keeps it from tipping to one side
+    height, lesser = setting.body.centre_height, min(setting.overturning_angles)
+    lines = {
+        "Factors": tuple(
+            CheckedLine(name, value, Unit.ONE, "factor", "given") for name, value in factors.items()
+        ),
+        "Forces": forces.lines(),
+    }
+    lines["Statics, without anchors"], verdicts = _statics(
+        forces, height, height * math.tan(lesser), there
+    )
     if floor_motions is not None:
         runs = peaks_of(system, read_motions(floor_motions, _OWNER), free_vibration)
         lines["Motion on the floor"] = tuple(
@@ -164,3 +127,80 @@ def asce_7_22(
     return CodeCheck(
         "A component on its floor", _CODE, lines, tuple(verdicts), notes, scene_words(system)
     )
+
+
+class _Forces(NamedTuple):
+    """Seismic forces on a component [N], equation 13.3-1 and its limits."""
+
+    weight: float
+    by_formula: float
+    least: float
+    most: float
+    vertical: float
+
+    @classmethod
+    def of(cls, factors: Mapping[str, float], weight: float) -> Self:
+        """Give the forces by the factors of the code."""
+        base = factors["S_DS"] * factors["I_p"] * weight
+        by_formula = 0.4 * base * factors["H_f"] / factors["R_mu"]
+        return cls(
+            weight, by_formula * factors["C_AR"] / factors["R_po"], _LEAST * base, _MOST * base,
+            _VERTICAL * factors["S_DS"] * weight,
+        )  # fmt: skip
+
+    @property
+    def horizontal(self) -> float:
+        """F_p, within its limits."""
+        return min(max(self.by_formula, self.least), self.most)
+
+    def lines(self) -> tuple[CheckedLine, ...]:
+        """Give the forces as lines of the check."""
+        newton = Unit.NEWTON
+        return (
+            CheckedLine("W_p", self.weight, newton, "weight", "of the block"),
+            CheckedLine("F_p, formula", self.by_formula, newton,
+                        "0.4 S_DS I_p W_p (H_f/R_mu) (C_AR/R_po)", "13.3-1"),
+            CheckedLine("F_p, least", self.least, newton, "0.3 S_DS I_p W_p", "13.3.1"),
+            CheckedLine("F_p, greatest", self.most, newton, "1.6 S_DS I_p W_p", "13.3.1"),
+            CheckedLine("F_p", self.horizontal, newton, "horizontal force at the centre of mass",
+                        "13.3.1"),
+            CheckedLine("F_v", self.vertical, newton,
+                        "vertical force at the same time, up or down, 0.2 S_DS W_p", "13.3.1"),
+        )  # fmt: skip
+
+
+def _statics(
+    forces: _Forces, height: float, arm: float, friction: float | None
+) -> tuple[tuple[CheckedLine, ...], list[CheckedVerdict]]:
+    """Give the moments and the friction needed without anchors, and whether they suffice.
+
+    Of the height of the centre of mass and its lesser arm to a corner [m].
+    """
+    pressing = _RESISTING * forces.weight
+    lifted = max(pressing - forces.vertical, 0.0)
+    tipping, resisting = forces.horizontal * height, lifted * arm
+    anchored = tipping - (pressing - forces.vertical) * arm  # also where F_v lifts it
+    needed = forces.horizontal / lifted if lifted > 0.0 else math.inf
+    moment = Unit.NEWTON_METRE
+    lines = (
+        CheckedLine("M_OT", tipping, moment, "F_p times the height of the centre of mass",
+                    "equilibrium"),
+        CheckedLine("M_R", pressing * arm, moment, "0.9 W_p times the lesser arm", "equilibrium"),
+        CheckedLine("M_R, with F_v", resisting, moment, "0.9 W_p - F_v times the lesser arm",
+                    "13.3.1"),
+        CheckedLine("M_anchors", max(anchored, 0.0), moment,
+                    "what anchors must carry, M_OT - M_R, with F_v", "equilibrium"),
+        CheckedLine("mu", forces.horizontal / pressing, Unit.ONE,
+                    "friction to stay without anchors, F_p/(0.9 W_p)", "equilibrium"),
+        CheckedLine("mu, with F_v", needed, Unit.ONE, "F_p/(0.9 W_p - F_v)", "13.3.1"),
+    )  # fmt: skip
+    verdicts = [
+        CheckedVerdict("tipping", tipping <= resisting,
+                       f"M_OT {tipping:.4g} N m, M_R, with F_v {resisting:.4g} N m", "chapter 13")
+    ]  # fmt: skip
+    if friction is not None:
+        verdicts.append(
+            CheckedVerdict("sliding", needed <= friction,
+                           f"needed with F_v {needed:.4g}, there is {friction:.4g}", "equilibrium")
+        )  # fmt: skip
+    return lines, verdicts
