@@ -21,8 +21,8 @@ from rockframe.studies.confidence import clopper_pearson, read_level
 from rockframe.studies.limit_states import overturns
 from rockframe.studies.sweeps.arguments import SweepArguments
 from rockframe.studies.sweeps.axes import Axis
+from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.motions import MotionsLike, full_name
-from rockframe.studies.sweeps.planning import check_memory
 from rockframe.studies.sweeps.scenes import SweptScene, motions_of_study, scene_of
 from rockframe.studies.sweeps.sweep import sweep
 from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ratio, to_si

@@ -47,7 +47,7 @@ from rockframe.studies.limit_states import (
 from rockframe.studies.lines import INTERRUPTED, Rounds, rounds_of
 from rockframe.studies.probability import SAMPLED, Spread, read_correlation, read_spread
 from rockframe.studies.sweeps.arguments import SweepArguments
-from rockframe.studies.sweeps.planning import check_memory
+from rockframe.studies.sweeps.memory import check_memory
 from rockframe.studies.sweeps.scenes import motions_of_study, scene_of
 from rockframe.system.options import PointsLike
 from rockframe.units import Condition, RatioLike, to_ratio

@@ -1,15 +1,11 @@
 """From the arguments of a sweep to the study that they describe; all faults are told at once.
 
-Also which histories are kept, and whether there is memory for them.
+Also which histories are kept.
 """
 
-import math
-import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
 import numpy as np
@@ -40,6 +36,7 @@ from rockframe.simulation.plan import (
 )
 from rockframe.studies.sweeps.axes import MOST_CASES, OWNER, Axis, Changes, Grid, faults_of_values
 from rockframe.studies.sweeps.chunk import AGAIN, FIRST, SCREEN
+from rockframe.studies.sweeps.memory import LAZILY, check_memory, numbers_of_case, remedies
 from rockframe.studies.sweeps.motions import NO_MOTION, OF_THE_SCENE, SPECTRAL, motion_number
 from rockframe.studies.sweeps.scenes import (
     FunctionScene,
@@ -52,80 +49,6 @@ from rockframe.studies.sweeps.study import Histories, Study
 from rockframe.system.alone import AloneSetting
 from rockframe.system.assembly import Assembly
 from rockframe.units import PERIOD, POSITIVE, QuantityLike, own_unit, to_si
-
-_FLOAT: Final = 8.0
-"""Size of a number [bytes]."""
-_COPIES: Final = 2.5
-"""How often a number is there at once: of its chunk, of all, some in the order of the axes too."""
-_LAZILY: Final = "they are read from the store as they are used (rf.open_study, lazy=True)"
-_TOLD: Final = 0.5
-"""Share of what there is from which on it is told what a study needs."""
-_MEMORY: Final = Path("/proc/meminfo")
-_GROUPS: Final = (
-    # most, and now, of a container or a job: control groups of both versions
-    (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory.current")),
-    (
-        Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
-        Path("/sys/fs/cgroup/memory/memory.usage_in_bytes"),
-    ),
-)
-
-
-def check_memory(
-    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str
-) -> list[str]:
-    """Tell what cases need, and whether it is there."""
-    sizes = {what: _FLOAT * _COPIES * each * cases for what, each in numbers.items()}
-    needed, there = sum(sizes.values()), available()
-    parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
-    told = (
-        f"{cases} cases need about {_shown(needed)} of memory ({parts}); {_shown(there)} are "
-        "available"
-    )
-    if needed > there:
-        return [f"{told}; {remedies}"]
-    if needed > _TOLD * there:
-        warn(f"{owner}: {told}", SolverWarning)
-    return []
-
-
-def available() -> float:
-    """Give what this process may still use; infinite where the system does not tell [bytes]."""
-    found = [math.inf]
-    with suppress(OSError, ValueError, IndexError):
-        (line,) = (one for one in _MEMORY.read_text().splitlines() if "MemAvailable" in one)
-        found.append(1024.0 * float(line.split()[1]))
-    if len(found) == 1 and hasattr(os, "sysconf"):
-        with suppress(OSError, ValueError):
-            found.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
-    for most, now in _GROUPS:
-        with suppress(OSError, ValueError):  # "max" where there is no limit
-            found.append(max(float(most.read_text()) - float(now.read_text()), 0.0))
-    return min(found)
-
-
-def _shown(size: float) -> str:
-    """Show a size as people do."""
-    for unit, large in (("TB", 1e12), ("GB", 1e9)):
-        if size >= large:
-            return f"{size / large:.3g} {unit}"
-    return f"{size / 1e6:.3g} MB"
-
-
-def numbers_of_case(
-    arguments: RunRequest, kept: Histories | None, *, screened: bool
-) -> dict[str, float]:
-    """Tell how many numbers are kept of a case, by what they are."""
-    points = len(arguments.points)
-    every = [*EVENTS_AND_SCALARS, *FORCE_SCALARS, *(SWEEP if screened else ())]
-    numbers = {"scalars": float(sum(not row.dims for row in every))}
-    if points:
-        numbers[f"peaks at {points} points"] = float(len(POINT_PEAKS) * points)
-    if kept is not None:
-        names = kept.names or [row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims]
-        several = sum(points if SCHEMA[name].dims == POINT_TIME else 1 for name in names)
-        numbers[f"{several} histories of {kept.count} times"] = float(several * kept.count)
-    return numbers
 
 
 def kept_histories(
@@ -175,6 +98,23 @@ _TAKEN: Final = {*TIME, *EVENT} | {
 """Names that are not left for axes."""
 
 
+class Faults:
+    """What is wrong with the arguments of a sweep, all of which is told at once."""
+
+    def __init__(self) -> None:
+        self.found: list[str] = []
+
+    def tried(self, read: Callable[[], Read], otherwise: Read) -> Read:
+        """Give what is read, or another value where that fails, and note why."""
+        try:
+            return read()
+        except StudyError as problem:
+            self.found.extend(problem.faults)
+        except RockframeError as problem:
+            self.found.append(str(problem).removeprefix(f"{OWNER}: "))
+        return otherwise
+
+
 def plan_study(
     scene: object,
     motions: object,
@@ -190,20 +130,10 @@ def plan_study(
     `kept` tells whether there is a store, from which a result that is larger than the memory
     can be read lazily; None where the whole result is needed at once.
     """
-    faults: list[str] = []
-
-    def tried(read: Callable[[], Read], otherwise: Read) -> Read:
-        try:
-            return read()
-        except StudyError as problem:
-            faults.extend(problem.faults)
-        except RockframeError as problem:
-            faults.append(str(problem).removeprefix(f"{OWNER}: "))
-        return otherwise
-
+    faults = Faults()
     made = scene_of(scene)  # without it nothing else can be checked
     if isinstance(asked.get("initial"), xr.Dataset):
-        faults.append(
+        faults.found.append(
             "initial cannot be the end of another run, whose system is one only; "
             "give an InitialState"
         )
@@ -213,62 +143,71 @@ def plan_study(
     if screened:
         asked["accuracy"] = FIRST
     outputs = asked.setdefault("outputs", None)
-    arguments = tried(lambda: read_arguments(faults, **asked), None)
+    arguments = faults.tried(lambda: read_arguments(faults.found, **asked), None)
     nothing = OF_THE_SCENE if isinstance(made, FunctionScene) else NO_MOTION
     none: dict[str, GroundMotion | None] = {nothing: None}
-    given = {**tried(lambda: motions_of_study(motions, made) or none, none)}
-    of_case: Generic | None = None
-    table = tried(lambda: _table(cases), {})
-    if MOTION in table:
-        column, names = np.asarray(table.pop(MOTION)).tolist(), list(given)
-        of_case = tried(
-            lambda: np.array([motion_number(one, names, owner="cases") for one in column], np.intp),
-            None,
-        )
-    rows = _read(made, table, faults, tried, repeats=True)
-    grid_axes = _read(made, axes, faults, tried, repeats=False)
-    faults += _twice(rows, grid_axes)
-    faults += made.faults([*rows, *grid_axes])
-    lengths = {axis.name: len(axis.values) for axis in rows}
-    lengths |= {} if of_case is None else {MOTION: len(of_case)}
-    if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{name} {length}" for name, length in lengths.items())
-        faults.append(f"the columns of cases differ in length: {told}")
+    given = {**faults.tried(lambda: motions_of_study(motions, made) or none, none)}
+    grid = _grid(made, axes, cases, list(given), faults)
     if isinstance(made, SystemScene):
-        made = made.with_parts_of([*rows, *grid_axes])
-    seconds = tried(lambda: _period(period, [*rows, *grid_axes]), None)
-    if arguments is None or faults:
-        raise StudyError(*faults)
+        made = made.with_parts_of([*grid.columns, *grid.axes])
+    seconds = faults.tried(lambda: _period(period, [*grid.columns, *grid.axes]), None)
+    if arguments is None or faults.found:
+        raise StudyError(*faults.found)
     handed_over = False
     if screened and isinstance(made, SystemScene):
         handed_over = not _pays_to_screen(made.assembly, given.values())
         screened = not handed_over
     if handed_over:
         asked["accuracy"] = AGAIN
-        arguments = read_arguments(faults, **asked)
-    grid = Grid(tuple(grid_axes), tuple(rows), len(given), of_case)
+        arguments = read_arguments(faults.found, **asked)
     if not 0 < grid.count <= MOST_CASES:
-        faults.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
+        faults.found.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
     if isinstance(made, SystemScene) and arguments.duration is None and None in given.values():
-        faults.append("nothing to simulate: give motions, or a duration for a still ground")
-    histories = tried(lambda: kept_histories(made, given, arguments, outputs), None)
+        faults.found.append("nothing to simulate: give motions, or a duration for a still ground")
     of_runs = arguments
+    histories = faults.tried(lambda: kept_histories(made, given, of_runs, outputs), None)
     if histories is not None and len({*map(usual_output_step, given.values())}) > 1:
-        of_runs = replace(arguments, output_step=histories.step)  # all at the times that are kept
-    numbers = numbers_of_case(of_runs, histories, screened=screened)
-    way_out = _LAZILY if kept else _remedies(of_runs, histories, may_be_kept=kept is False)
+        arguments = replace(arguments, output_step=histories.step)  # at the times that are kept
+    numbers = numbers_of_case(arguments, histories, screened=screened)
+    way_out = LAZILY if kept else remedies(arguments, histories, may_be_kept=kept is False)
     too_large = check_memory(numbers, grid.count, way_out, owner=OWNER)
-    if kept and not faults:
+    if kept and not faults.found:
         for told in too_large:
             warn(f"{OWNER}: {told}", SolverWarning)
     else:
-        faults += too_large
-    if faults:
-        raise StudyError(*faults)
+        faults.found += too_large
+    if faults.found:
+        raise StudyError(*faults.found)
     return Study(
-        made, grid, given, of_runs, seconds, histories, screened=screened,
+        made, grid, given, arguments, seconds, histories, screened=screened,
         handed_over=handed_over, lazy=bool(too_large),
     )  # fmt: skip
+
+
+def _grid(
+    scene: SweptScene, axes: Mapping[str, object], cases: object, motions: list[str], faults: Faults
+) -> Grid:
+    """Read the axes and the table of cases, and give all cases under the motions of these names."""
+    of_case: Generic | None = None
+    table = faults.tried(lambda: _table(cases), {})
+    if MOTION in table:
+        column = np.asarray(table.pop(MOTION)).tolist()
+        of_case = faults.tried(
+            lambda: np.array(
+                [motion_number(one, motions, owner="cases") for one in column], np.intp
+            ),
+            None,
+        )
+    rows = _read(scene, table, faults, repeats=True)
+    grid_axes = _read(scene, axes, faults, repeats=False)
+    faults.found += _twice(rows, grid_axes)
+    faults.found += scene.faults([*rows, *grid_axes])
+    lengths = {axis.name: len(axis.values) for axis in rows}
+    lengths |= {} if of_case is None else {MOTION: len(of_case)}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        faults.found.append(f"the columns of cases differ in length: {told}")
+    return Grid(tuple(grid_axes), tuple(rows), len(motions), of_case)
 
 
 def _pays_to_screen(system: Assembly, motions: Iterable[GroundMotion | None]) -> bool:
@@ -283,16 +222,6 @@ def _pays_to_screen(system: Assembly, motions: Iterable[GroundMotion | None]) ->
     return not isinstance(system.setting, AloneSetting) or any(
         one is None or one.recipe is None for one in motions
     )
-
-
-def _remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool) -> str:
-    """Say what would need less memory."""
-    ways = ["run fewer cases"]
-    ways += ["give a store, from which they are read as they are used"] if may_be_kept else []
-    ways += ["name fewer points"] if arguments.points else []
-    if histories is not None:
-        ways += ["name fewer outputs", "give a longer output_step", "keep none: outputs=None"]
-    return f"{', '.join(ways[:-1])} or {ways[-1]}" if len(ways) > 1 else ways[0]
 
 
 def _table(cases: object) -> dict[str, object]:
@@ -320,8 +249,7 @@ def _table(cases: object) -> dict[str, object]:
 def _read(
     scene: SweptScene,
     given: Mapping[str, object],
-    faults: list[str],
-    tried: Callable[..., Any],
+    faults: Faults,
     *,
     repeats: bool,
 ) -> list[Axis]:
@@ -330,14 +258,14 @@ def _read(
     for name, values in given.items():
         fault = _name_fault(name)
         if fault:
-            faults.append(fault)
+            faults.found.append(fault)
             continue
-        axis: Axis | None = tried(lambda name=name, values=values: scene.axis(name, values), None)
+        axis = faults.tried(lambda name=name, values=values: scene.axis(name, values), None)
         if axis is None:
             continue
         found.append(axis)
         if not repeats or not len(axis.values):
-            faults += faults_of_values(name, axis.values)
+            faults.found += faults_of_values(name, axis.values)
     return found
 
 

@@ -12,7 +12,7 @@ from kept_sweep import as_bytes
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning, StudyError
 from rockframe.results.variables.runs import RunStatus
-from rockframe.studies.sweeps import lazily, planning, sweep, words
+from rockframe.studies.sweeps import lazily, memory, sweep, words
 from rockframe.studies.sweeps.store import Store, read_shapes
 
 pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
@@ -211,7 +211,7 @@ def test_blocks_follow_the_order_of_running(tmp_path):
 def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
     scales = np.linspace(0.1, 1, 100)
     whole = rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
-    monkeypatch.setattr(planning, "available", lambda: 2e4)
+    monkeypatch.setattr(memory, "available", lambda: 2e4)
     told = r"100 cases need about 0.058 MB of memory .* 0.02 MB are available; "
     with pytest.raises(StudyError, match=f"{told}run fewer cases or give a store, from which"):
         rf.sweep(SYSTEM, MOTIONS["weak"], scale=scales, free_vibration="5 s")
@@ -230,7 +230,7 @@ def test_what_does_not_fit_is_read_from_its_store(tmp_path, monkeypatch):
 
 
 def test_an_interrupted_study_that_does_not_fit_is_not_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(planning, "available", lambda: 2e4)
+    monkeypatch.setattr(memory, "available", lambda: 2e4)
     monkeypatch.setattr(Store, "get", lambda *_: pytest.fail("it has been read"))
     stopped = Interrupting(2)
     with pytest.warns(SolverWarning) as said:

@@ -1,0 +1,101 @@
+"""The memory that a study needs, and what there is."""
+
+import math
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+from rockframe.errors import SolverWarning, warn
+from rockframe.results.schema import SCHEMA
+from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS, POINT_TIME, POINTS
+from rockframe.results.variables.runs import EVENTS_AND_SCALARS, HISTORIES
+from rockframe.results.variables.studies import SWEEP
+from rockframe.results.variables.variable import TIME
+from rockframe.simulation.plan import RunRequest
+from rockframe.studies.sweeps.study import Histories
+
+_FLOAT: Final = 8.0
+"""Size of a number [bytes]."""
+_COPIES: Final = 2.5
+"""How often a number is there at once: of its chunk, of all, some in the order of the axes too."""
+LAZILY: Final = "they are read from the store as they are used (rf.open_study, lazy=True)"
+_TOLD: Final = 0.5
+"""Share of what there is from which on it is told what a study needs."""
+_MEMORY: Final = Path("/proc/meminfo")
+_GROUPS: Final = (
+    # most, and now, of a container or a job: control groups of both versions
+    (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory.current")),
+    (
+        Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
+        Path("/sys/fs/cgroup/memory/memory.usage_in_bytes"),
+    ),
+)
+
+
+def check_memory(
+    numbers: Mapping[str, float], cases: int, remedies: str, *, owner: str
+) -> list[str]:
+    """Tell what cases need, and whether it is there."""
+    sizes = {what: _FLOAT * _COPIES * each * cases for what, each in numbers.items()}
+    needed, there = sum(sizes.values()), available()
+    parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
+    told = (
+        f"{cases} cases need about {_shown(needed)} of memory ({parts}); {_shown(there)} are "
+        "available"
+    )
+    if needed > there:
+        return [f"{told}; {remedies}"]
+    if needed > _TOLD * there:
+        warn(f"{owner}: {told}", SolverWarning)
+    return []
+
+
+def available() -> float:
+    """Give what this process may still use; infinite where the system does not tell [bytes]."""
+    found = [math.inf]
+    with suppress(OSError, ValueError, IndexError):
+        (line,) = (one for one in _MEMORY.read_text().splitlines() if "MemAvailable" in one)
+        found.append(1024.0 * float(line.split()[1]))
+    if len(found) == 1 and hasattr(os, "sysconf"):
+        with suppress(OSError, ValueError):
+            found.append(float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE"))
+    for most, now in _GROUPS:
+        with suppress(OSError, ValueError):  # "max" where there is no limit
+            found.append(max(float(most.read_text()) - float(now.read_text()), 0.0))
+    return min(found)
+
+
+def _shown(size: float) -> str:
+    """Show a size as people do."""
+    for unit, large in (("TB", 1e12), ("GB", 1e9)):
+        if size >= large:
+            return f"{size / large:.3g} {unit}"
+    return f"{size / 1e6:.3g} MB"
+
+
+def numbers_of_case(
+    arguments: RunRequest, kept: Histories | None, *, screened: bool
+) -> dict[str, float]:
+    """Tell how many numbers are kept of a case, by what they are."""
+    points = len(arguments.points)
+    every = [*EVENTS_AND_SCALARS, *FORCE_SCALARS, *(SWEEP if screened else ())]
+    numbers = {"scalars": float(sum(not row.dims for row in every))}
+    if points:
+        numbers[f"peaks at {points} points"] = float(len(POINT_PEAKS) * points)
+    if kept is not None:
+        names = kept.names or [row.name for row in (*HISTORIES, *POINTS) if TIME[0] in row.dims]
+        several = sum(points if SCHEMA[name].dims == POINT_TIME else 1 for name in names)
+        numbers[f"{several} histories of {kept.count} times"] = float(several * kept.count)
+    return numbers
+
+
+def remedies(arguments: RunRequest, histories: Histories | None, *, may_be_kept: bool) -> str:
+    """Say what would need less memory."""
+    ways = ["run fewer cases"]
+    ways += ["give a store, from which they are read as they are used"] if may_be_kept else []
+    ways += ["name fewer points"] if arguments.points else []
+    if histories is not None:
+        ways += ["name fewer outputs", "give a longer output_step", "keep none: outputs=None"]
+    return f"{', '.join(ways[:-1])} or {ways[-1]}" if len(ways) > 1 else ways[0]
