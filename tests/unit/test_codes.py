@@ -158,7 +158,22 @@ def test_a_component_on_its_floor():
     assert (lifted.value("M_R, with F_v"), lifted.value("mu, with F_v")) == (0.0, math.inf)
     assert lifted.passed == {"tipping": False, "sliding": False}
     squat = rf.Block(width="2 m", height="1.6 m", mass="1 t")
-    assert rf.codes.asce_7_22(squat, spectral_acceleration=0.5).passed == {"tipping": True}
+    firm = rf.codes.asce_7_22(squat, spectral_acceleration=0.5)
+    assert firm.passed == {"tipping": True}
+    assert firm.value("M_anchors") == 0.0
+    # factors that are not given are one
+    assert firm.value("F_p, formula") == pytest.approx(0.4 * 0.5 * firm.value("W_p"), rel=1e-12)
+    needed = firm.value("mu, with F_v")
+    enough = rf.codes.asce_7_22(squat, spectral_acceleration=0.5, friction=needed)
+    assert enough.passed == {"tipping": True, "sliding": True}
+
+
+def test_a_component_that_a_floor_overturns_is_told():
+    floor = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
+    check = rf.codes.asce_7_22(CABINET, floor, spectral_acceleration=1.0)
+    assert not check.passed["motion"]
+    assert "1 of 1 overturned" in str(check)
+    assert "overturned" in [line.words for line in check.lines["Motion on the floor"]]
 
 
 def test_anchors_of_a_component_that_the_vertical_force_lifts_carry_that_too():
