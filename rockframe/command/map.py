@@ -3,17 +3,20 @@
 import argparse
 from typing import Any, Final
 
+import numpy as np
 import xarray as xr
 
 from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
 from rockframe.command.plot import PICTURE, save
+from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     analysed,
     analysis_kind,
     run_from,
+    store_from,
     system_words,
     taken_by,
     values_of,
@@ -24,10 +27,12 @@ from rockframe.motion.description import CONSTRUCTORS
 from rockframe.plot import overturning_map as draw
 from rockframe.shared_arguments import suggestion
 from rockframe.studies import overturning_map
+from rockframe.studies.limit_states import overturns
 
 _RESULT: Final = analysis_kind("a map of overturning", "impacts_before_overturning")
 _USUAL: Final = "sine_pulse"
 _AXES: Final = ("amplitude", "frequency")
+_KIND: Final = ("type", "constructor")
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
@@ -35,7 +40,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     found = read_scene(arguments.scene)
     outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {
-        "store": arguments.store,
+        "store": store_from(arguments),
         **taken_by(overturning_map, run_from(found.run, arguments)),
         "amplitude": values_of(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
         "frequency": values_of(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
@@ -50,7 +55,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
-    return 0
+    return 0 if finished(dataset) else 1
 
 
 def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
@@ -63,7 +68,9 @@ def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
     motion = found.motion
     described = {} if motion is None else motion.to_dict()
     if name is None and set(_AXES) <= set(described):
-        return motion, str(described["constructor"]).replace("_", " ")
+        others = {key: value for key, value in described.items() if key not in (*_AXES, *_KIND)}
+        words = str(described["constructor"]).replace("_", " ")
+        return motion, ", ".join([words, *(f"{key}: {value:g}" for key, value in others.items())])
     name = name or _USUAL
     return getattr(GroundMotion, name), name.replace("_", " ")
 
@@ -84,9 +91,12 @@ def _lines(dataset: xr.Dataset) -> list[str]:
         one = dataset.isel(frequency=number)
         ends = zip(one["amplitude_above"].to_numpy(), one["impacts_above"].to_numpy(), strict=True)
         told = [f"{at:.4g} {_way(impacts)}" for at, impacts in ends if at == at]
-        ways = one["impacts_before_overturning"].to_numpy()
-        none = "stands" if (ways != ways).all() else "overturns"
-        lines.append(f"  {frequency:<16.4g} {', '.join(told) or f'none: {none} throughout'}")
+        falls = overturns(one).to_numpy()
+        lacking = int(np.isnan(falls).sum())
+        ways = "overturns" if (falls == 1.0).any() else "stands"
+        told = told or [f"none: {ways} throughout" if lacking < falls.size else "none"]
+        told += [f"{lacking} of {falls.size} without a verdict"] if lacking else []
+        lines.append(f"  {frequency:<16.4g} {', '.join(told)}")
     return lines
 
 

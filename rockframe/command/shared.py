@@ -2,6 +2,7 @@
 
 import argparse
 import csv
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -25,6 +26,7 @@ from rockframe.results.variables.variable import unit_behind
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
+from rockframe.studies.sweeps.chunk import SCREEN
 from rockframe.suites import MotionSuite, read_suite
 from rockframe.units import Unit
 from rockframe.writing import Content, FileKind, check_not_read, checked_path, write_file
@@ -36,6 +38,8 @@ _OF_RESULTS: Final = "give what 'rockframe run' or 'study' has written with -o"
 _NO_MOTION: Final = (
     "there is no motion; name a record with --motion, or describe one in the file, in [motion]"
 )
+_SCREENING: Final = ("fragility", "ida", "map")
+"""Commands whose runs are those of sweeps, which screen."""
 _MOST_VALUES: Final = 100_000
 _LONGEST_HEAD: Final = 65536
 """Most of the first line of a table that is read [bytes]."""
@@ -82,7 +86,10 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
         files += (Path(arguments.motion),)
     if moved and motion is None:
         raise FileError(arguments.scene, [(None, _NO_MOTION)])
-    if arguments.scale is not None and motion is not None:
+    if arguments.scale is not None:
+        if motion is None:
+            words = f"--scale {arguments.scale:g} multiplies a motion, and {_NO_MOTION}"
+            raise FileError(arguments.scene, [(None, words)])
         motion = motion.scaled(arguments.scale)
     return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
 
@@ -111,7 +118,7 @@ def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[
     """Give the arguments of a run: those of a file, and what options give instead."""
     run = {**of_file, **given_of(arguments, "duration", "free_vibration")}
     if arguments.accuracy is not None:
-        run["accuracy"] = _accuracy(arguments.accuracy)
+        run["accuracy"] = _accuracy(arguments.accuracy, arguments.command)
     if arguments.duration is not None and arguments.free_vibration is None:
         run.pop("free_vibration", None)
     if arguments.free_vibration is not None and arguments.duration is None:
@@ -129,6 +136,14 @@ def given_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
     """Give the options that were typed, by their names."""
     given = {name: getattr(arguments, name) for name in names}
     return {name: value for name, value in given.items() if value is not None}
+
+
+def store_from(arguments: argparse.Namespace) -> Path | None:
+    """Give the folder of a store that was typed; an empty name would be the folder one is in."""
+    if arguments.store == "":
+        msg = "found no name of a folder after --store; expected one, such as --store kept"
+        raise ComponentError(msg)
+    return None if arguments.store is None else Path(arguments.store).expanduser()
 
 
 def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
@@ -348,15 +363,16 @@ def system_words(system: System) -> str:
     return ", ".join(type(part).__name__ for part in system.parts.structural())
 
 
-def _accuracy(text: str) -> str | float:
+def _accuracy(text: str, command: str) -> str | float:
+    if text == SCREEN and command in _SCREENING:
+        return text
     try:
         given: str | float = float(text)
     except ValueError:
         given = text
     try:
-        accuracy_of(given)
+        accuracy_of(given, owner="--accuracy")
     except SolverError as problem:
-        words = str(problem).replace(" or an Accuracy(...)", "").removeprefix("Accuracy: ")
-        msg = f"--accuracy: {words}"
-        raise ComponentError(msg) from problem
+        words = str(problem).replace(" or an Accuracy(...)", "")
+        raise ComponentError(re.sub("^Accuracy: ", "--accuracy: ", words)) from problem
     return given

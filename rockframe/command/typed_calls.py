@@ -6,10 +6,8 @@ from pathlib import Path
 from shlex import split
 from typing import Any, Final, TypeVar
 
-import pandas as pd
-
 from rockframe.codes import CodeCheck, asce_7_22, circolare_2019
-from rockframe.command.files.tables import arguments_of
+from rockframe.command.files.tables import arguments_of, read_columns
 from rockframe.errors import ComponentError, FileError, nearest
 from rockframe.suites import TargetSpectrum
 
@@ -33,6 +31,11 @@ def values_by_name(words: Iterable[str], option: str, example: str) -> dict[str,
         if not (name and value):
             msg = f"{option}: expected NAME=VALUE, such as {example}, got {name!r}"
             raise ComponentError(msg)
+    names = [name for name, _, _ in found]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        msg = f"{option}: found {twice} twice; expected it once"
+        raise ComponentError(msg)
     return {name: value for name, _, value in found}
 
 
@@ -90,7 +93,7 @@ def _columns_of(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
     """Read the periods and accelerations of a table, with their units."""
     columns: dict[str, tuple[Any, str]] = {}
     try:
-        frame = pd.read_csv(Path(path).expanduser(), comment="#")
+        frame = read_columns(Path(path).expanduser())
         for head in frame.columns:
             match = _HEAD.fullmatch(str(head))
             if match is not None:

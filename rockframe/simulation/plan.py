@@ -40,7 +40,7 @@ def listed(outputs: object) -> list[object]:
     """Give what the argument ``outputs`` names, one by one."""
     if outputs is None:
         return []
-    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
+    if isinstance(outputs, Iterable) and not isinstance(outputs, str | Mapping):
         return list(cast("Iterable[object]", outputs))
     return [outputs]
 
@@ -338,7 +338,7 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> RunReque
         duration=duration,
         free_vibration=free_vibration,
         initial=initial,
-        accuracy=accuracy_of(accuracy),
+        accuracy=accuracy_of(accuracy, owner="simulate"),
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=output_step,
         histories=outputs is not None,

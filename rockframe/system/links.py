@@ -1,6 +1,7 @@
 """Links as they are in a scene: between which points, by which law, and in words."""
 
 import math
+import re
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -273,12 +274,22 @@ def link_labels(parts: Sequence[Link]) -> list[str]:
     ]
 
 
+def in_one_word(name: str) -> str:
+    """Give what axes call a link: of "restrainer 1" restrainer_1."""
+    return re.sub(r"\W", "_", name)
+
+
 def called_alike(parts: Sequence[Link]) -> list[str]:
     """Tell which names several links have, each once."""
-    names = link_labels(parts)
-    return list(dict.fromkeys(
-        f"two links are called {name!r}" for name in names if names.count(name) > 1
-    ))  # fmt: skip
+    by_word: dict[str, list[str]] = {}
+    for name in link_labels(parts):
+        by_word.setdefault(in_one_word(name), []).append(repr(name))
+    return [
+        f"two links are called {' and '.join(dict.fromkeys(alike))}"
+        + (f", both {word} as an axis names them" if len({*alike}) > 1 else "")
+        for word, alike in by_word.items()
+        if len(alike) > 1
+    ]
 
 
 def base_of(

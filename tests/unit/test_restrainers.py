@@ -74,6 +74,10 @@ def test_what_makes_no_tie_is_refused(changes, words):
         ((BLOCK, rf.RigidGround(restitution=0.9), TIE), "restitution must not be given"),
         ((BLOCK, PRELOADED.replace(preload="20 kN")), "tip body 1 to the right"),
         ((BLOCK, PADS, TIE, TIE), "two links are called 'upper'"),
+        (
+            (BLOCK, PADS, TIE.replace(name="restrainer_2"), TIE.replace(name=None)),
+            "'restrainer_2' and 'restrainer 2', both restrainer_2 as an axis names them",
+        ),
         ((BLOCK, PADS, TIE.replace(on_body=2)), "there is no body 2"),
         ((BLOCK, PADS, TIE.replace(to_body=1)), "both its points are on body 1"),
         (

@@ -36,6 +36,7 @@ _FILE: Final = "file"
 MOTIONS: Final = (*CONSTRUCTORS, "example")
 """Constructors of motions that files may name; one of them gives a record of the package."""
 _OPERATIONS: Final = "operations"
+_RESPONSE: Final = "response"
 
 
 def motion_keys() -> dict[str, bool]:
@@ -71,6 +72,8 @@ def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion |
     component = table.get("component")
     if isinstance(component, list):  # TOML has no pairs
         table["component"] = tuple(component)  # pyright: ignore[reportUnknownArgumentType]
+    if isinstance(table.get(_RESPONSE), str):
+        table[_RESPONSE] = file.path_beside(table[_RESPONSE])
     return made(
         file, where, lambda **rest: GroundMotion.read(file.path_beside(name), **rest), table
     )

@@ -6,8 +6,6 @@ from glob import glob
 from pathlib import Path
 from typing import Any, Final
 
-import pandas as pd
-
 from rockframe.command.files.scenes import (
     PROJECT,
     RUN,
@@ -20,7 +18,14 @@ from rockframe.command.files.scenes import (
     read_scene,
 )
 from rockframe.command.files.scenes import keys as scene_keys
-from rockframe.command.files.tables import TomlFile, arguments_of, checked, key_in, made
+from rockframe.command.files.tables import (
+    TomlFile,
+    arguments_of,
+    checked,
+    key_in,
+    made,
+    read_columns,
+)
 from rockframe.errors import FileError, RockframeError, StudyError, shown
 from rockframe.motion import GroundMotion
 from rockframe.simulation.system import System
@@ -34,6 +39,7 @@ CASES: Final = "cases"
 STORE: Final = "store"
 OUTPUT: Final = "output"
 SWEEP: Final = "sweep"
+KNOWN: Final = "known"
 KEYS: Final = (SCENE, MOTIONS, AXES, CASES, STORE, OUTPUT, SWEEP)
 """What a file of a study may hold, beside the tables of its scene."""
 _NOT_OF_SWEEP: Final = (
@@ -61,9 +67,11 @@ class DescribedStudy:
 
     def at_lines(self, problem: StudyError) -> FileError:
         """Tell what is wrong with a study at the lines of its file."""
-        axes = self.source.values.get(AXES)
+        given = {name: self.source.values.get(name) for name in (AXES, SWEEP)}
+        tables = {name: table for name, table in given.items() if isinstance(table, dict)}
         for words in problem.faults:
-            self.source.fault(key_in(words, (AXES,), axes if isinstance(axes, dict) else {}), words)  # pyright: ignore[reportUnknownArgumentType]
+            places = [key_in(words, (name,), table) for name, table in tables.items()]
+            self.source.fault(max(places, key=len, default=(CASES,)), words)
         return self.source.error()
 
 
@@ -156,7 +164,7 @@ def _axes_of(file: TomlFile) -> dict[str, Any]:
     if CASES in file.values:
         name = file.values[CASES]
         try:
-            found[CASES] = pd.read_csv(file.path_beside(str(name)), comment="#")
+            found[CASES] = read_columns(file.path_beside(str(name)))
         except (OSError, ValueError) as problem:
             file.fault((CASES,), f"{name}: the table cannot be read ({problem})")
     return found
@@ -182,10 +190,19 @@ def _sweep_of(file: TomlFile) -> dict[str, Any]:
     if table is None or not checked(file, (SWEEP,), table, sweep_keys()):
         return {}
     try:
-        return described_run(file, (SWEEP,), table)
+        return described_run(file, (SWEEP,), _beside(file, table))
     except RockframeError as problem:
         file.fault((SWEEP,), str(problem))
         return {}
+
+
+def _beside(file: TomlFile, table: dict[str, Any]) -> dict[str, Any]:
+    """Give a table with the paths of known stores, relative to the folder of the file."""
+    if KNOWN not in table:
+        return table
+    given = table[KNOWN]
+    paths = given if isinstance(given, list) else [given]
+    return table | {KNOWN: [file.path_of(one) if isinstance(one, str) else one for one in paths]}
 
 
 def _path_of(file: TomlFile, name: str) -> Path | None:

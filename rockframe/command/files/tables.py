@@ -9,6 +9,8 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, Final, Self, TypeAlias, TypeVar, cast
 
+import pandas as pd
+
 from rockframe.command.streams import INPUT, STREAM, StandardInput
 from rockframe.components.parameters import Declared
 from rockframe.errors import (
@@ -21,6 +23,7 @@ from rockframe.errors import (
     shown,
     warn,
 )
+from rockframe.results.variables.studies import MOTION
 
 Place: TypeAlias = tuple[str | int, ...]
 """Keys from the outermost table inwards; a number counts the tables of an array."""
@@ -221,6 +224,17 @@ def _text_of(name: str, data: bytes) -> str:
         )
         warn(words, RockframeWarning)
     return text.replace("\r\n", "\n")
+
+
+def read_columns(path: str | Path) -> pd.DataFrame:
+    """Read a table in CSV, each row with as many values as there are heads; OSError, ValueError."""
+    # a motion called 01 is another one than 1
+    found = pd.read_csv(path, comment="#", skipinitialspace=True, dtype={MOTION: str})
+    if not isinstance(found.index, pd.RangeIndex):  # pandas takes what is too much for labels
+        count = len(found.columns)
+        msg = f"its rows have {count + found.index.nlevels} values, below {count} heads"
+        raise ValueError(msg)
+    return found
 
 
 def table_title(where: Place) -> str:

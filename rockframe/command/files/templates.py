@@ -17,7 +17,7 @@ from rockframe.command.files.scenes import MOTIONS, motion_keys, run_keys
 from rockframe.command.files.studies import sweep_keys
 from rockframe.command.files.tables import arguments_of
 from rockframe.components import Component, InitialState
-from rockframe.components.parameters import REQUIRED, Choice, Declared
+from rockframe.components.parameters import REQUIRED, Choice, Count, Declared, Flag
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import OPERATIONS
 from rockframe.reports.project import ASSUMPTIONS, CHECKS, CONCLUSION, LINES
@@ -233,9 +233,11 @@ def _example(one: Declared[Any, Any]) -> str:
     if isinstance(one, Choice):
         return f'"{one.default}"'
     if one.measure is None:
-        return '"..."'
+        return "true" if isinstance(one, Flag) else "2" if isinstance(one, Count) else '"..."'
     if isinstance(one.default, int | float) and not isinstance(one.default, bool):
         return f"{one.default}"
+    if one.measure.example.startswith("("):  # a point
+        return f"[{one.measure.example[1:-1]}]"
     plain = one.unit == "1"
     return one.measure.example if plain else f'"{one.measure.example}"'
 

@@ -106,16 +106,17 @@ def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
-    """Give the number of the motion that a name, or a number, stands for."""
-    if isinstance(wanted, str):
-        if wanted in names:
-            return names.index(wanted)
-    elif isinstance(wanted, int | np.integer) and not isinstance(wanted, bool):
-        number = int(wanted)
-        if str(number) in names and names.index(str(number)) != number:
+    """Give the number of the motion that a name, or a number, also typed, stands for."""
+    if isinstance(wanted, str) and wanted in names:
+        return names.index(wanted)
+    typed = wanted in [str(place) for place in range(len(names))]
+    if typed or (isinstance(wanted, int | np.integer) and not isinstance(wanted, bool)):
+        number = int(cast("int | str", wanted))
+        alike = [name for name in names if name.isdecimal() and int(name) == number]
+        if alike and names.index(alike[0]) != number:
             msg = (
                 f"{owner}: {number} is the name of one motion, and the place of another; give the "
-                f"name, {str(number)!r}"
+                f"name, {alike[0]!r}"
             )
             raise StudyError(msg)
         if 0 <= number < len(names):

@@ -1,7 +1,6 @@
 """From the values of a case to the scene, and to where its run starts."""
 
 import inspect
-import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -31,7 +30,7 @@ from rockframe.studies.sweeps.axes import (
 from rockframe.studies.sweeps.identity import name_of
 from rockframe.studies.sweeps.motions import TARGETS, full_name, named_motions
 from rockframe.system.assembly import Assembly, assembly_of
-from rockframe.system.links import link_labels
+from rockframe.system.links import in_one_word, link_labels
 from rockframe.system.options import MEASURED, Coupling, Restraint, Rotation, Sliding
 from rockframe.units import Measure, Unit, quantity
 
@@ -171,7 +170,7 @@ class SystemScene:
         labels = zip(links, link_labels(links), strict=True)
         own = [name for one, name in labels if one is part]
         kinds = [kind for kind in type(part).__mro__ if issubclass(kind, Component)]
-        words = (re.sub(r"\W", "_", name) for name in own)
+        words = map(in_one_word, own)
         return [*words, *own, *(kind.__name__ for kind in kinds if kind != Component)]
 
     def _not_one(self, name: str, parameter: str, having: list[Component]) -> str:
@@ -198,6 +197,8 @@ class SystemScene:
         known = [*TARGETS, *_OPTIONS, *STARTS]
         known += [one for part in parts for one, each in part.varied().items() if each.single]
         listed = ", ".join(dict.fromkeys(known))
+        if parameter in OF_A_SWEEP:
+            return f"axis {name!r} is an argument of the runs, alike in all; axes are {listed}"
         question = suggestion(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"
 

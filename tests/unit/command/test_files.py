@@ -1,5 +1,8 @@
 """Scenes and studies in TOML: what they build, and where their faults are."""
 
+import re
+import tomllib
+
 import numpy as np
 import pytest
 
@@ -9,7 +12,7 @@ from rockframe.command.files.scenes import read_scene
 from rockframe.command.files.studies import read_study
 from rockframe.command.files.tables import lines_of
 from rockframe.command.files.templates import TEMPLATES, every_key
-from rockframe.errors import FileError
+from rockframe.errors import FileError, StudyError
 
 pytestmark = pytest.mark.unit
 
@@ -278,6 +281,52 @@ def test_faults_of_studies_are_named(name, file):
     assert words in " ".join(faults(read_study, file(text)).values())
 
 
+def test_rows_longer_than_their_head_are_refused(file):
+    # the first value of each would be a label, and the others those of the columns before
+    file("width [m],scale\n0.7,1,9\n0.8,2,9\n", "rows.csv")
+    found = faults(read_study, file(f'cases = "rows.csv"\n{BLOCK}'))
+    assert "its rows have 3 values, below 2 heads" in found[1]
+
+
+def test_motions_of_a_table_are_found_by_their_names(file, tmp_path):
+    for number in (1, 2, 3):
+        pulse = rf.GroundMotion.sine_pulse(f"{number} m/s^2", "2 Hz")
+        pulse.to_at2(tmp_path / f"0{number}.AT2")
+    file("motion, scale\n01, 1\n02, 1\n", "rows.csv")
+    head = 'motions = ["*.AT2"]\ncases = "rows.csv"\n'
+    found = read_study(file(head + BLOCK))
+    runs = rf.sweep(found.system, found.motions, **found.arguments)
+    assert runs.motion.values.tolist() == ["01", "02"]
+    file("motion, scale\n1, 1\n2, 1\n", "rows.csv")  # as programs for tables write them
+    found = read_study(file(head + BLOCK))
+    with pytest.raises(StudyError, match="give the name, '01'"):
+        rf.sweep(found.system, found.motions, **found.arguments)
+
+
+def test_other_files_are_named_relative_to_the_folder_of_theirs(file, tmp_path, monkeypatch):
+    text = f'{BLOCK}[axes]\nscale = [1]\n[sweep]\nknown = "kept"\n'
+    assert read_study(file(text)).arguments["known"] == [tmp_path / "kept"]
+    asked = []
+
+    def read(path, *, response=None):
+        asked.append((path, response))
+        return rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
+
+    monkeypatch.setattr(rf.GroundMotion, "read", read)
+    read_scene(file(f'{BLOCK}[motion]\nfile = "x.mseed"\nresponse = "x.xml"\n'))
+    assert asked == [(tmp_path / "x.mseed", tmp_path / "x.xml")]
+
+
+def test_faults_of_a_sweep_have_the_line_of_its_table(file):
+    text = f'{BLOCK}[axes]\naccuracy = ["fast"]\n[sweep]\noverturning = "halt"\n'
+    found = read_study(file(text))
+    with pytest.raises(StudyError) as caught:
+        rf.sweep(found.system, found.motions, duration="1 s", **found.arguments)
+    said = dict(found.at_lines(caught.value).faults)
+    assert "axis 'accuracy' is an argument of the runs" in said[6]
+    assert "overturning must be one of" in said[8]
+
+
 def test_templates_are_sound(file):
     for name, text in TEMPLATES.items():
         if name == "study":
@@ -297,5 +346,8 @@ def test_every_key_that_can_be_written_is_told():
             inner = inner_parts(kind)
             assert all(f"[{slot}.{key}]" in text for key in inner)
             assert all(f"\n# {key} = " in text for key in kind.declared() if key not in inner)
+    examples = re.findall(r"^# (\w+ = .+?)(?:  .*)?$", text, re.MULTILINE)
+    assert len(examples) > 60
+    assert all(tomllib.loads(one) for one in examples)
     assert "``" not in text
     assert max(map(len, text.splitlines())) < 125

@@ -393,6 +393,12 @@ def test_cases_that_are_not_there_are_refused():
     ):
         with pytest.raises(StudyError, match=words):
             rf.case(runs, **labels)
+    part = runs.isel(width=0, scale=0)
+    assert rf.case(part, motion="0").motion == rf.case(part, motion=0).motion
+    for wanted in (1, "1"):  # the name of the first, as tables write it, and the second's place
+        two = rf.sweep(SYSTEM, {"01": PULSE, "02": PULSE.scaled(2)}, **FAST)
+        with pytest.raises(StudyError, match="give the name, '01'"):
+            rf.case(two, motion=wanted)
     with pytest.raises(UnitsError, match="width"):
         rf.case(runs, scale=1.0, width="0.7 kg")
     with pytest.raises(SchemaError, match="no sweep"):
