@@ -93,11 +93,25 @@ class EventStates:
 
         Their ratio at an impact on rigid ground is :eq:`eq-impact-friction`.
         """
-        return {
-            f"event_{name}_impulse": mass
-            * (self.after[f"{name}_velocity"] - self.before[f"{name}_velocity"])
-            for name in ("horizontal", "vertical")
-        }
+        found: dict[str, Generic] = {}
+        for way in ("horizontal", "vertical"):
+            shown = f"{way}_velocity_on_base"  # in a cascade that of the second stage
+            name = shown if shown in self.after else f"{way}_velocity"
+            found[f"event_{way}_impulse"] = mass * (self.after[name] - self.before[name])
+        return found
+
+    def impulses_on_base(self, load: BaseLoad) -> tuple[Array, Array]:
+        """Give the impulses along and normal to what the base stands on, which may lean [N s]."""
+        found = self.impulses(load.body.mass)
+        across, up = found["event_horizontal_impulse"], found["event_vertical_impulse"]
+        if "vertical_velocity_on_base" in self.after:  # under a second stage nothing leans
+            return across, up
+        on_base = next((self.after[name] for name in ON_BASE if name in self.after), None)
+        if on_base is None:
+            return across, up
+        lean = self.after["rotation"] - on_base
+        sine, cosine = sines_cosines(lean, small=load.options.small)
+        return cosine * across - sine * up, sine * across + cosine * up
 
 
 def peaks_along(
@@ -110,17 +124,13 @@ def peaks_along(
     )
     level = min(HALF * most, ENOUGH)
     lasted = along.above(lambda values: values["friction_demand"], level)[1] if level > 0.0 else 0.0
-    impulses = events.impulses(load.body.mass)
     fall = math.sqrt(load.body.centre_height / load.options.gravity)
-    struck = friction_demand(
-        impulses["event_horizontal_impulse"], impulses["event_vertical_impulse"],
-        NO_FORCE * load.weight * fall,
-    )[events.is_impact]  # fmt: skip
+    struck = friction_demand(*events.impulses_on_base(load), NO_FORCE * load.weight * fall)
     forces = {
         "peak_friction_demand": float(most),
         "peak_friction_demand_time": float(when),
         "peak_friction_demand_duration": lasted,
-        "peak_impulsive_friction_demand": float(struck.max(initial=0.0)),
+        "peak_impulsive_friction_demand": float(struck[events.is_impact].max(initial=0.0)),
         "peak_base_shear": float(shear),
     }
     return forces, {"peak_settlement": max(float(deepest), 0.0) + 0.0}

@@ -280,3 +280,26 @@ def test_the_peak_is_that_of_the_total_between_the_samples():
     for run in (response, coarse):
         assert run.peak_rotation.item() == pytest.approx(largest, rel=1e-6)
         assert run.peak_rotation.item() >= np.abs(run.rotation.values).max() * (1.0 - 1e-9)
+
+
+# impulses ---------------------------------------------------------------------------------------
+
+
+def test_events_of_the_soil_give_the_block_no_vertical_impulse():
+    """What jumps is the velocity of the cap's top; pads press with forces, their hold along it."""
+    soft = rf.WinklerSoil(stiffness="8 MPa", damping="100 kPa*s")
+    system = rf.System(block(), pads(), CAP, soft, coupling="cascade")
+    response = system.simulate(pulse(-6.0), outputs="impulse", **RUN)
+    names = response.event_kind.attrs["flag_meanings"].split()
+    kind = np.array(names)[np.searchsorted(
+        response.event_kind.attrs["flag_values"], response.event_kind
+    )]  # fmt: skip
+    vertical = response.event_vertical_impulse.to_numpy()
+    across = response.event_horizontal_impulse.to_numpy()
+    strikes, below = kind == "impact", np.char.startswith(kind, "soil_")
+    assert strikes.any()
+    assert np.abs(across[below]).max() > 1.0
+    assert np.abs(vertical[~strikes]).max() < 1e-9
+    assert vertical[strikes].min() > 1e3
+    demand = np.abs(across[strikes] / vertical[strikes]).max()
+    assert response.peak_impulsive_friction_demand == pytest.approx(demand, rel=1e-9)

@@ -8,6 +8,7 @@ import xarray as xr
 
 import rockframe as rf
 from rockframe.errors import AssemblyError, ModelWarning, RockframeError
+from rockframe.results.forces import EventStates
 from rockframe.results.schema import GROUPS, ON_REQUEST
 
 pytestmark = pytest.mark.analytical
@@ -214,6 +215,25 @@ def test_the_friction_of_an_impact():
         assert response.impact_count > 1
         np.testing.assert_allclose(ratio, expected, rtol=1e-9)
         assert response.peak_impulsive_friction_demand == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.1, -0.2])
+def test_the_friction_of_an_impact_is_along_the_base_that_leans(lean):
+    """As that of forces: along and normal to the cap or to the body below, however they lean."""
+    system = rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[PADS]), PADS)
+    along, normal = 0.3, 2.0
+    zero, turned = np.zeros(1), np.array([lean + 0.05])
+    before = {
+        "rotation": turned, "rotation_on_base": np.array([0.05]), "horizontal_velocity": zero,
+        "vertical_velocity": zero,
+    }  # fmt: skip
+    after = before | {
+        "horizontal_velocity": np.array([math.cos(lean) * along + math.sin(lean) * normal]),
+        "vertical_velocity": np.array([math.cos(lean) * normal - math.sin(lean) * along]),
+    }
+    events = EventStates(np.ones(1), np.ones(1, dtype=np.bool_), before, after)
+    found = events.impulses_on_base(system.setting.load)
+    np.testing.assert_allclose(np.ravel(found), [MASS * along, MASS * normal], rtol=1e-12)
 
 
 def test_coming_to_rest_is_no_impact():

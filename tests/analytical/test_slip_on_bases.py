@@ -9,6 +9,7 @@ import rockframe as rf
 from rockframe.dynamics.chain import model
 from rockframe.dynamics.chain.rigid_friction import SlippingRigidChain
 from rockframe.dynamics.coulomb import ImpulseResponse, coulomb_impulse
+from rockframe.dynamics.protocol import IMPACT_LOSS, Start
 from rockframe.errors import AssemblyError, ComponentError
 from rockframe.solve.workspace import Status
 
@@ -152,6 +153,39 @@ def test_an_impulse_dissipates_whatever_the_friction():
 STATUE = rf.Block(width="0.6 m", height="1.8 m", mass="0.5 t")
 PLINTH = rf.Block(width="1 m", height="1 m", mass="1.5 t")
 PULSE = rf.GroundMotion.sine_pulse(amplitude="-4 m/s^2", frequency="1.5 Hz")
+
+
+@pytest.mark.parametrize("beside", ["0 m", "0.1 m"])
+def test_both_ends_that_land_at_once_keep_what_their_restitution_leaves(beside):
+    """Each of its own speed, with friction of both within the cone; one alone as it tips the other.
+
+    Neither waits for the other, so that a block that falls flat stays so.
+    """
+    block, rng, alone = BLOCK.replace(eccentricity=beside), np.random.default_rng(7), 0
+    for friction in (0.1, 0.3, 0.6, np.inf):
+        given = {"friction": min(friction, 1e9), "kinetic_friction": min(friction, 0.6)}
+        model = rf.System(block, PADS.replace(restitution=0.3, **given)).setting.compile()
+        system, (full, rest, memory) = model.system, model.initial(Start())
+        mode, part = system.slipping(full, 0, 1.0), system.on_base(0)
+        for slips in (0.0, *rng.normal(size=30)):
+            state = rest.copy()
+            state[3:] = 0.2 * rng.normal() * (slips != 0.0), -1.0, slips
+            before, had = part.body.base_line_at(system.state_of(0, state)), state.copy()
+            lost = memory[IMPACT_LOSS]
+            system.strike(0, True, True, mode, state, memory)
+            after = part.body.base_line_at(system.state_of(0, state))
+            kept = np.array([
+                after.left_speed - 0.3 * before.left_speed,
+                after.right_speed - 0.3 * before.right_speed,
+            ])  # fmt: skip
+            _, press, along = state[3:] - had[3:]
+            assert abs(along) <= min(friction, 0.6) * press * (1.0 + 1e-12) + 1e-15
+            assert memory[IMPACT_LOSS] > lost
+            assert kept.min() == pytest.approx(0.0, abs=1e-12)
+            alone += kept.max() > 1e-9
+            if slips == 0.0 and beside == "0 m":
+                np.testing.assert_allclose(state[3:], [0.0, -0.3, 0.0], atol=1e-14)
+    assert 0 < alone < 60
 
 
 def stacked(upper, lower, pads=PADS):

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmarks.tied_runs import drawn as drawn_tied
 from hypothesis import example, given, settings
 from property.checks import check_energy_at_events
 from property.scenarios import GRAVITY, RULES, Scenario, scenarios
@@ -222,3 +223,14 @@ def test_the_residual_of_a_quiet_run_is_that_of_a_strong_one(base):
     ]
     assert residuals[0] > 1e-7
     assert residuals == pytest.approx([residuals[0]] * 3, rel=0.05)
+
+
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+@pytest.mark.parametrize("number", [47, 295])
+def test_each_loss_only_grows_where_bodies_take_back_some_of_a_blow(number):
+    """On pads out of flight, beside rigid bases: the hold is a part of the blow then."""
+    system, motion, _ = drawn_tied(number)
+    response = system.simulate(motion, outputs="energy", output_step="1 ms", second_look=False)
+    for name in ("impact_energy", "repinning_energy"):
+        steps = np.diff(response[name].values)
+        assert steps.min() > -1e-12 * energy_scale(response), name

@@ -13,7 +13,7 @@ import rockframe as rf
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.impact import Near, next_set
 from rockframe.dynamics.events import IMPACT, ContactState, EventKind
-from rockframe.dynamics.protocol import Start
+from rockframe.dynamics.protocol import IMPACT_LOSS, Ground, Start
 from rockframe.dynamics.switching import end_speed
 from rockframe.errors import AssemblyError, ModelWarning
 from rockframe.solve.accuracy import accuracy_of
@@ -472,3 +472,24 @@ def test_a_body_upon_one_that_lands_gets_no_more_than_friction_gives(restitution
         assert abs(along) <= 0.2 * max(normal, 0.0) + 1e-4, events.time[i]
         blows += normal > 1e-3
     assert blows > 20
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("above", [1.0, -1.0])
+def test_a_short_slip_ends_without_energy_of_what_slips_above(sense, above):
+    """It ends at once: friction above, which presses less or more until then, has no time."""
+    light = rf.Block(width="1 m", height="0.65 m", mass="25 kg")
+    joint, pads = rf.RigidGround(friction=0.2), rf.TwoSpringSupport(
+        frequency_ratio=60, damping_ratio=0.1, friction=0.6
+    )  # fmt: skip
+    stack = rf.Stack(STATUE, light, interfaces=[joint], offsets=["0.15 m"])
+    model = rf.System(stack, pads, restraint="centre").setting.compile()
+    system, (mode, state, memory) = model.system, model.initial(Start())
+    mode = system.slipping(system.slipping(mode, 0, above), 1, sense)
+    rate = system.coordinates() + system.horizontal_of(1)
+    state[system.coordinates() + system.horizontal_of(0)], state[rate] = above, 1e-6 * sense
+    had = system.energies(mode, state).kinetic
+    new = system.end_short_slip(1, mode, state, Ground(0.0, 0.0), memory)
+    assert not system.part_mode(new, 1).slides
+    assert had - system.energies(new, state).kinetic == pytest.approx(memory[IMPACT_LOSS], rel=1e-3)
+    assert 0.0 < memory[IMPACT_LOSS] < 1e-12

@@ -39,7 +39,10 @@ COLUMNS: Final = (
     *STACK_COLUMNS,
     Column("cap_acceleration"),
     Column("cap_vertical_acceleration"),
-    Column("angular_acceleration_on_base"),  # of the second stage, whose forces are shown
+    # of the second stage, whose forces are shown; its velocities relative to the ground
+    Column("angular_acceleration_on_base"),
+    Column("horizontal_velocity_on_base"),
+    Column("vertical_velocity_on_base"),
 )
 
 
@@ -108,11 +111,16 @@ class Cascade(Stacked, Stages):
     @inlined
     def ground_of_upper(self, mode: int, state: Vector, below: Rates, ground: Ground) -> Ground:
         """Give the absolute acceleration of the cap's top."""
-        top = self.carried(
+        top = self.top_motion(mode, state, below)
+        return Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
+
+    @inlined
+    def top_motion(self, mode: int, state: Vector, below: Rates) -> PointMotion:
+        """Give the motion of the middle of the cap's top, by the rates of the lower body."""
+        return self.carried(
             self.modes_in(mode).lower, self.state_of(LOWER, state), below.rotation, below.vertical,
             below.horizontal,
         )  # fmt: skip
-        return Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> tuple[float, ...]:
@@ -228,13 +236,14 @@ class Cascade(Stacked, Stages):
         modes, states = self.modes_in(mode), self.states_in(state)
         upper, lower = states
         rates = self.lower_rates(mode, state, ground)
-        on_top = self.ground_of_upper(mode, state, rates, ground)
+        top = self.top_motion(mode, state, rates)
+        on_top = Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
         above = self.upper.rates_in(modes.upper, upper, self.upper_own(state), on_top)
-        swaying = self.upper.sway(modes.upper, upper, self.upper.body.attitude(upper.rotation))
+        sway = self.upper.sway(modes.upper, upper, self.upper.body.attitude(upper.rotation))
         # a point above the centre of mass sinks by what the centre would rise over it
         attitude = self.lower.body.attitude(lower.rotation)
         versine = attitude.rise / self.lower.body.height
-        swaying += self.lower.sway(modes.lower, lower, attitude)
+        swaying = sway + self.lower.sway(modes.lower, lower, attitude)
         return (
             upper.rotation + lower.rotation,
             upper.angular_velocity + lower.angular_velocity,
@@ -259,6 +268,8 @@ class Cascade(Stacked, Stages):
             on_top.x,
             on_top.y,
             above.rotation,
+            sway + top.velocity_x,
+            upper.vertical_velocity + top.velocity_y,
         ) + self.bases_observed(mode, state)
 
     @kernel

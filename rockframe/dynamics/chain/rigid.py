@@ -88,6 +88,7 @@ class RigidChain(RigidImpulses):
         elif self.is_rigid(k):
             new = self.switch_corner(k, left, mode, state, ground, memory)
         else:
+            pinned = memory[REPINNING_LOSS]
             self.scale_impulses(0.0)
             if which in (REENGAGE, CORNER_GUARDS + REENGAGE):
                 new = self.catch_up(mode, guard, state, ground, memory)
@@ -99,6 +100,9 @@ class RigidChain(RigidImpulses):
             ends = self.landed(k, left, mode, new)
             new = self.meet_anew(k, ends, new, state, ground, memory)
             stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
+            # the hold is a part of the blow then, of which bodies have taken back some
+            memory[IMPACT_LOSS] += memory[REPINNING_LOSS] - pinned
+            memory[REPINNING_LOSS] = pinned
         struck = memory[LAST_EVENT] in (IMPACT, REST)
         for other in range(count):
             if struck or not self.waits_on(other, new, state, ground):

@@ -11,6 +11,7 @@ from rockframe.compiled import Vector, inlined, kernel
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
 from rockframe.dynamics.body import REST_AMPLITUDE, accelerated
 from rockframe.dynamics.chain import rows as at
+from rockframe.dynamics.chain.impact import LEFT_ONLY, RIGHT_ONLY
 from rockframe.dynamics.chain.motion import load_along, load_bodies, place_bodies, press_at
 from rockframe.dynamics.chain.rows import PLACES
 from rockframe.dynamics.chain.slips import IMPULSIVE, SlippingBodies
@@ -81,12 +82,11 @@ class SlipperyBases(SlippingBodies):
             if j != k and self.is_slippery(j):
                 mode = self.disturb(j, mode, state)
         before = self.energies_of_bodies(mode, state).kinetic
-        rate, noise = self.slip_rate(k, mode, state)
-        if both and abs(rate) > noise:  # the end that leads comes first
-            left = rate < 0.0
-        self.strike_end(k, left, mode, state)
+        alone = LEFT_ONLY if left else RIGHT_ONLY
         if both:
-            self.strike_end(k, not left, mode, state)
+            alone = self.strike_ends(k, mode, state)
+        if alone != 0:
+            self.strike_end(k, alone == LEFT_ONLY, mode, state)
         memory[IMPACT_LOSS] += before - self.energies_of_bodies(mode, state).kinetic
         return mode
 
@@ -111,9 +111,64 @@ class SlipperyBases(SlippingBodies):
             ),
             slip, (1.0 - part.base.rebound(left)) * speed, self.friction_of(k, IMPULSIVE),
         )  # fmt: skip
-        self.answers(k, normal, normal * lever, along, mode, state)
+        self.give_blow(k, normal, normal * lever, along, slip, mode, state)
+
+    @kernel
+    def strike_ends(self, k: int, mode: int, state: Vector) -> int:
+        """Reduce the speeds of both ends at once to eps times what they were, each its own.
+
+        Gives the end that strikes alone, as it does where friction lifts the other: the velocities
+        stay as they are then.
+        """
+        line, base = (
+            self.on_base(k).body.base_line_at(self.state_of(k, state)),
+            self.on_base(k).base,
+        )
+        slip, noise = self.slip_rate(k, mode, state)
+        if abs(slip) <= noise:
+            slip = 0.0
+        one, other = line.left_lever, line.right_lever
+        rises, slides_left = self.answers(k, 1.0, one, 0.0, mode, state)
+        left_left, mixed = rises + one * self.turned(k), rises + other * self.turned(k)
+        rises, slides_right = self.answers(k, 1.0, other, 0.0, mode, state)
+        right_right = rises + other * self.turned(k)
+        rises, slides = self.answers(k, 0.0, 0.0, 1.0, mode, state)
+        left_along, right_along = rises + one * self.turned(k), rises + other * self.turned(k)
+        gain_left = -(1.0 - base.rebound(True)) * min(line.left_speed, 0.0)
+        gain_right = -(1.0 - base.rebound(False)) * min(line.right_speed, 0.0)
+        determinant = left_left * right_right - mixed * mixed
+        # without friction, and by how much less of it along the base
+        left = (right_right * gain_left - mixed * gain_right) / determinant
+        right = (left_left * gain_right - mixed * gain_left) / determinant
+        left_less = (right_right * left_along - mixed * right_along) / determinant
+        right_less = (left_left * right_along - mixed * left_along) / determinant
+        press, less = left + right, left_less + right_less
+        if press <= 0.0:
+            return 0
+        # as both grow in one proportion, they are one impulse, of the size of their sum
+        slides_with = (slides_left * left + slides_right * right) / press
+        slides += slides_with * less - slides_left * left_less - slides_right * right_less
+        along, _ = coulomb_impulse(
+            ImpulseResponse(1.0, less, slides_with, slides), slip, -press,
+            self.friction_of(k, IMPULSIVE),
+        )  # fmt: skip
+        left, right = left - left_less * along, right - right_less * along
+        if left < 0.0:
+            return RIGHT_ONLY
+        if right < 0.0:
+            return LEFT_ONLY
+        self.give_blow(k, left + right, left * one + right * other, along, slip, mode, state)
+        return 0
+
+    @kernel
+    def give_blow(
+        self, k: int, press: float, moment: float, along: float, slip: float, mode: int,
+        state: Vector,
+    ) -> None:  # fmt: skip
+        """Change the velocities by the impulses of a base, which may have ended the slip."""
+        self.answers(k, press, moment, along, mode, state)
         self.take_answer(state)
-        self.note_blow(k, normal, normal * lever, along)
+        self.note_blow(k, press, moment, along)
         after, noise = self.slip_rate(k, mode, state)
         if abs(after) <= noise + 2.0 * NOISE * abs(slip):
             self.end_slip(k, mode, state)
@@ -160,9 +215,9 @@ class SlipperyBases(SlippingBodies):
     ) -> int:
         """Hold a body that would slip but so far along its base that gives way, if it slows.
 
-        A slip below all that counts ends at once, with all that it does until then.
+        A slip below all that counts ends at once.
         """
-        body, n = self.on_base(k).body, self.coordinates()
+        body = self.on_base(k).body
         if not self.part_mode(mode, k).slides:
             return mode
         rate, noise = self.slip_rate(k, mode, state)
@@ -173,15 +228,13 @@ class SlipperyBases(SlippingBodies):
         slows = -found.slip_rate * math.sqrt(body.gravity * body.size())
         if rate * rate >= 2.0 * slows * REST_AMPLITUDE * body.size():
             return mode
-        had, time = self.energies_of_bodies(slips, state).kinetic, abs(rate) / slows
-        state[self.horizontal_of(k)] += 0.5 * rate * time  # as far as it comes
-        for i in range(n):  # what the slip adds to velocities before it ends
-            state[n + i] += slope[i] * time
+        had = self.energies_of_bodies(slips, state).kinetic
+        state[self.horizontal_of(k)] += 0.5 * rate * abs(rate) / slows  # as far as it comes
+        # an impulse of its base ends it: what slips elsewhere is not rubbed less by that
+        _, slides = self.answers(k, 0.0, 0.0, 1.0, slips, state)
+        self.answers(k, 0.0, 0.0, -rate / slides, slips, state)
+        self.add_slopes(state)
         new = self.with_slip(k, 0.0, slips, state, memory)
-        slope = self.find_forces(new, state, ground)
-        for i in range(n):
-            state[n + i] -= slope[i] * time
-        self.end_slip(k, new, state)
         memory[IMPACT_LOSS] += had - self.energies_of_bodies(new, state).kinetic
         return new
 

@@ -115,7 +115,8 @@ FORCE_SCALARS: Final = rows_over(
     peak_friction_demand_time="time of the largest friction demand [s]",
     peak_friction_demand_duration="time in all with a friction demand above half its peak, or "
     "above 1 where that is less [s]",
-    peak_impulsive_friction_demand="largest ratio of horizontal and vertical impulses of impacts",
+    peak_impulsive_friction_demand="largest ratio of impulses along and normal to the base, of "
+    "impacts",
     peak_base_shear="largest absolute base shear up to overturning [N]",
     residual_rotation="rotation at the end of the run [rad]",
     residual_settlement="how much lower than at rest the middle of the base stands at the end of "
