@@ -1,4 +1,7 @@
-"""From a model, a start and a ground motion to a trajectory."""
+"""Integration of a model under a ground motion, from a start to a trajectory.
+
+Allocates all arrays of a run and calls `advance` (`solve/driver.py`) until the run ends.
+"""
 
 import math
 from collections.abc import Mapping
@@ -66,7 +69,7 @@ CHATTER_SHARE: Final = 1e-6
 ENERGY_NOISE: Final = 1e-12
 """Share of the model's typical energy below which energies are rounding noise."""
 NEVER: Final = 2**62
-"""An interval that no run comes to."""
+"""Number of an interval of the motion beyond the end of any run."""
 
 
 @dataclass(frozen=True)
@@ -75,8 +78,8 @@ class Begun:
 
     mode: int  # of the model
     state: Vector  # coordinates, their rates, and variables of first order
-    memory: Vector  # the model's memory, twice
-    start_memory: Vector
+    memory: Vector  # the system's memory, which changes in the run
+    start_memory: Vector  # a copy of it, as it is at the start
     controls: Vector  # laid out in :mod:`rockframe.solve.workspace`
     clock: Vector
     counters: Integers
@@ -96,18 +99,18 @@ def begun(
     output_step: float | None,
     stop_at_overturning: bool,
 ) -> Begun:
-    """Begin a run.
+    """Give the arrays of a run as they are before its first step.
 
     Parameters
     ----------
     model : ContactModel
         The equations.
     start : Start or Ending
-        Where the run starts, or another run of the same model ended.
+        Start of the run, or the end of another run of the same model, from which it goes on.
     accuracy : Accuracy
         Settings.
     interval : float
-        Of the motion [s].
+        Interval between samples of the motion [s].
     duration : float
         Length of the run [s].
     output_step : float or None
@@ -122,7 +125,7 @@ def begun(
     Raises
     ------
     SolverError
-        Steps of the length asked for would not be stable.
+        Fixed steps of that length would not be stable.
     """
     if isinstance(start, Start):
         mode, state, memory = model.initial(start)
@@ -133,7 +136,7 @@ def begun(
     contact = model.system.contact_state_of(mode, 0)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     substeps = substeps_of(accuracy, model, interval)
-    # numbers may be those of many cases: put together first, then made a row
+    # each number may stand for many cases: collected first, then made an array
     controls = {
         at.RTOL: accuracy.rtol or at.FIXED_STEPS,
         at.FLOOR: accuracy.floor,
@@ -180,14 +183,14 @@ def begun(
 
 
 def _filled(size: int, numbers: Mapping[int, float]) -> Vector:
-    """Give a row of numbers by their places, of zeros elsewhere."""
+    """Give an array with numbers at some places, and zeros elsewhere."""
     return np.array([numbers.get(place, 0.0) for place in range(size)])
 
 
 def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: float) -> Vector:
     sizes: Vector = np.maximum(np.abs(state), FIRST_SCALE * model.scales)
     if model.rounding is not None and accuracy.rtol is not None and accuracy.floor > 0.0:
-        # no step is short enough for an error below the rounding of the forces
+        # no step is so short that its error is below the rounding error of the forces
         noise = model.rounding(abs(rotation))
         sizes = np.maximum(sizes, noise / (accuracy.rtol * accuracy.floor))
     return sizes
@@ -196,24 +199,23 @@ def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: flo
 EVENT_ROOM = 256
 STEP_ROOM = 1024
 STEPS_PER_INTERVAL = 3.0
-"""Room for steps, more than most runs need: memory that is not written to costs nothing."""
+"""Steps for which memory is allocated, more than most runs need: unwritten memory costs nothing."""
 MOST_STEPS_KEPT = 2_000_000
-"""Rows of steps, some hundred megabytes, of which the first are kept where there are more."""
+"""Rows of the table of steps, some hundred megabytes, from which on it grows no more."""
 STEPS_UNHEARD = 2_000_000
-"""Steps of machine code, a second or less, after which an interruption is heard."""
+"""Steps of machine code, a second or less, between checks for a keyboard interrupt."""
 STEPS_CALLING_BACK = 5000
-"""Steps of machine code, after which it is seen what it calls back in Python for long."""
+"""Steps of machine code between checks whether functions that it calls back pay to be compiled."""
 STEPS_AT_ONCE = 100
-"""Steps in plain Python, after which it is seen whether there is machine code by now."""
+"""Steps in plain Python between checks whether machine code is ready."""
 TELLING = 0.1
-"""Time in plain Python that tells how long the rest will take [s]."""
+"""Time in plain Python from which on the remaining time of the run is estimated [s]."""
 AND_AGAIN = 2.0
-"""Time of a run of fixed steps with its histories and half as many steps once more, over its own.
-
-Measured for blocks on one another: 1.9.
+"""Time of a run of fixed steps with its histories and the run that checks it with half as many
+steps more, over the time of the run itself. Measured for blocks on one another: 1.9.
 """
 STILL_INTERVAL = 0.01
-"""Interval into which time is cut where the ground has no samples [s]."""
+"""Interval that takes the place of the sample interval where there is no motion [s]."""
 
 
 def _steps_at_once(equations: BoundEquations) -> int:
@@ -242,9 +244,9 @@ def integrate(
     model : ContactModel
         The equations.
     start : Start or Ending
-        Where the run starts, or another run of the same model ended.
+        Start of the run, or the end of another run of the same model, from which it goes on.
     motion : Motion or None
-        Of the ground, which stands still beyond its last sample, or all the time.
+        Motion of the ground, without acceleration after its last sample; None for still ground.
     accuracy : Accuracy
         Settings.
     duration : float
@@ -254,9 +256,9 @@ def integrate(
     stop_at_overturning : bool
         Whether the run ends when the rotation reaches its limit.
     with_work : bool
-        Whether dashpot and input work are stored at the output times.
+        Whether the works of dashpots and ground are stored at the output times.
     keep_steps : bool
-        Whether both ends of all steps are kept, or of the first of very many.
+        Whether the ends of all steps are kept; of very many, those of the first.
 
     Returns
     -------
@@ -275,7 +277,7 @@ def integrate(
     out_mode = np.empty(rows, dtype=np.int64)
     out_work = np.zeros((rows if with_work else 0, 2))
     pieces = pieces_of(motion)
-    # that many samples are taken from the table of steps, so that steps go on at them
+    # so many samples are taken from the table of steps, and do not interrupt the march
     sampled = 0
     if rows:
         out_state[0], out_mode[0] = state, mode
@@ -290,13 +292,13 @@ def integrate(
     exact = accuracy.rtol is not None
 
     def take_samples(steps: Steps) -> Integers:
-        """Count the first outputs by the steps that end there, and take their modes."""
-        # each first row at a multiple of the output step, or a share before it
+        """Give the rows of the steps that end at output times, and store their modes."""
+        # the first row at, or just before, each multiple of the output step
         passed = np.floor(steps.time / (output_step or 1.0) + ON_SAMPLE)
         which = 1 + np.flatnonzero(passed[1:] > passed[:-1])[:sampled]
         count = 1 + len(which)
         out_mode[1:count] = steps.mode[which]
-        if count <= sampled:  # there are no more
+        if count <= sampled:  # the run ended earlier
             counters[at.OUTPUTS] = count
         return which
 
@@ -314,7 +316,7 @@ def integrate(
     )
     equations = equations_of(model.system, fixed_steps=accuracy.rtol is None, with_work=with_work)
     workspace = make_workspace(equations, state, run.reference, run.limits)
-    as_python, rest = 0.0, 0.0  # time that it took in plain Python, and may still take
+    as_python, rest = 0.0, 0.0  # time spent in plain Python so far, and expected to come [s]
     while True:
         began = seconds_as_python()
         tried = counters[at.STEPS] + counters[at.REJECTED]
@@ -342,7 +344,7 @@ def integrate(
                 first_steps = replace(first_steps, complete=False)
                 taken, sampled = take_samples(first_steps), 0
 
-    if not COMPILED or not runs_as_python(equations):  # of which more has been said
+    if not COMPILED or not runs_as_python(equations):  # else a warning has been given already
         say_slow(as_python)
 
     kept = first_steps
@@ -356,12 +358,12 @@ def integrate(
     out_state, out_mode, out_work = out_state[:stored], out_mode[:stored], out_work[:stored]
     happened = _events(events, int(counters[at.EVENTS]), width)
     at_once = int(np.count_nonzero(happened.time == 0.0))
-    if rows and at_once:  # before that, nothing was as it is shown
+    if rows and at_once:  # the first sample shows the state after the events at the start
         out_state[0] = happened.state_after[at_once - 1]
         out_mode[0] = happened.mode_after[at_once - 1]
     unfinished = result != at.COMPLETED
     if rows and unfinished and end - time[-1] > ON_SAMPLE * (output_step or 1.0):
-        # the instant at which the run ended belongs to its history
+        # the end of the run is a sample, too
         time = np.concatenate([time, np.array([end])])
         out_state = np.vstack([out_state, workspace.state])
         out_mode = np.append(out_mode, counters[at.MODE])
@@ -389,7 +391,7 @@ def integrate(
 def make_workspace(
     equations: BoundEquations, state: Vector, reference: Vector, limits: Vector
 ) -> Workspace:
-    """Allocate the arrays beside those that a run begins with."""
+    """Allocate the arrays of steps, with a state as the start of the first one."""
     size = equations.coordinate_count
     slope = size + equations.variable_count + POWERS
     guards = 2 * (equations.guard_count + 1)
@@ -419,7 +421,7 @@ def make_workspace(
 
 
 def _on_samples(intervals: int, interval: float, output_step: float, rows: int) -> int:
-    """Count the output times behind the start that are samples of the motion: steps end there."""
+    """Count the output times after the start that coincide with samples: steps end there."""
     every = round(output_step / interval)
     if every < 1:
         return 0
@@ -430,7 +432,7 @@ def _on_samples(intervals: int, interval: float, output_step: float, rows: int) 
 
 
 def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
-    """Give the arrays of a table with as much room again."""
+    """Give the arrays of a table, twice as long."""
     return (
         np.concatenate([values, np.empty_like(values)]),
         np.concatenate([codes, np.empty_like(codes)]),
@@ -438,7 +440,7 @@ def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
 
 
 def pieces_of(motion: Motion | None) -> Pieces:
-    """Give the polynomials of both directions."""
+    """Give the polynomials of the ground acceleration in both directions."""
     if motion is None:
         return Pieces(_STILL, _STILL)
     vertical = _STILL if motion.vertical is None else motion.vertical.pieces
