@@ -1,8 +1,8 @@
-"""One source, two speeds: compiled by numba where it is installed, plain Python where not.
+"""Compilation of equations by numba where it is installed; plain Python where it is not.
 
-Functions and methods that can be compiled are marked, and stay what they are in Python;
-the few entries run as machine code, which numba keeps on disk. ``ROCKFRAME_COMPILE=0`` in
-the environment keeps to plain Python; ``ROCKFRAME_CACHE_DIR`` names another folder for the
+Functions and methods that can be compiled are marked, and can still be called from Python;
+the few entries run as machine code, which numba stores on disk. ``ROCKFRAME_COMPILE=0`` in
+the environment turns compilation off; ``ROCKFRAME_CACHE_DIR`` names another folder for the
 machine code.
 """
 

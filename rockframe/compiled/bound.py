@@ -1,7 +1,7 @@
-"""Functions of a tuple of numbers, bound to one such tuple.
+"""Bound functions: functions whose first argument, a tuple of numbers, is fixed.
 
-Compiled code calls them by their address, whatever the class of the tuple: its numbers are
-the elements of the last argument, a vector.
+Compiled code calls a bound function by its address, whatever the class of the tuple: the numbers
+of the tuple are handed over as the last argument, a vector.
 """
 
 from collections.abc import Callable, Iterator
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 def numbers_in(bundle: Any) -> Vector:
     """Give the numbers of a tuple and of the tuples in it, one after the other.
 
-    An array, with which a tuple may end, is copied: each run works in its own.
+    The elements of an array, which may be the last element of a tuple, are copied, so that each run
+    has its own.
     """
     return np.array([float(value) for value in elements_of(bundle)], dtype=np.float64)
 
@@ -35,14 +36,14 @@ def elements_of(bundle: Any) -> Iterator[Any]:
 
 
 def structure_of(bundle: Any) -> tuple[Any, ...]:
-    """Give the class of a tuple and, in their order, the kinds of what it holds."""
+    """Give the class of a tuple and, in their order, the types of its elements."""
     return (type(bundle), *(
         structure_of(value) if isinstance(value, tuple) else type(value) for value in bundle
     ))  # fmt: skip
 
 
 class Signature:
-    """Numba's signature of a function, which is looked up in each call of an entry: hashed once."""
+    """Numba's signature of a function, with its hash: each call of an entry looks it up."""
 
     def __init__(self, value: Any) -> None:
         self.value = value
@@ -59,9 +60,9 @@ _shared = cache(Signature)
 
 
 class Source:
-    """A function and the structure of a tuple that it can be bound to.
+    """A function and the structure of the tuples that it is bound to: what is compiled once.
 
-    One that is called seldom may run as plain Python until it is worth compiling.
+    A function that is called seldom may run as plain Python until it pays to compile it.
     """
 
     def __init__(
@@ -71,21 +72,21 @@ class Source:
         self.structure = structure
         self.in_lanes = in_lanes
         self.is_seldom_called = seldom
-        self.code: Any = None  # once it has been compiled
-        self.address = 0  # of that
-        self.failed = False  # to be compiled
-        self.seconds_called_back = 0.0
+        self.code: Any = None  # the compiled function, or None
+        self.address = 0  # its address, or 0
+        self.failed = False  # whether it could not be compiled
+        self.seconds_called_back = 0.0  # time spent in it as plain Python [s]
 
     @cached_property
     def job(self) -> "Job":
-        """What is compiled of it."""
+        """The job that compiles it."""
         from rockframe.compiled.jobs import Job
 
         return Job(self.function, self.structure, True, self.in_lanes)
 
     @cached_property
     def called_back(self) -> CalledBack:
-        """What machine code calls where there is none of this."""
+        """The Python function that machine code calls as long as this is not compiled."""
         return CalledBack(self)
 
     @cached_property
@@ -100,7 +101,7 @@ _source = cache(Source)
 
 
 class Bound:
-    """A function bound to a tuple: plain Python, and what entries call in its place."""
+    """A function bound to a tuple: called in plain Python, or by entries as machine code."""
 
     __slots__ = ("_bundle", "source")
 
@@ -109,16 +110,16 @@ class Bound:
         self._bundle = bundle
 
     def call(self, *arguments: Any) -> Any:
-        """Call the function with the tuple in place of its numbers, the last argument."""
+        """Call the function with its tuple; the last argument, the tuple's numbers, is ignored."""
         return self.source.function(self._bundle, *arguments[:-1])
 
 
 def bound(
     functions: tuple[Callable[..., Any], ...], bundle: Any, *, seldom: bool = False
 ) -> tuple[Bound, ...]:
-    """Bind functions to the tuple that is their first argument; say if they are called seldom.
+    """Bind functions to the tuple that is their first argument; `seldom` if rarely called.
 
-    They share a copy of an array with which it may end.
+    If the last element of the tuple is an array, all of them share one copy of it.
     """
     structure = structure_of(bundle)
     if isinstance(bundle, tuple) and isinstance(bundle[-1], np.ndarray):
@@ -127,6 +128,6 @@ def bound(
 
 
 def bound_in_lanes(function: Callable[..., Any], bundle: Any) -> Bound:
-    """Bind a function to the class of a tuple, of which each lane has its own."""
+    """Bind a function to the class of a tuple; each lane has its own numbers of it."""
     structure = structure_of(bundle)
     return Bound(_source(function, structure, True, False), tuple_from(structure))

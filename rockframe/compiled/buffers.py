@@ -1,10 +1,10 @@
-"""Arrays as compiled functions see them: an address and a shape, and nothing to keep count of.
+"""Arrays as compiled functions see them: an address and a shape, without reference counting.
 
 Indices are not checked, and none counts from the end.
 
-numba counts the references to its own arrays, a matter of nanoseconds each time one is taken
-out of a tuple, which is most of the time of a step. A buffer belongs to whoever called.
-Made with numba's documented extension interface; imported only where numba is.
+numba counts the references to its own arrays, which takes nanoseconds each time one is taken
+out of a tuple: that would be most of the time of a step. A buffer belongs to the caller.
+Made with numba's documented extension interface; imported only where numba is installed.
 """
 
 import operator
@@ -51,7 +51,7 @@ extending.make_attribute_wrapper(BufferType, "shape", "shape")
 
 @extending.intrinsic
 def buffer_of(_: Any, array: Any) -> Any:
-    """Give the buffer of an array that somebody else keeps, in compiled code."""
+    """Give the buffer of an array that the caller keeps, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         given = context.make_array(signature.args[0])(context, builder, values[0])
@@ -109,7 +109,7 @@ def _with_number(_: Any, numbers: Any, place: Any, number: Any) -> Any:
 
 @extending.intrinsic
 def _strided(_: Any, kept: Any, first: Any) -> Any:
-    """Give the buffer of every element that is some lanes further, in compiled code."""
+    """Give a buffer with stride `LANES` from an index on, in compiled code."""
     strided = BufferType(kept.dtype, 1, kept.writeable, language.LANES)
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -138,10 +138,10 @@ def _as_integers(_: Any, kept: Any) -> Any:
 
 @extending.intrinsic
 def _widen(_: Any) -> Any:
-    """Let LLVM use the widest registers in the function that calls, in compiled code.
+    """Let LLVM use the widest registers in the calling function, in compiled code.
 
-    Where they are 512 bits wide it prefers half of them, for programs that use them now and
-    then. llvmlite names no such attribute of functions, but prints any.
+    Where registers have 512 bits, LLVM by itself uses 256 of them, which suits programs that need
+    wide ones only now and then. llvmlite does not know this attribute, but writes any text.
     """
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -237,7 +237,7 @@ def _address_of(context: Any, builder: Any, signature: Any, values: Any) -> Any:
 
 
 def _place_in(kept: BufferType, place: Any) -> Any:
-    """Give the type of an index of an element; none of slices, which are not known."""
+    """Give the type of an index of an element; None for slices, which are not supported."""
     if kept.dimensions == 1:
         return numba.intp if isinstance(place, numba.types.Integer) else None
     numbers = place if isinstance(place, numba.types.BaseTuple) else ()
@@ -277,7 +277,7 @@ def _put(numbers: Any, first: Any, out: Any) -> Callable[..., Any]:
 
 
 def _written(arguments: str, line: str, **names: Any) -> Callable[..., Any]:
-    """Make a function of one line, as long as some tuple is."""
+    """Make a function from a line of source, whose length depends on that of a tuple."""
     scope: dict[str, Any] = {"with_number": _with_number, **names}
     exec(f"def written({arguments}):\n    {line}\n", scope)  # noqa: S102
     return scope["written"]

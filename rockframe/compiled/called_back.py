@@ -1,8 +1,8 @@
-"""Functions in Python that machine code calls, as long as they are not worth compiling.
+"""Python functions that machine code calls back, as long as it does not pay to compile them.
 
-What is called at events only may take half of all the time to compile, and a thousandth of that of
-a run. Compiled code calls it like any bound function, by an address: a buffer is handed over as
-its address and its lengths, one after the other.
+Functions that are called at events only may take half of the time of compilation, but a thousandth
+of the time of a run. Compiled code calls them like any bound function, by an address; a buffer is
+handed over as its address and its lengths, one after the other.
 """
 
 import ctypes
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 _WORD: Final = ctypes.c_int64
 _NUMBERS: Final[dict[Any, Any]] = {int: _WORD, float: ctypes.c_double, type(None): None}
-"""What numbers, and nothing, are handed over as."""
+"""C types of numbers, and of no result."""
 _BUFFERS: Final[dict[Any, tuple[Any, str, int]]] = {
     Vector: (ctypes.c_double, "d", 1),
     Integers: (_WORD, "q", 1),
     ReadOnlyMatrix: (ctypes.c_double, "d", 2),
 }
-"""Kind of the elements of buffers, its letter, and the number of dimensions."""
+"""C type of the elements of buffers, its format character, and the number of dimensions."""
 
 
 class _Raised(threading.local):
-    """What functions raised that machine code called in this thread."""
+    """The first exception of a function that machine code called back in this thread."""
 
     first: BaseException | None = None
 
@@ -38,7 +38,7 @@ _raised: Final = _Raised()
 
 
 class CalledBack:
-    """A function at an address where it runs as plain Python, of the numbers that it is given."""
+    """A bound function that runs as plain Python and has an address for machine code to call."""
 
     def __init__(self, source: "Source") -> None:
         bundle_of = tuple_from(source.structure)
@@ -54,7 +54,7 @@ class CalledBack:
             try:
                 *arguments, numbers = _arguments(kinds, words)
                 return source.function(bundle_of(numbers), *arguments)
-            except BaseException as raised:  # machine code knows no exceptions: raised behind it
+            except BaseException as raised:  # machine code knows no exceptions: raised after it
                 _raised.first = _raised.first or raised
                 return 0
             finally:
@@ -65,7 +65,7 @@ class CalledBack:
 
 
 def _arguments(kinds: list[Any], words: tuple[Any, ...]) -> list[Any]:
-    """Give the arguments of a call, arrays as memory views."""
+    """Give the arguments of a call from the words handed over; arrays are memory views."""
     arguments: list[Any] = []
     place = 0
     for kind in kinds:
@@ -83,7 +83,7 @@ def _arguments(kinds: list[Any], words: tuple[Any, ...]) -> list[Any]:
 
 
 def raising(routine: Callable[..., Any], words: list[Any]) -> Any:
-    """Run machine code, and raise what a function raised that it called back."""
+    """Run machine code, then raise the first exception of a function that it called back."""
     _raised.first = None
     result = routine(*words)
     raised, _raised.first = _raised.first, None

@@ -1,8 +1,8 @@
 """How compiled code calls marked functions, methods of named tuples, and bound functions.
 
-Made with numba's documented extension interface; imported only where numba is. A bound function
-is an address, and its signature is its type: numba's own type of functions asks Python for the
-address of each one in each call of an entry, which takes longer than a short run.
+Made with numba's documented extension interface; imported only where numba is installed. A bound
+function is an address, and its signature is its type: with numba's own type for functions each
+call of an entry would ask Python for all addresses, which takes longer than a short run.
 """
 
 from collections.abc import Callable
@@ -21,17 +21,18 @@ templates: Final[Any] = import_module("numba.core.typing.templates")
 
 OPTIONS: Final = {"error_model": "numpy"}
 HELPER: Final = OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""Division by zero gives infinities and NaN, as numpy's, and is not checked for."""
+"""Options of helper functions. Division by zero gives infinity or NaN as in numpy, unchecked."""
 
 _known: Final[dict[Callable[..., Any], Any]] = {}
-"""Functions and methods that numba knows, and its compiled ones, to which it refers weakly."""
+"""Functions and methods registered with numba, and their compiled counterparts, to which numba
+itself holds weak references only."""
 _ANYTHING: Final = numba.types.VarArg(numba.types.Any)
 _methods: Final[dict[Callable[..., Any], Any]] = {}
-"""How numba finds the types of a method's call."""
+"""Templates by which numba finds the types in the call of a method."""
 
 
 def register_kernels() -> None:
-    """Make all functions and methods known that were marked since the last time."""
+    """Register all functions and methods with numba that were marked since the last time."""
     for function, into_caller in list(KERNELS.items()):
         if function not in _known:
             _register(function, into_caller)
@@ -40,16 +41,16 @@ def register_kernels() -> None:
 
 
 def register_inlined(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Make one more function known, which is compiled into its callers."""
+    """Register one more function with numba, which is compiled into its callers."""
     _register(function, True)
     return function
 
 
 class _Compiled(numba.types.Dispatcher):
-    """numba's type of a compiled function, to which all numbers of a kind are alike."""
+    """numba's type of a compiled function that is not compiled anew for constant arguments."""
 
     def get_call_type(self, context: Any, arguments: Any, keywords: Any) -> Any:
-        """Give the types of a call, not that of each constant that it is called with."""
+        """Give the types of a call; a constant argument has the type of its kind of number."""
         alike = [numba.types.unliteral(each) for each in arguments]
         named = {name: numba.types.unliteral(each) for name, each in keywords.items()}
         return super().get_call_type(context, alike, named)
@@ -60,12 +61,12 @@ extending.register_model(_Compiled)(extending.models.OpaqueModel)
 
 @imputils.lower_constant(_Compiled)
 def _no_value(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """Hand over, for a function that is an argument, nothing: its type says which it is."""
+    """Hand over no value for a function that is an argument: its type tells which it is."""
     return context.get_dummy_value()
 
 
 def _register(function: Callable[..., Any], into_caller: bool) -> None:
-    """Let calls of a function mean its compiled one: one for all callers.
+    """Let calls of a function mean its compiled counterpart, one for all callers.
 
     numba's ``register_jitable`` compiles it anew for callers with other options.
     """
@@ -78,7 +79,7 @@ def _register(function: Callable[..., Any], into_caller: bool) -> None:
 
 
 def _register_method(function: Callable[..., Any]) -> None:
-    """Let numba call a method as the function that it is, its object the first argument."""
+    """Let numba call a method as a function whose first argument is the object."""
     name = f"{function.__module__}.{function.__qualname__}"
 
     class Call(templates.AbstractTemplate):
@@ -102,7 +103,7 @@ def _register_method(function: Callable[..., Any]) -> None:
 
 @templates.infer_getattr
 class _MethodsOfTuples(templates.AttributeTemplate):
-    """Methods of a named tuple are those of its class; its fields come first."""
+    """Lets numba find methods of a named tuple in its class, after its fields."""
 
     key = numba.types.BaseNamedTuple
 
@@ -127,7 +128,7 @@ class _CodeModel(extending.models.PrimitiveModel):
 
 
 def code_at(signature: Any) -> Any:
-    """Make the function that takes a whole number for the address of a function."""
+    """Make the function by which compiled code turns an integer into a callable address."""
     kind = CodeType(signature)
 
     @extending.intrinsic

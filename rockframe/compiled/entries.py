@@ -1,7 +1,7 @@
-"""Functions that Python calls and that run as machine code where numba is installed.
+"""Entries: functions that Python calls and that run as machine code where numba is installed.
 
-One is compiled for each structure of its arguments: the classes of its named tuples, the
-kinds of its arrays and numbers.
+An entry is compiled for each structure of its arguments: the classes of its named tuples, the
+types of its arrays and numbers.
 """
 
 import logging
@@ -43,15 +43,15 @@ _ASKED: Final = os.environ.get("ROCKFRAME_COMPILE", "")
 COMPILED: Final = _ASKED != "0" and _HAS_NUMBA
 """Whether functions are compiled."""
 WAITS: Final = _ASKED in {"wait", "often"}
-"""Whether all entries wait for their machine code; `often`, but for what they call seldom."""
+"""Whether all entries wait for their machine code; with `often`, not for what they call seldom."""
 _CALLS_BACK: Final = _ASKED != "wait"
 CALLED_BACK: Final = 1.0 / 3.0
-"""Share of the time of a compilation that may be spent before it in what is called back.
+"""A function called back is compiled once it has taken this share of the time to compile it.
 
-So little is lost where it is compiled after all, and nothing where a few short runs are made.
+So little time is lost where it is compiled after all, and none where a few short runs are made.
 """
 PATIENCE: Final = 3.0
-"""Length of a run in plain Python from which on compilation is spoken of [s]."""
+"""Time in plain Python from which on a message tells why a run was slow [s]."""
 _said_slow: Final[list[bool]] = []
 
 _logger = logging.getLogger("rockframe")
@@ -69,9 +69,9 @@ def entry(function: Function) -> Function:
 
 
 def entry_at_once(function: Function) -> Function:
-    """Mark an entry that runs as plain Python, which gives the same, until it is compiled.
+    """Mark an entry that runs as plain Python, with the same results, until it is compiled.
 
-    It returns now and then, and may call back in Python what is called seldom.
+    It must return now and then; as machine code it may call back functions in Python.
     """
     if not COMPILED:
         return cast("Function", _as_python(function))
@@ -87,13 +87,13 @@ def _as_python(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def table(values: Any) -> Vector:
-    """Give a table of constants, of one or two dimensions, as equations read it fastest."""
+    """Give a table of constants, of one or two dimensions, in the form that is read fastest."""
     kept = np.array(values, dtype=np.float64)
     return kept if COMPILED else viewed(kept)
 
 
 def _could_not(function: Callable[..., Any], problem: Exception) -> None:
-    """Say that a function could not be compiled, and why; all of it at the level of debugging."""
+    """Warn that a function could not be compiled, with the reason; log all of it for debugging."""
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
     reason = next((line for line in lines if not line.startswith("Failed in")), "no reason")
     _logger.warning(
@@ -104,7 +104,7 @@ def _could_not(function: Callable[..., Any], problem: Exception) -> None:
 
 
 def seconds_as_python() -> float:
-    """Give a clock that goes while entries run as plain Python, not while others compile [s]."""
+    """Give a clock that runs only while entries run as plain Python [s]."""
     return AS_PYTHON[0] if COMPILED else perf_counter()
 
 
@@ -125,7 +125,7 @@ def say_slow(seconds: float) -> None:
 
 
 class Entry:
-    """A compiled function: the machine code for each structure of arguments."""
+    """An entry, with its machine code for each structure of arguments."""
 
     def __init__(
         self, function: Callable[..., Any], waits: bool = True, calls_back: bool = False
@@ -163,17 +163,17 @@ class Entry:
         return raising(routine, words)
 
     def _needed(self, sources: list[Source]) -> tuple[list[Source], list[Source]]:
-        """Give what must be compiled before this runs, and what may be called back meanwhile."""
+        """Divide bound functions: those to compile before this runs, and those called back."""
         seldom: list[Source] = []
         if self._calls_back:
             seldom = [source for source in _missing(sources) if source.is_seldom_called]
         return [source for source in sources if source not in seldom], seldom
 
     def _catch_up(self, sources: list[Source]) -> None:
-        """Compile what has been called back in Python for long, or take what was kept of it.
+        """Compile, or load, functions that have been called back in Python for long enough.
 
-        For a share of what compiling takes, where this waits, and else for a moment, as another
-        process compiles it.
+        Where entries wait, that is a share of the time to compile them; else a moment, as another
+        process compiles them.
         """
         from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, NotCompiledError, make_all
 
@@ -213,10 +213,10 @@ class Entry:
     def _meanwhile(
         self, structure: tuple[Any, ...], sources: list[Source], seldom: list[Source]
     ) -> "Meanwhile | None":
-        """Give what goes on until there is machine code; None where that is not worth it.
+        """Give the compilation for which plain Python fills in; None where that does not pay.
 
-        Where there can be none, there is some, or it is a matter of a moment, all functions being
-        compiled that the entry calls.
+        That is where there can be no machine code, where there is some, or where all functions that
+        the entry calls are compiled and the entry itself takes a moment.
         """
         from rockframe.compiled.parallel import WORTHWHILE, Meanwhile, time_for
 
@@ -235,7 +235,7 @@ class Entry:
         return failed or any(source.failed for source in sources)
 
     def _jobs(self, structure: tuple[Any, ...], sources: list[Source]) -> "list[Job]":
-        """Give what is to be compiled for a call: bound functions, then, always, the entry."""
+        """Give the jobs of a call: its bound functions without machine code, then the entry."""
         from rockframe.compiled.jobs import Job
 
         jobs = [source.job for source in _missing(sources)]
@@ -256,7 +256,7 @@ class Entry:
             *codes, routine = make_all(jobs)
         except NotCompiledError as found:
             _could_not(jobs[found.place].function, found.problem)
-            if found.place < len(missing):  # the entry still serves other systems
+            if found.place < len(missing):  # a bound function: other systems can use the entry
                 missing[found.place].failed = True
             else:
                 self._routines[structure] = None
@@ -274,13 +274,13 @@ def _missing(sources: list[Source]) -> list[Source]:
 def compiled_within(
     patience: float, function: Callable[P, Any], *arguments: P.args, **_: P.kwargs
 ) -> bool:
-    """Tell whether an entry runs as machine code, which is compiled unless that takes long."""
+    """Whether an entry has machine code, compiled now if that takes at most `patience` [s]."""
     return isinstance(function, Entry) and function.is_compiled_within(patience, arguments)
 
 
 @contextmanager
 def compiling_for(words: str) -> Generator[None]:
-    """Say, where something is compiled meanwhile, for what."""
+    """Set what messages about compilation in this block say it is for."""
     before = NEEDED_BY.set(words)
     try:
         yield
@@ -290,7 +290,7 @@ def compiling_for(words: str) -> Generator[None]:
 
 @contextmanager
 def still_taking(seconds: float) -> Generator[None]:
-    """Say how long what is called here will still take in plain Python, this time and later [s]."""
+    """Set how long the caller of this block expects it to take yet in plain Python [s]."""
     before = STILL_TAKES.set(seconds)
     try:
         yield
@@ -299,7 +299,7 @@ def still_taking(seconds: float) -> Generator[None]:
 
 
 def _structure_of(argument: Any, words: list[Any], sources: list[Source]) -> Any:
-    """Describe an argument, and add the words that hand it over, and bound functions in it."""
+    """Give the structure of an argument; add the words that hand it over, and bound functions."""
     if isinstance(argument, tuple):
         values = cast("tuple[Any, ...]", argument)
         return (type(values), *[_structure_of(value, words, sources) for value in values])

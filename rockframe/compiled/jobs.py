@@ -1,8 +1,8 @@
-"""What is compiled: a module of a few lines for each function and structure of its arguments.
+"""Compilation jobs: a module of a few lines for each function and structure of its arguments.
 
-numba keeps machine code beside the module that a function is defined in, and throws it away
-when that file changes. It knows nothing of the files of the functions that are called: their
-contents are part of the name of the folder that the module is written to.
+numba stores machine code beside the module that defines a function, and discards it when that
+file changes. It does not look at the files of functions that are called from there: a digest of
+these files is part of the name of the folder that the module is written to (`store.py`).
 """
 
 import inspect
@@ -44,17 +44,17 @@ KINDS: Final[dict[Any, Any]] = {
 
 
 class Writer:
-    """Writes how arguments are put together, and what that needs."""
+    """Writes the source by which a module puts the arguments of a function together."""
 
     def __init__(self) -> None:
-        self.kinds: list[Any] = []
-        self.scope: dict[str, Any] = {}
-        self.notes: list[str] = []  # what the text depends on and does not show
+        self.kinds: list[Any] = []  # numba's types of the words that are handed over
+        self.scope: dict[str, Any] = {}  # names that the source uses
+        self.notes: list[str] = []  # comments on what the source depends on but does not show
 
     def tuple_of(self, structure: tuple[Any, ...]) -> str:
         """Give the expression that makes a tuple of the elements of ``numbers``.
 
-        An array takes all that are left.
+        An array, the last element of a tuple, takes the rest of them.
         """
         kind, *parts = structure
         taken: list[str] = []
@@ -73,7 +73,7 @@ class Writer:
         return f"{self._name(kind)}({', '.join(taken)})"
 
     def argument(self, structure: Any) -> str:
-        """Give the expression of an argument of words."""
+        """Give the expression that makes an argument from words."""
         if isinstance(structure, tuple) and isinstance(structure[0], type):
             parts = ", ".join(self.argument(part) for part in structure[1:])
             return f"{self._name(structure[0])}({parts})"
@@ -103,10 +103,10 @@ _logger = logging.getLogger("rockframe")
 _said: Final[set[str]] = set()
 
 _SECONDS_OF_BYTE: Final = 1.7e-4
-"""Time to compile a byte of Python's own code, of all that a function calls [s].
+"""Time to compile a byte of Python's bytecode, of a function and all that it calls [s].
 
-Measured with numba 0.68 for blocks on pads, coupled, and in stacks: all that a run needs took from
-nine tenths to 1.2 times as long, of processor time.
+Measured with numba 0.68 for blocks on pads, coupled, and in stacks: the processor time for all that
+a run needs was 0.9 to 1.2 times this estimate.
 """
 
 
@@ -122,11 +122,11 @@ class Job:
     """A function to compile for one structure of its arguments."""
 
     function: Callable[..., Any]  # its source
-    # of the tuple that it is bound to, :func:`rockframe.compiled.bound.structure_of`; of all its
-    # arguments, as :class:`rockframe.compiled.entries.Entry` describes them
+    # of a bound function, that of its tuple, :func:`rockframe.compiled.bound.structure_of`; of an
+    # entry, that of all arguments, as :class:`rockframe.compiled.entries.Entry` describes it
     structure: tuple[Any, ...]
-    bound: bool  # which of these
-    in_lanes: bool = False  # whether it is bound to the class of the tuple alone
+    bound: bool  # whether it is a bound function
+    in_lanes: bool = False  # whether it is bound to the class of a tuple, not to one tuple
 
     @cached_property
     def _written(self) -> tuple[str, dict[str, Any], Any]:
@@ -157,7 +157,7 @@ class Job:
 
     @cached_property
     def file(self) -> Path | None:
-        """The module's file; None where it cannot be kept."""
+        """The module's file; None where it cannot be stored."""
         text, scope, signature = self._written
         classes = [kind for kind in scope.values() if isinstance(kind, type)]
         return store.file_of(self.function, f"{text}\n# {signature}\n", classes)
@@ -175,11 +175,11 @@ class Job:
 
     @property
     def is_stored(self) -> bool:
-        """Whether its machine code has been kept."""
+        """Whether its machine code is stored."""
         return self.file is not None and store.has_code(self.file)
 
     def make(self, waiting: Callable[[], bool] = lambda: True) -> Any:
-        """Give the compiled function: compiled now, or as it was kept."""
+        """Give the compiled function: loaded from the store, or compiled now."""
         file = self.file
         if file is None:
             register_kernels()
@@ -214,17 +214,17 @@ class Job:
 
 
 def seconds_of(jobs: Sequence[Job]) -> float:
-    """Give about how long jobs take one after another: what several call is compiled once [s]."""
+    """Estimate how long jobs take one after another; functions they share count once [s]."""
     functions = set[Any]().union(*(job.calls for job in jobs))
     return _SECONDS_OF_BYTE * sum(len(each.__code__.co_code) for each in functions)
 
 
 @contextmanager
 def operators_remembered() -> Generator[None]:
-    """Let numba find out once in this block what an operator of numbers of some kinds is.
+    """Let numba resolve an operator on numbers of some types only once in this block.
 
-    It goes through all meanings of an operator, numpy's too, wherever one stands: a twelfth of the
-    time of a compilation.
+    By itself it goes through all definitions of an operator, numpy's too, at each place of it: a
+    twelfth of the time of a compilation.
     """
     kind, numbers = numba.types.Function, (numba.types.Number, numba.types.Boolean)
     look = kind.get_call_type
@@ -253,7 +253,7 @@ def classes_of_structure(structure: tuple[Any, ...]) -> set[type]:
 
 
 def called_by(function: Any, kinds: set[type]) -> set[Any]:
-    """Give a function and all marked ones that it may call: methods of these classes by name."""
+    """Give a function and all marked ones that it may call; methods of `kinds` by their names."""
     found, waiting = set[Any](), [function]
     while waiting:
         caller = waiting.pop()

@@ -1,12 +1,12 @@
-"""What functions that can be compiled are written in: marks, array types, tuples, lanes.
+"""The vocabulary of functions that can be compiled: marks, array types, tuples, lanes.
 
 Marked functions and methods stay plain Python: called from Python they run as Python. Methods are
 those of named tuples of numbers, and belong to their classes: other classes may have fields, or
 other methods, of the same name.
 
-Many runs lie side by side in one array that holds everything of all of them, field by field:
-element ``field * LANES + lane`` is a field of one lane. A loop over all lanes that reads and
-writes nothing but such an array is compiled to instructions for several lanes at once.
+Runs in lanes share one array, ordered by fields: element ``field * LANES + lane`` is a field of one
+lane. A loop over all lanes that reads and writes nothing but such an array is compiled to
+instructions for several lanes at once.
 """
 
 from collections.abc import Callable
@@ -30,11 +30,11 @@ KERNELS: Final[dict[Callable[..., Any], bool]] = {}
 
 
 NEEDED_BY: Final = ContextVar("needed_by", default="this")
-"""What needs the machine code that is being compiled."""
+"""What needs the machine code that is compiled, for messages."""
 AS_PYTHON: Final[list[float]] = [0.0]
 """Processor time that entries have spent in plain Python while they were compiled [s]."""
 STILL_TAKES: Final = ContextVar("still_takes", default=0.0)
-"""Time that the caller will still take in plain Python, as far as it knows [s]."""
+"""Time that the caller expects to take yet in plain Python; 0 where it does not know [s]."""
 
 
 def kernel(function: Function) -> Function:
@@ -44,9 +44,9 @@ def kernel(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Mark a function, or a method, that is compiled into its callers.
+    """Mark a function, or a method, that is compiled into each of its callers.
 
-    For the few that every step calls.
+    That is for the few functions that every step calls.
     """
     KERNELS[function] = True
     return function
@@ -63,7 +63,7 @@ Bundle = TypeVar("Bundle")
 
 
 def constant(value: float, like: tuple[float, ...]) -> tuple[float, ...]:
-    """Give a tuple as long as another one, of one number."""
+    """Give a tuple as long as another one, with one number in all places."""
     return (value,) * len(like)
 
 
@@ -76,7 +76,7 @@ def put(numbers: tuple[float, ...] | Vector, first: int, out: Vector) -> None:
 def with_numbers(
     numbers: tuple[float, ...], first: int, others: tuple[float, ...]
 ) -> tuple[float, ...]:
-    """Give a tuple with others in place of some of its numbers, from an index on."""
+    """Give a copy of a tuple in which other numbers replace some, from an index on."""
     return (*numbers[:first], *others, *numbers[first + len(others) :])
 
 
@@ -87,7 +87,7 @@ def filled(like: Bundle, numbers: Vector) -> Bundle:
 
 
 def part_of(array: Vector, first: int) -> Vector:
-    """Give an array from an index on; no copy."""
+    """Give the part of an array from an index on; no copy."""
     return array[first:]
 
 
@@ -100,26 +100,26 @@ def stretch(array: Array, first: int, count: int) -> Array:
 Numbers = TypeVar("Numbers", Vector, Integers)
 
 LANES: Final = 16
-"""Lanes of a batch: two of the widest registers, four of the usual ones."""
+"""Number of lanes: they fill two of the widest registers, or four of the usual ones."""
 
 
 def lane_of(room: Numbers, field: int, lane: int) -> Numbers:
-    """Give the fields of one lane, from a field on; no copy."""
+    """Give the fields of one lane, from a field on, as an array; no copy."""
     fields: Numbers = room[field * LANES + lane :: LANES]
     return fields
 
 
 def as_integers(array: Vector) -> Integers:
-    """Give the same memory as whole numbers."""
+    """Give a view of an array as integers of the same memory."""
     return array.view("int64")
 
 
 def widest_registers() -> None:
-    """Have the function that calls this compiled for the widest registers there are."""
+    """Have the calling function compiled for the widest registers of the processor."""
 
 
 def tuple_from(structure: tuple[Any, ...]) -> Callable[[Vector], Any]:
-    """Give the function that makes a tuple of numbers in a vector."""
+    """Give the function that makes a tuple of some structure from a vector of its numbers."""
 
     def made(kind: Any, parts: tuple[Any, ...], numbers: Vector, first: int) -> tuple[Any, int]:
         taken: list[Any] = []

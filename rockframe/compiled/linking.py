@@ -1,12 +1,12 @@
-"""Functions that only compiled code calls: optimised once, within the entry that calls them.
+"""Late linking: functions that only compiled code calls are optimised once, within their entry.
 
-numba optimises each function with all that it calls, and makes machine code of it, each time;
-of that only the entry's is ever run. Here a library of numba waits, as it was written, until
-somebody asks for an address in it, or links it outside of rockframe, and is then put together
-from all that it calls and optimised as a whole. Which operations are done in which order stays
-the same, and with that each bit of each result.
+By itself numba optimises each function together with all that it calls and makes machine code of
+it, though only that of the entry is ever run. Here a library of numba stays unoptimised until an
+address in it is needed, or code outside of rockframe links it; it is then linked with all that it
+calls and optimised as a whole. The operations and their order stay the same, and with them each bit
+of each result.
 
-numba documents none of this: with a version that was not tried, all goes its ordinary way.
+numba does not document this: with an untested version of it everything goes its ordinary way.
 """
 
 from collections.abc import Generator
@@ -17,7 +17,7 @@ from typing import Any, Final
 from rockframe.compiled.calls import numba
 
 TRIED: Final = ((0, 61), (0, 68))
-"""First and last version of numba that this was tried with."""
+"""First and last version of numba that this was tested with."""
 
 _codegen: Final[Any] = import_module("numba.core.codegen")
 _registry: Final[Any] = import_module("numba.core.registry")
@@ -30,11 +30,11 @@ IS_KNOWN: Final[bool] = TRIED[0] <= tuple(numba.version_info[:2]) <= TRIED[1] an
         "_get_module_for_linking", "_optimize_functions", "_optimize_final_module",
     )
 )  # fmt: skip
-"""Whether numba's libraries can wait."""
+"""Whether this version of numba allows late linking."""
 
 
 class _Waiting(_codegen.JITCodeLibrary):
-    """A library that is put together when an address in it is asked for."""
+    """A library of numba that is linked and optimised when an address in it is needed."""
 
     def __init__(self, *arguments: Any, **words: Any) -> None:
         super().__init__(*arguments, **words)
@@ -42,11 +42,11 @@ class _Waiting(_codegen.JITCodeLibrary):
 
     @property
     def codegen(self) -> Any:
-        """What takes the environments of functions: this, as long as they have no address."""
+        """The object that stores environments of functions: this one until it is linked."""
         return self._codegen if self._finalized else self
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Keep the environment of a function until there is a place for it."""
+        """Keep the environment of a function until the library is linked."""
         self._environments.append((name, environment))
 
     def add_linking_library(self, library: Any) -> None:
@@ -66,21 +66,21 @@ class _Waiting(_codegen.JITCodeLibrary):
         return address
 
     def finalize(self) -> None:
-        """Put the library together from its own code and all that it calls."""
+        """Link the library from its own code and all that it calls."""
         self._linking_libraries = _callers_first(self)
         super().finalize()
-        self._shared_module = None  # what was linked before called what this holds now
+        self._shared_module = None  # the code as it was before linking
         for library in (self, *self._linking_libraries):
             for name, environment in getattr(library, "_environments", ()):
                 if self._codegen._engine.is_symbol_defined(name):
                     self._codegen.set_env(name, environment)
 
     def _optimize_functions(self, module: Any) -> None:
-        """Leave functions as they are written: they are optimised with what calls them."""
+        """Leave functions unoptimised: they are optimised together with their callers."""
         module.data_layout = self._codegen._data_layout
 
     def _optimize_final_module(self) -> None:
-        """Optimise once: numba does so twice, first to find references that need no counting."""
+        """Optimise once; numba does so twice, to remove reference counting that is not needed."""
         made = self._codegen._module_pass_manager()
         passes, *words = made if isinstance(made, tuple) else (made,)  # older numbas give one alone
         passes.run(self._final_module, *words)
@@ -97,7 +97,7 @@ class _Waiting(_codegen.JITCodeLibrary):
 
 
 def _callers_first(library: Any) -> list[Any]:
-    """Give all that a library calls, in an order in which what is linked has been called before."""
+    """Give all libraries that a library calls, callers before what they call."""
     seen: set[Any] = set()
     ended: list[Any] = []
 
@@ -115,7 +115,7 @@ def _callers_first(library: Any) -> list[Any]:
 
 @contextmanager
 def linked_once() -> Generator[None]:
-    """Let all libraries wait that numba makes in this block, which has numba for itself."""
+    """Let numba make libraries that are linked late in this block; it holds numba's lock."""
     if not IS_KNOWN:
         yield
         return

@@ -1,12 +1,12 @@
-"""Compiling what belongs together, by two processes where nothing has been kept.
+"""Compilation of all jobs of a call, by two processes where they are not stored.
 
-numba compiles one function at a time. A helper process starts at the other end of the list, and
-both meet: each finds in the store what the other one has made. Or another process compiles it
-all, and this one goes on in plain Python: compiled or not, a function gives the same numbers to
-the last bit, and a long run comes back now and then (``rockframe.solve.integrate``). So nobody
-waits for a compiler longer than for the run itself, and the run goes on as machine code as soon as
-there is some. When it has taken, or says that it will take, as long as both processes need for the
-rest, it compiles, too.
+numba compiles one function at a time. A helper process starts from the other end of the list of
+jobs, and each process finds in the store what the other one has compiled. Or a second process
+compiles everything while this one goes on in plain Python: compiled or not, a function gives the
+same numbers to the last bit, and a long run returns now and then (``rockframe.solve.integrate``) to
+go on as machine code as soon as there is some. So nobody waits for a compiler longer than for the
+run itself. When a run has taken, or is expected to take, as long as both processes need for the
+remaining jobs, this process compiles, too.
 """
 
 import gc
@@ -28,11 +28,11 @@ from rockframe.compiled.language import AS_PYTHON, NEEDED_BY, STILL_TAKES
 _logger = logging.getLogger("rockframe")
 _announced: Final[set[str]] = set()
 _FREEZE: Final = 2.0
-"""Time that is told of each time, once it has been said that something is compiled [s]."""
+"""Time of a compilation from which on each one is announced, not only the first [s]."""
 
 
 class NotCompiledError(Exception):
-    """A job failed, whatever happened inside the compiler."""
+    """A job failed; `place` is its number in the list, `problem` the compiler's exception."""
 
     def __init__(self, place: int, problem: Exception) -> None:
         super().__init__(str(problem))
@@ -41,7 +41,7 @@ class NotCompiledError(Exception):
 
 
 def make_all(jobs: Sequence[Job]) -> list[Any]:
-    """Compile jobs, or take what was kept of them; last those that other processes compile now."""
+    """Compile jobs or load them from the store; last those that other processes compile now."""
     _tell(jobs)
     made: dict[int, Any] = {}
     with _helped(jobs) as waiting, without_collection():
@@ -54,10 +54,10 @@ def make_all(jobs: Sequence[Job]) -> list[Any]:
 
 @contextmanager
 def without_collection() -> Generator[None]:
-    """Let no memory be collected in this block: of all that numba makes, little is let go.
+    """Turn garbage collection off in this block: numba makes much and discards little.
 
-    To look for it takes a fifth of the time of a compilation. What was made counts as old
-    afterwards, so that it is not looked through at once.
+    Collection takes a fifth of the time of a compilation. Afterwards the new objects are moved to
+    the oldest generation, so that they are not examined at once.
     """
     collects = gc.isenabled()
     gc.disable()
@@ -65,7 +65,7 @@ def without_collection() -> Generator[None]:
         yield
     finally:
         if collects:
-            if not gc.get_freeze_count():  # else others have set something aside
+            if not gc.get_freeze_count():  # else other code has frozen objects
                 gc.freeze()
                 gc.unfreeze()
             gc.enable()
@@ -76,22 +76,22 @@ def _is_at_work_on(job: Job) -> bool:
     try:
         file = job.file
         return file is not None and not job.is_stored and store.is_compiled_elsewhere(file)
-    except Exception:  # said where it is compiled
+    except Exception:  # reported where it is compiled
         return False
 
 
 def time_for(jobs: Sequence[Job]) -> float:
-    """Give about how long jobs take that have not been kept, on a machine that is idle [s]."""
+    """Estimate how long the jobs that are not stored take to compile on an idle machine [s]."""
     try:
         missing = [job for job in jobs if not job.is_stored]
         longest = max((job.seconds for job in missing), default=0.0)
         return max(longest, seconds_of(missing) / min(2, processors()))
-    except Exception:  # said where it is compiled
+    except Exception:  # reported where it is compiled
         return 0.0
 
 
 def _tell(jobs: Sequence[Job]) -> None:
-    """Say that something is compiled, for what, and about how long it takes."""
+    """Announce a compilation: what it is for, and about how long it takes."""
     seconds = time_for(jobs)
     if not seconds:
         return
@@ -120,14 +120,14 @@ def _made(place: int, job: Job, waiting: Callable[[], bool]) -> Any:
 
 @contextmanager
 def _helped(jobs: Sequence[Job]) -> Generator[Callable[[], bool]]:
-    """Have a process compile from the last job on; give whether it is still worth waiting for."""
+    """Start a process that compiles from the last job on; give whether to wait for it still."""
     helper = _helper(jobs)
     if helper is None:
         yield lambda: True
         return
     with helper:
         try:
-            # one that has ended well has left nothing unfinished: what is, others compile
+            # after a normal end it has left no job unfinished: others compile what is missing
             yield lambda: not helper.poll()
         except BaseException:
             helper.kill()
@@ -140,7 +140,7 @@ def _helper(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
         return None
     try:
         missing = [job for job in jobs if not job.is_stored]
-    except Exception:  # this process will do it all, and say what is wrong
+    except Exception:  # this process will do everything, and report what is wrong
         return None
     return _process("help_with", [*reversed(missing)]) if len(missing) > 1 else None
 
@@ -153,7 +153,7 @@ def start_compiler(jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
 def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None":
     if processors() < 2 or getattr(sys, "frozen", False) or not sys.executable:
         return None
-    # as the command line is called, which waits for none of the libraries of datasets and units
+    # `sys.argv` of the command line, for which the libraries of datasets and units are not imported
     name = __name__.partition(".")[0]
     program = (
         f"import gc, os, sys; gc.disable(); sys.path[:] = sys.argv[1:]; sys.argv[:] = [{name!r}]; "
@@ -176,7 +176,7 @@ def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None"
 
 
 def help_with(order: bytes) -> None:
-    """Compile jobs as long as no other process has come to them."""
+    """Compile jobs until one is stored already or compiled by another process."""
     for job in _jobs_in(order):
         if job.is_stored or job.file is None or store.is_compiled_elsewhere(job.file):
             return
@@ -184,9 +184,9 @@ def help_with(order: bytes) -> None:
 
 
 def make_all_of(order: bytes) -> None:
-    """Compile all jobs, with one more process where neither this nor the first one needs it.
+    """Compile all jobs, with a helper process if there are more than two processors.
 
-    From the last one on: the process that started this begins with the first, if it compiles.
+    From the last job on: the process that started this one begins with the first, if it compiles.
     """
     jobs = _jobs_in(order)[::-1]
     if processors() > 2:
@@ -220,29 +220,29 @@ def processors() -> int:
 
 
 WORTHWHILE: Final = 0.25
-"""Time in plain Python from which on something is compiled: a few short runs need none [s]."""
+"""Time spent in plain Python from which on compilation starts: a few short runs need none [s]."""
 
 LONG: Final = 1.0
-"""Time that is known to be left in plain Python from which on something is compiled [s]."""
+"""Remaining time expected in plain Python from which on compilation starts at once [s]."""
 
 PRUDENCE: Final = 1.7
-"""How many times longer compiling may take than it is said to: machines are seldom idle."""
+"""Factor by which compiling may take longer than estimated: machines are seldom idle."""
 
 _compilers: Final[list["subprocess.Popen[bytes]"]] = []
-"""Processes that compile; they end what they have begun though this one has ended."""
+"""Processes that compile in the background; they finish their jobs even if this process ends."""
 
 
 def _are_at_work() -> bool:
-    """Whether processes compile that this one has started while it goes on."""
+    """Whether processes that this one started compile in the background."""
     _compilers[:] = [one for one in _compilers if one.poll() is None]
     return bool(_compilers)
 
 
 class Meanwhile:
-    """What goes on until there is machine code for a call.
+    """The compilation of a call's jobs by another process while calls run in plain Python.
 
-    A context manager, whose blocks are the calls that run in plain Python. Another process that
-    compiles goes on with what the calls seldom need, if that adds little.
+    A context manager, whose blocks are these calls. The other process also compiles functions that
+    the calls need seldom (`later`), if that adds little.
     """
 
     def __init__(self, jobs: Sequence[Job], later: Sequence[Job] = ()) -> None:
@@ -257,23 +257,23 @@ class Meanwhile:
         self._begun = thread_time()
 
     def __exit__(self, *problem: object) -> None:
-        seconds = thread_time() - self._begun  # of the processor: others may be at work
+        seconds = thread_time() - self._begun  # processor time: other processes may be running
         self._seconds += seconds
         AS_PYTHON[0] += seconds
 
     def is_over(self, *, at_once: bool = False) -> bool:
-        """Whether machine code is to be loaded, or compiled by this process, which then waits.
+        """Whether to load machine code now, or to compile it in this process, which then waits.
 
-        By this process, too, as soon as plain Python is known to take yet as long as compiling
-        will; where that is not known, as soon as it has taken as long as that, at the worst: that
-        is never more than twice the shortest time.
+        This process compiles as soon as plain Python is expected to take yet as long as compiling
+        would. Where no such time is known, it compiles as soon as plain Python has taken as long as
+        compiling takes at worst: that is never more than twice the shortest possible time.
         """
         if self._compiler is not None and self._compiler.poll() is None:
             return self._is_worth_compiling()
         try:
             if all(job.is_stored for job in self._jobs):
                 return True
-        except Exception:  # said where it is compiled
+        except Exception:  # reported where it is compiled
             return True
         if self._compiler is not None:  # and it has failed
             self._compiler, self._alone = None, True
@@ -288,11 +288,11 @@ class Meanwhile:
         return rest >= needed if rest else self._seconds >= PRUDENCE * needed
 
     def _adds_little(self, job: Job) -> bool:
-        """Whether nearly all that a job compiles is compiled for the others."""
+        """Whether nearly all functions that a job compiles are compiled for the others anyway."""
         return seconds_of([*self._jobs, job]) < seconds_of(self._jobs) + WORTHWHILE
 
     def _has_started_compiler(self) -> bool:
-        """Start one, unless others are at work; whether that has been done."""
+        """Start a process that compiles, unless enough of them run; whether one was started."""
         if self._alone or (_are_at_work() and len(_compilers) >= processors() // 2):
             return False
         self._compiler = start_compiler([*filter(self._adds_little, self._later), *self._jobs])

@@ -1,6 +1,7 @@
-"""numba's way from a plain function to machine code, without what only other functions need.
+"""numba's compiler passes for plain functions, without passes that only other functions need.
 
-A plain function makes no errors, lists, arrays or functions, and names nothing of numpy or numba.
+A plain function raises no errors, makes no lists, arrays or functions, and uses no names of numpy
+or numba.
 """
 
 from dis import get_instructions
@@ -11,14 +12,14 @@ from typing import Any, Final
 _compiler: Final[Any] = import_module("numba.core.compiler")
 
 _MAKING: Final = {"RAISE_VARARGS", "BUILD_LIST", "BUILD_SET", "BUILD_MAP", "MAKE_FUNCTION"}
-"""Instructions of functions that are not plain."""
+"""Bytecode instructions that no plain function has."""
 
 _FOR_OTHERS: Final = {
     "with_lifting", "inline_closure_likes", "make_function_op_code_to_jit_function",
     "inline_inlinables", "Rewrite dynamic raises", "find_literally", "literal_unroll",
     "LiteralPropagation", "nopython_rewrites", "dump_parfor_diagnostics",
 }  # fmt: skip
-"""numba's passes over what plain functions have none of."""
+"""numba's passes over constructs that no plain function has."""
 
 
 def makes_numbers_alone(function: Any) -> bool:
@@ -33,10 +34,10 @@ def makes_numbers_alone(function: Any) -> bool:
 
 
 class PlainPasses(_compiler.CompilerBase):
-    """The passes over a plain function: numba's, and what they make of it is the same."""
+    """The passes over a plain function; they give the same result as all passes of numba."""
 
     def define_pipelines(self) -> list[Any]:
-        """Give them in numba's order."""
+        """Give the passes, in numba's order."""
         passes = _compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.passes = [one for one in passes.passes if one[0].name() not in _FOR_OTHERS]
         passes.finalize()

@@ -1,4 +1,4 @@
-"""Where the modules of entries are written, and with them, by numba, their machine code."""
+"""The store: folders of the modules that are compiled, and beside them numba's machine code."""
 
 import ast
 import hashlib
@@ -23,11 +23,11 @@ _NAME: Final = __name__.partition(".")[0]
 _INSTALLED: Final = tuple(
     Path(sysconfig.get_paths()[kind]) for kind in ("stdlib", "platstdlib", "purelib", "platlib")
 )
-"""Folders of what does not change while one works."""
+"""Folders of the standard library and of installed packages, whose files are taken as constant."""
 
 
 def digest_of_sources(function: Callable[..., Any], classes: Iterable[type]) -> str | None:
-    """Give a name for the contents of all files that a function's machine code comes from."""
+    """Give a digest of all files that the machine code of a function depends on, or None."""
     files = _own_files({function.__module__, *(kind.__module__ for kind in classes)})
     if files is None:
         return None
@@ -35,7 +35,7 @@ def digest_of_sources(function: Callable[..., Any], classes: Iterable[type]) -> 
 
 
 def digest(*contents: bytes) -> str:
-    """Give a name for contents."""
+    """Give a digest of contents."""
     total = hashlib.blake2b(digest_size=12)
     for content in contents:
         total.update(len(content).to_bytes(8, "little"))
@@ -51,7 +51,7 @@ def _package_digest() -> bytes:
 
 
 def _own_files(modules: set[str]) -> list[Path] | None:
-    """Give the files of modules outside of the package, and of what they import of their kind."""
+    """Give the files of modules outside of the package, and of such modules that they import."""
     files: set[Path] = set()
     seen: set[str] = set()
     while modules:
@@ -70,7 +70,7 @@ def _own_files(modules: set[str]) -> list[Path] | None:
 
 
 def _imported(module: ModuleType, source: bytes) -> Iterator[str]:
-    """Name the modules that a module imports and that are no installed packages."""
+    """Give the names of the modules that a module imports, without installed packages."""
     for node in ast.walk(ast.parse(source)):
         names: list[str] = []
         if isinstance(node, ast.Import):
@@ -86,13 +86,13 @@ def _imported(module: ModuleType, source: bytes) -> Iterator[str]:
 
 
 LONGEST: Final = 120.0
-"""Age at which a mark counts as left behind by a process that was killed [s]."""
+"""Age from which on a lock file counts as left behind by a killed process; longest wait [s]."""
 
 if sys.platform == "win32":
     import msvcrt
 
     _ELSEWHERE = PermissionError
-    _BEYOND: Final = 2**30  # what is locked cannot be read: a byte behind all that is
+    _BEYOND: Final = 2**30  # locked bytes cannot be read: lock one behind the end of the file
 
     def _lock(number: int) -> None:
         os.lseek(number, _BEYOND, os.SEEK_SET)
@@ -115,7 +115,7 @@ else:
 
 
 def lock(file: Path) -> Callable[[], None] | None:
-    """Lock a file, unless another process or thread has locked it."""
+    """Lock a file and give the function that unlocks it; None if it is locked already."""
     try:
         stream = file.open("r+b")
     except OSError:  # nothing can be written: nobody waits
@@ -138,7 +138,7 @@ def lock(file: Path) -> Callable[[], None] | None:
 
 
 def _marked(mark: Path) -> Callable[[], None] | None:
-    """Make a file that stands for a lock, and outlives a process that is killed."""
+    """Make a lock file and give the function that removes it; None if there is one already."""
     with suppress(OSError):
         if time.time() - mark.stat().st_mtime > LONGEST:
             mark.unlink()
@@ -157,18 +157,18 @@ def _removed(mark: Path) -> None:
 
 
 def _nothing() -> None:
-    """Release what could not be locked."""
+    """Unlock nothing: no lock could be made."""
 
 
 _POLL: Final = 0.05
-"""Between two looks at whether another process is still compiling [s]."""
+"""Time between two checks whether another process is still compiling [s]."""
 
 _UNUSED: Final = 30 * 24 * 3600.0
 """Age at which machine code of other sources is removed [s]."""
 
 
 def file_of(function: Callable[..., Any], text: str, classes: Iterable[type]) -> Path | None:
-    """Give the file of an entry's module, written if it is not there."""
+    """Give the file of a job's module, written if it does not exist; None if it cannot be."""
     classes = list(classes)
     sources = digest_of_sources(function, classes)
     if sources is None:
@@ -196,7 +196,7 @@ def file_of(function: Callable[..., Any], text: str, classes: Iterable[type]) ->
 
 
 def has_code(file: Path) -> bool:
-    """Whether machine code of a module has been kept beside it."""
+    """Whether machine code of a module is stored beside it."""
     return any((file.parent / "__pycache__").glob(f"{file.stem}.*.nbc"))
 
 
@@ -211,7 +211,7 @@ def is_compiled_elsewhere(file: Path) -> bool:
 
 @contextmanager
 def compiling(file: Path, waiting: Callable[[], bool]) -> Generator[None]:
-    """Wait as long as another process compiles a module; then let others wait for this one."""
+    """Wait while another process compiles a module, then lock it for this one in this block."""
     begun = time.monotonic()
     release = None
     while time.monotonic() - begun < LONGEST and waiting():
@@ -233,7 +233,7 @@ def forget_code(file: Path) -> None:
 
 
 def folders() -> list[Path]:
-    """Give the folders to write to, in this order."""
+    """Give the folders that the store may be in, the preferred one first."""
     given = os.environ.get("ROCKFRAME_CACHE_DIR")
     if given:
         return [Path(given)]

@@ -1,12 +1,12 @@
-"""What a base that gives way is to the body on it.
+"""The interface of a deformable base: forces, contacts and events under the ends of a body.
 
 A base is a named tuple of its parameters, per unit mass, with the methods below. It knows the
-ends of the body's base line, not the body: any body stands on any base. What is said of one
-end holds for the left one where `left` is true.
+ends of the body's base line, not the body: any body stands on any base. The argument `left` tells
+which end a method is about: the left one where it is true.
 
 The **contact** of a base is a whole number of its own, below :meth:`Base.contacts`. An end
-that *is held* bears, or is about to; where neither is, the body flies. Variables of its own,
-with rates of first order, stand in the state behind the coordinates.
+that *is held* bears, or is about to; where neither end is held, the body flies. The base's own
+variables, which obey equations of first order, stand in the state behind the coordinates.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.protocol import Guards as Guards
 
 Variables: TypeAlias = tuple[float, ...]
-"""Numbers, of which a base has as many as it needs; an empty tuple if none."""
+"""A base's own variables, as many as it needs; an empty tuple if it has none."""
 SIMULTANEOUS: Final = 1e-9
 """Share of the settlement within which ends land, or leave, together."""
 
@@ -25,25 +25,25 @@ SIMULTANEOUS: Final = 1e-9
 class BaseForce(NamedTuple):
     """What a base does to the body on it, per unit mass."""
 
-    upward: float  # force
-    moment: float  # generalised force on the rotation
-    dissipated: float  # power
+    upward: float  # force [m s^-2]
+    moment: float  # generalised force on the rotation [m^2 s^-2]
+    dissipated: float  # power [m^2 s^-3]
 
 
 class EndEvent(NamedTuple):
-    """What a base's switch has made of it."""
+    """What follows when a guard of an end has fallen through zero."""
 
-    contact: int
+    contact: int  # of the base from then on
     event: int  # an EventKind of rockframe.dynamics.events
     crossed: bool  # whether the end is at the level where it parts from the base, or meets it
 
 
 class Base:
-    """A base that gives way, under both ends of a body's base line. A mixin of named tuples.
+    """A deformable base under both ends of a body's base line. A mixin of named tuples.
 
-    The first methods are to be given. The others are those of a base without variables, whose
-    ends are held below its unloaded level, and which lands and lets go without a jump of its
-    force.
+    Methods that raise `NotImplementedError` have to be defined. The others are as for a base
+    without own variables that holds ends below its unloaded level, and whose force does not jump
+    as an end lands or lifts off.
     """
 
     __slots__ = ()
@@ -61,30 +61,30 @@ class Base:
         raise NotImplementedError
 
     def force(self, contact: int, line: BaseLine, own: Any) -> BaseForce:
-        """Give force, moment and dissipated power."""
+        """Give force, moment and dissipated power of the base, for a body that moves as `line`."""
         raise NotImplementedError
 
     def energy(self, line: BaseLine, own: Any) -> tuple[float, float]:
-        """Give the stored energy, and that less the energy at rest."""
+        """Give the elastic energy, and how much more that is than at rest [m^2 s^-2]."""
         raise NotImplementedError
 
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Any) -> Guards:
-        """Give the guards of an end, and their rates; the line has the accelerations, too.
+        """Give the guards of an end, and their rates; `line` includes the accelerations here.
 
-        A guard is positive as long as the contact lasts; those without meaning are 1, with a
-        rate of 0.
+        A guard is positive as long as the contact lasts; one without meaning in the contact is 1,
+        with a rate of 0.
         """
         raise NotImplementedError
 
     def switch(self, contact: int, left: bool, which: int, line: BaseLine, own: Any) -> EndEvent:
-        """Give what happens when a guard of an end, by its number, falls through zero.
+        """Give what follows when the guard `which` of an end falls through zero.
 
-        The base's own variables are set where they change.
+        Own variables that jump are changed in `own`.
         """
         raise NotImplementedError
 
     def level(self, left: bool, line: BaseLine, own: Any) -> float:
-        """Give how much higher than an end the level is at which it parts from the base."""
+        """Give how far below its level of separation from the base an end is [m]."""
         raise NotImplementedError
 
     def starting(self, line: BaseLine, own: Any) -> int:
@@ -92,24 +92,24 @@ class Base:
         raise NotImplementedError
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
-        """Give the height at which the base carries the body at rest.
+        """Give the height h at which the base carries the body at rest [m].
 
-        `left` and `right` are the heights of the ends above the height that is looked for.
+        The ends are then at the heights h + `left` and h + `right`.
         """
         raise NotImplementedError
 
     def observed(self, contact: int, line: BaseLine, own: Any) -> Variables:
-        """Give what users see of the base."""
+        """Give the values of the base's columns in the results."""
         raise NotImplementedError
 
     @inlined
     def touches(self, contact: int, left: bool) -> bool:
-        """Whether an end is held and its force counts as long as it presses."""
+        """Whether an end is held and its force acts as long as it is one of compression."""
         return self.is_held(contact, left)
 
     @kernel
     def tilt(self, contact: int) -> float:
-        """Give the side to which the contact will rotate a body that is upright and at rest."""
+        """Give the sign of the rotation that begins in a contact from upright rest, or 0."""
         left = 1.0 if self.is_held(contact, True) else 0.0
         return left - (1.0 if self.is_held(contact, False) else 0.0)
 
@@ -120,7 +120,7 @@ class Base:
 
     @inlined
     def read(self, state: Vector, first: int) -> Any:
-        """Read the base's own variables from a state, from an index on."""
+        """Give the base's own variables, which stand in a state from an index on."""
         return ()
 
     @inlined
@@ -130,12 +130,12 @@ class Base:
 
     @kernel
     def is_level(self, left: bool, line: BaseLine, own: Any) -> bool:
-        """Whether an end that slides has come to the level where it parts, but for rounding."""
+        """Whether an end in sliding contact is at its level of separation, but for rounding."""
         return True
 
     @inlined
     def follows(self, contact: int, left: bool) -> int:
-        """Give the contact in which an end that slides takes part: it touches without force."""
+        """Give the contact with an end in sliding contact: it touches the base without force."""
         return self.in_flight()
 
     def in_flight(self) -> int:
@@ -149,22 +149,22 @@ class Base:
 
     @kernel
     def following_speed(self, left: bool, line: BaseLine, own: Any) -> float:
-        """Give the speed of an end that the base follows without a force, :eq:`eq-forceless`."""
+        """Give the upward speed at which an unloaded base rises, :eq:`eq-forceless` [m s^-1]."""
         return self.following_rate() * self.level(left, line, own)
 
     @inlined
     def least_landing(self) -> float:
-        """Give the speed of a landing below which the base's answer is rounding noise."""
+        """Give the speed of a landing below which the base's force is rounding noise [m s^-1]."""
         return 0.0
 
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact after an end that touched without force has left."""
+        """Give the contact after an end that touched the base without force has lifted off."""
         return self.in_flight()
 
     @kernel
     def presses(self, contact: int, left: bool, line: BaseLine, own: Any) -> bool:
-        """Whether the base still presses an end that has just left."""
+        """Whether the base still presses an end that has just lifted off."""
         return False
 
     @kernel
@@ -174,37 +174,37 @@ class Base:
 
     @kernel
     def held(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that touches; asked where the base presses one that left."""
+        """Give the contact with an end that lifted off but touches again, pressed by the base."""
         return contact
 
     @kernel
     def waiting(self, contact: int, left: bool) -> int:
-        """Give the contact of an end that has left while the base still presses it."""
+        """Give the contact with an end that has lifted off while the base still presses it."""
         return contact
 
     @kernel
     def unpressed(self, contact: int, left: bool) -> int:
-        """Give the contact of an end that stays held though the base has ceased to press it."""
+        """Give the contact with an end that stays held though the base no longer presses it."""
         return contact
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact after an end has come back and its body has been held."""
+        """Give the contact after an end has landed and the restraint has caught its body."""
         return contact
 
     @kernel
     def disturbed(self, contact: int) -> int:
-        """Give the contact after something else than an event of its own changed the speeds."""
+        """Give the contact after an event elsewhere has changed the speeds of the ends."""
         return contact
 
     @kernel
     def rebound(self, left: bool) -> float:
-        """Give the restitution of an end that lands with an impact."""
+        """Give the coefficient of restitution of an end that lands with an impact [1]."""
         return 1.0
 
 
 def root_above_zero(function: Callable[[float], float], start: float) -> float:
-    """Give where a function that is negative at zero, and grows, comes to zero."""
+    """Give the root of an increasing function that is negative at zero, searched from `start`."""
     from scipy.optimize import root_scalar
 
     while function(start) <= 0.0:
@@ -216,20 +216,20 @@ def root_above_zero(function: Callable[[float], float], start: float) -> float:
 def height_under(
     base: Base, weight: float, depth: float, ends: tuple[float, float], own: Any
 ) -> float:
-    """Give the height at which a base carries a weight, found by numbers.
+    """Give the height at which a base carries a weight, found numerically.
 
     Parameters
     ----------
     base : Base
         The base.
     weight : float
-        On it, per unit mass [m s^-2].
+        Weight on the base, per unit mass [m s^-2].
     depth : float
-        Its settlement, about [m].
+        Estimate of its settlement [m].
     ends : tuple of float
-        Heights of the ends above the height that is looked for [m].
+        Heights of both ends above the height that is looked for [m].
     own : Variables
-        The base's own variables, which are set to those of a start.
+        The base's own variables, which are set to those of the start of a run.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What is known of a base before a run: its law, its sizes, and what it shows."""
+"""What a model needs of a base before a run: its law, stiffness, typical sizes and columns."""
 
 import math
 from collections.abc import Sequence
@@ -27,17 +27,17 @@ class BaseNumbers:
     law : Base
         Its equations.
     columns : tuple of Column
-        What it writes for users to see.
+        The columns of the results that it fills.
     settlement : float
-        Under the weight [m].
+        Settlement under the weight [m].
     vertical_stiffness, rotational_stiffness : float
-        In full contact, of its middle [s^-2], [m^2 s^-2].
+        Stiffness in full contact, at the middle of the base [s^-2], [m^2 s^-2].
     damping_time : float
-        Bound of damping over stiffness [s].
+        Upper bound of damping over stiffness [s].
     end_tolerance : ndarray, shape (guards of an end,)
         Rounding noise of the guards.
     variable_scales : ndarray, shape (variables,)
-        Typical sizes of its own variables.
+        Typical sizes of the base's own variables.
     """
 
     law: Base
@@ -65,11 +65,11 @@ def pads_numbers(
     body : Body
         The body on them.
     stiffness, damping : float
-        k and c of one pad over the mass that all is measured by [s^-2], [s^-1].
+        k and c of one pad over the reference mass of the model [s^-2], [s^-1].
     restitution : tuple of float
         eps of a corner that lands on the left and on the right pad [1].
     load : float
-        Mass on the pads over that mass [1].
+        Mass on the pads over the reference mass [1].
 
     Returns
     -------
@@ -110,16 +110,16 @@ def pads_over(
     columns: Sequence[Column] = (),
     variable_scales: Sequence[float] = (),
 ) -> BaseNumbers:
-    """Give pads over another law of a point; at rest they are as elastic ones.
+    """Give pads that follow another law; at rest they are like elastic pads.
 
     Parameters
     ----------
     law : PointLaw
-        Of each pad, per unit mass.
+        Law of each pad, per unit mass.
     elastic : BaseNumbers
-        Those of :func:`pads_numbers` of the stiffness and damping that the law begins with.
+        Elastic pads with the initial stiffness and damping of the law, by :func:`pads_numbers`.
     columns : sequence of Column, optional
-        What the law shows at the left pad, then at the right one.
+        Columns of the results that the law fills, of the left pad, then of the right one.
     variable_scales : sequence of float, optional
         Typical sizes of the law's variables at one pad.
 
@@ -155,16 +155,16 @@ def springs_under(
     body : Body
         The body on it.
     law : PointLaw
-        Of each spring, per unit length of base and unit mass.
+        Law of each spring, per unit length of base and unit mass.
     places : sequence of float
-        Of the springs, from the left, as shares of the way from the left end of the base to the
-        right one [1].
+        Places of the springs, from left to right, as distances from the left end of the base over
+        its width [1].
     lengths : sequence of float
-        Of the base that each spring carries [m].
+        Tributary length of the base of each spring [m].
     load : float
-        Mass on the bed over that mass that all is measured by [1].
+        Mass on the bed over the reference mass of the model [1].
     columns : sequence of Column, optional
-        What the law shows at the leftmost spring, then at the rightmost one.
+        Columns of the results that the law fills, of the leftmost, then of the rightmost spring.
     variable_scales : sequence of float, optional
         Typical sizes of the law's variables at one spring.
 
@@ -227,12 +227,12 @@ def bed_numbers(
     body : Body
         The body on it.
     stiffness, damping : float
-        k0 and c0 per length of base, over the mass that all is measured by [m^-1 s^-2],
+        k0 and c0 per length of base, over the reference mass of the model [m^-1 s^-2],
         [m^-1 s^-1].
     by_pressure : bool
-        Whether the bed lets go where its pressure would be negative, too.
+        Whether the bed separates also where its pressure would be negative.
     load : float
-        Mass on the bed over that mass [1].
+        Mass on the bed over the reference mass [1].
 
     Returns
     -------
@@ -253,7 +253,7 @@ def bed_numbers(
 
 
 def rigid_numbers(body: Body) -> BaseNumbers:
-    """Give a rigid base under a body of a chain."""
+    """Give a rigid base under a body of a chain: it has no stiffness, its corners constraints."""
     width = body.left + body.right
     return BaseNumbers(
         Rigid(0.0, 0.0, 1.0, width, by_pressure=False),

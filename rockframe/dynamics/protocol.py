@@ -1,4 +1,4 @@
-"""What a contact model is to the integrator: equations of a system, and a few numbers.
+"""The interface between a contact model and the integrator: a system's equations and its sizes.
 
 The integrator knows nothing of blocks, pads or soil. A system is a named tuple of numbers
 whose methods are second-order equations ``q'' = f(mode, q, q', z, ground)`` with variables of
@@ -7,7 +7,7 @@ mode lasts), and a *switch* (what happens when a guard falls through zero).
 
 State vector: n coordinates, their n rates, then the variables of first order. All energies
 and powers are per unit mass. Modes are whole numbers, which the system packs and unpacks. There
-may be far more of them than a run ever meets: what one means is asked when it begins.
+may be far more modes than a run ever meets: a mode is unpacked when it begins.
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ from rockframe.errors import AssemblyError
 from rockframe.many import plain
 
 Numbers: TypeAlias = tuple[float, ...] | Vector
-"""As many as a system has; in an array where that is known only when it runs."""
+"""Numbers of a system; in an array where their count is not known when it is compiled."""
 Slope: TypeAlias = Numbers
 """Accelerations, rates of the variables of first order, and powers, in this order."""
 
@@ -39,34 +39,34 @@ IMPACT_LOSS: Final = 0
 REPINNING_LOSS: Final = 1
 """Index into the memory: energy lost in changes of the restraint so far [m^2 s^-2]."""
 IMPULSIVE_INPUT: Final = 2
-"""Index into the memory: work of jumps of the velocity of a body's ground so far, per unit
-mass [m^2 s^-2]."""
+"""Index into the memory: work done by jumps of the velocity of what a body stands on so far, per
+unit mass [m^2 s^-2]."""
 LAST_EVENT: Final = 3
 """Index into the memory: kind of the last switch, see :mod:`rockframe.dynamics.events`."""
 LINK_LOSS: Final = 4
 """Index into the memory: energy lost with links that broke so far, per unit mass [m^2 s^-2]."""
 HELD_PLACE: Final = 5
-"""Index into the memory: horizontal place of the point that holds the first body [m]; those of
-further bodies follow, then whatever else a system keeps."""
+"""Index into the memory: horizontal place of the point that holds the first body [m]; the places
+for further bodies follow, then whatever else a system remembers."""
 MEMORY: Final = (
     "impact_loss", "repinning_loss", "impulsive_input", "last_event", "link_loss", "held_place",
 )  # fmt: skip
-"""Names of what every system keeps."""
+"""Names of the numbers that every system remembers, in their order."""
 
 MOST_MODES: Final = 2**63 - 1
 """Modes that a system may have: each is a whole number of 64 bits, one of which is its sign."""
 
 POWERS: Final = 2
-"""Powers that stand behind the accelerations: dissipated, and supplied by the ground."""
+"""Number of powers at the end of a slope: dissipated by dashpots, and put in by the ground."""
 
 
 class Energies(NamedTuple):
-    """Energies of a state, per unit mass."""
+    """Energies of a state, per unit mass [m^2 s^-2]."""
 
     kinetic: float
     gravity: float
     elastic: float
-    from_rest: float  # elastic less that at rest
+    from_rest: float  # elastic energy less the elastic energy at rest
 
 
 class Guards(NamedTuple):
@@ -96,7 +96,7 @@ class Equations(Protocol):
         ...
 
     def modes(self) -> int:
-        """Give the number of modes, of which some have no meaning."""
+        """Give the number of modes; not every number below it need stand for one."""
         ...
 
     def moving_in(self, mode: int) -> int:
@@ -113,20 +113,20 @@ class Equations(Protocol):
     def relaxation_in(self, mode: int) -> float:
         """Give the rate at which a constraint of a mode decays, 0 where there is none [s^-1].
 
-        Fixed steps must be short beside it.
+        Fixed steps must be short compared with the inverse of this rate.
         """
         ...
 
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
-        """Give accelerations, rates of the variables of first order, and powers.
+        """Give accelerations, rates of the variables of first order, and two powers.
 
-        The powers are that dissipated and that put in by the ground. Coordinates that do
-        not move in the mode are not to be read.
+        The powers are the one dissipated and the one put in by the ground. Accelerations of
+        coordinates that do not move in the mode have no meaning.
         """
         ...
 
     def guards_in(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> Guards:
-        """Give the guards (positive: no switch), and their rates.
+        """Give the guards, each positive as long as it calls for no switch, and their rates.
 
         `slope` is what :meth:`accelerate` gave for the state.
         """
@@ -137,18 +137,18 @@ class Equations(Protocol):
         ...
 
     def without_sliding(self, mode: int) -> int:
-        """Give a mode without its sliding, so that what only that needs is not compiled."""
+        """Give a mode without its sliding: code that only sliding needs is not compiled then."""
         ...
 
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Carry out what the fall of a guard calls for; give the new mode.
+        """Carry out the event of a guard that has fallen through zero; give the new mode.
 
-        Changes the state where it jumps, and keeps losses and the kind of event in the memory.
+        Changes the state where it jumps, and writes losses and the kind of event to the memory.
         """
         ...
 
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies."""
+        """Give the energies of a state."""
         ...
 
     def observe(
@@ -159,14 +159,14 @@ class Equations(Protocol):
 
 
 class EquationsWithPowers(Equations, Protocol):
-    """Equations whose works are as exact as their motion in steps of fixed length.
+    """Equations that give their powers apart, for works as exact as the motion in fixed steps.
 
     The rates of a stage are not those of the solution, :eq:`eq-fixed-powers`, and the work of the
-    ground is linear in them. To be given where it costs little.
+    ground is linear in them. A system should have `powers` where they cost little.
     """
 
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the power dissipated and that put in by the ground.
+        """Give the power dissipated and the power put in by the ground [m^2 s^-3].
 
         `slope` is what :meth:`accelerate` has just given for the same place at other rates.
         """
@@ -174,16 +174,17 @@ class EquationsWithPowers(Equations, Protocol):
 
 
 class CalledBySteps:
-    """Equations so long that steps call them; others are compiled into the loop of steps.
+    """Equations so long that the loop of steps calls them; others are compiled into that loop.
 
-    So that several kinds of them share that loop. They give powers. A mixin of named tuples.
+    Several kinds of systems so share one compiled loop. They have the method `powers` of
+    :class:`EquationsWithPowers`. A mixin of named tuples.
     """
 
     __slots__ = ()
 
 
 class OnRigidGround:
-    """What systems of one body on rigid ground answer alike. A mixin of named tuples."""
+    """Methods that all systems of one body on rigid ground share. A mixin of named tuples."""
 
     __slots__ = ()
 
@@ -194,7 +195,7 @@ class OnRigidGround:
 
     @kernel
     def variables(self) -> int:
-        """Give 0: what has none of its own."""
+        """Give 0: rigid ground has no variables of first order."""
         return 0
 
     @inlined
@@ -204,7 +205,7 @@ class OnRigidGround:
 
     @kernel
     def some_end_slides(self, mode: int) -> bool:
-        """Give False: of ends on springs, of which there are none."""
+        """Give False: only ends on springs slide in this sense, and there are none."""
         return False
 
     @inlined
@@ -215,16 +216,16 @@ class OnRigidGround:
 
 @dataclass(frozen=True)
 class Column:
-    """A history that a system can be observed by.
+    """A history that a system gives, a column of the results.
 
     Parameters
     ----------
     name : str
-        In the results' schema.
+        Name in the results' schema.
     per_mass : bool
-        Whether the system gives it per unit mass, so that it is multiplied by the mass.
+        Whether the system gives it per unit mass, so that results multiply it by a mass.
     mass_ratio : float
-        That mass over the model's [1].
+        That mass over the mass of the model [1].
     """
 
     name: str
@@ -249,14 +250,14 @@ BODY_COLUMNS: Final = (
 """What every system gives of the body that the scene is about, in this order.
 
 Velocities and accelerations are those of the centre of mass, relative to the ground; the
-reactions are those of the body's own base, along and normal to what that stands on.
+reactions are those of the body's own base, along and normal to the surface that it stands on.
 """
 BODY_FORCES: Final = ("base_shear", "horizontal_reaction", "vertical_reaction")
-"""Those of them that friction depends on."""
+"""The columns from which the friction that a body needs follows."""
 
 
 def column_of(name: str, body: int) -> str:
-    """Give the name of a column of a body other than the first."""
+    """Give the name that a column has for a body of some number; body 0 has the plain name."""
     return name if body == 0 else f"{name}_of_{body}"
 
 
@@ -267,13 +268,13 @@ class Start:
     Parameters
     ----------
     rotation : float or None
-        Of the block; None asks for that at rest [rad].
+        Rotation of the block; None for its rotation at rest [rad].
     angular_velocity : float
-        Its rate [rad s^-1].
+        Rate of the rotation [rad s^-1].
     vertical_displacement : float or None
-        Of the centre of mass; None asks for vertical equilibrium [m].
+        Displacement of the centre of mass; None for vertical equilibrium [m].
     vertical_velocity : float
-        [m s^-1].
+        Velocity of the centre of mass [m s^-1].
     """
 
     rotation: float | None = None
@@ -314,27 +315,28 @@ class ContactModel:
     selects : bool
         Whether results show only some of the columns.
     other_limits : ndarray, shape (others * (2 + n),)
-        Of other bodies that overturn: of each both limits and the weights of its rotation.
+        For each further body that may overturn: its limits to the left and to the right [rad], and
+        the weights of the coordinates in its rotation.
     scales : ndarray, shape (2 n + variables,)
-        Typical size of everything in the state.
+        Typical size of each element of the state.
     guard_tolerance : ndarray, shape (guards,)
         Rounding noise of each guard.
     columns : tuple of Column
         What `observe` gives.
     memory : tuple of str
-        Names of what the system remembers.
+        Names of the numbers that the system remembers.
     mass : float
-        Mass that turns the energies into joules [kg].
+        Reference mass, by which energies per unit mass become joules [kg].
     fastest_frequency : float
         Highest angular frequency of the model [rad s^-1].
     damping_rate : float
-        Bound of twice damping ratio times angular frequency of its vibrations [s^-1].
+        Upper bound of 2 xi omega of its vibrations [s^-1].
     energy_scale : float
-        Typical energy per unit mass, by which rounding noise is known [m^2 s^-2].
+        Typical energy per unit mass, from which rounding noise is estimated [m^2 s^-2].
     initial : callable
         ``initial(start) -> (mode, state, memory)``.
     rounding : callable or None
-        ``rounding(rotation)``: noise of everything in the state in one step about a
+        ``rounding(rotation)``: rounding noise of each element of the state in one step about a
         rotation, where the model's forces are differences of large terms.
 
     Raises
@@ -373,19 +375,19 @@ class ContactModel:
             raise AssemblyError([msg])
 
     def moving(self, modes: Integers) -> Integers:
-        """Give the numbers of leading coordinates that move in modes."""
+        """Give how many leading coordinates move in each of some modes."""
         return _of_each(self.system.moving_in, modes)
 
     def contact_states(self, modes: Integers, body: int = 0) -> Integers:
-        """Give the contact states of a body in modes."""
+        """Give the contact state of a body in each of some modes."""
         return _of_each(lambda mode: self.system.contact_state_of(mode, body), modes)
 
     def rotation_in(self, state: Vector) -> float:
-        """Give the block's rotation in a state."""
+        """Give the block's rotation in a state [rad]."""
         return plain(self.rotation_weights @ state[: len(self.rotation_weights)])
 
     def other_share_in(self, state: Vector) -> float:
-        """Give the largest share of another body's rotation in its limit; zero without one."""
+        """Give the largest ratio of another body's rotation to its limit; 0 without one [1]."""
         size = len(self.rotation_weights)
         share = 0.0
         for left, right, *weights in self.other_limits.reshape(-1, 2 + size).tolist():
@@ -395,7 +397,7 @@ class ContactModel:
 
 
 def _of_each(function: Callable[[int], int], modes: Integers) -> Integers:
-    """Ask what modes mean, each once; most last for many samples."""
+    """Apply a function to modes, once to each different one: most last for many samples."""
     differs = np.ones(len(modes) + 1, dtype=np.bool_)  # at both ends, too
     np.not_equal(modes[1:], modes[:-1], out=differs[1:-1])
     changes = np.flatnonzero(differs)

@@ -1,1 +1,1 @@
-"""Labelled results: one table of variables, and the dataset built by it."""
+"""Labelled results: one table of variables (the schema), and the dataset built from it."""

@@ -1,8 +1,8 @@
-"""Peaks of what a model shows along the steps of a run, and how long it is above some level.
+"""Peaks of quantities along the steps of a run, and the time that they are above some level.
 
-Forces jump at events and vary within steps, so that neither samples nor the ends of steps meet
-their peaks. Both ends of every step tell in which few a peak may lie; these are looked into by
-the dense solution.
+Forces jump at events and vary within steps, so that their peaks lie neither at samples nor at the
+ends of steps. From the values at the ends of all steps follows in which few steps a peak may lie;
+in these the quantity is evaluated on the dense solution.
 """
 
 import math
@@ -20,38 +20,38 @@ from rockframe.solve.trajectory import Steps
 Values = Mapping[str, Generic]
 
 PARTS: Final = 8
-"""Parts of a step that is looked into. Steps resolve the fastest vibration, and a parabola through
-neighbours of an eighth of them misses a peak by less than 1e-4."""
+"""Parts into which a step is divided for its peak. Steps resolve the fastest vibration, so that a
+parabola through three points an eighth of a step apart misses a peak by less than 1e-4."""
 FRACTIONS: Final = np.arange(1, PARTS) / PARTS
 LOOKED_INTO: Final = 32
-"""Most steps that are looked into for each peak, of those whose ends and curvature promise more
-than is known of any: those that promise the most."""
+"""Most steps that are evaluated for each peak: of those in which, by values and curvature at their
+ends, the quantity may exceed the largest value at all ends, the ones with the highest bounds."""
 BULGE: Final = 0.25
 """Share of its second difference by which a function may rise above both ends of a step: twice
-that of a parabola."""
+the share of a parabola."""
 
 KINK: Final = 2.0
-"""How many times as large or small as that at a top second differences beside it may be."""
+"""Largest ratio of the second differences at and beside a maximum for which it is smooth."""
 
 
 @dataclass(frozen=True)
 class AlongSteps:
-    """What a model shows at both ends of its steps."""
+    """Quantities of a run at the ends and the new starts of its steps, and inside of them."""
 
     steps: Steps  # up to overturning
-    # by names in the schema, in the rows of the steps: the end of one, just before what happened
-    # after it, and the start of the next that does not go on from there
+    # values by names in the schema, at the rows of the steps: at the end of each step, before any
+    # event there, and at the start of a step that does not go on from the end of another
     shown: Values
-    # gives the same at `FRACTIONS` of some steps, one step after the other, by the rows of their
-    # ends
+    # function that gives these at `FRACTIONS` of the steps whose ends are at some rows, one step
+    # after the other
     inside: Callable[[Integers], Values]
 
     def largest(self, quantity: Callable[[Values], Array]) -> tuple[Array, Array]:
-        """Give peaks and their times."""
+        """Give the peaks of the rows of a quantity, and their times [s]."""
         return self.each_largest(quantity)[0]
 
     def each_largest(self, *quantities: Callable[[Values], Array]) -> list[tuple[Array, Array]]:
-        """Give peaks and their times of several quantities, each in the steps that promise them."""
+        """Give the peaks of the rows of each of several quantities, and their times [s]."""
         shown = [quantity(self.shown) for quantity in quantities]
         if len(self.steps.time) < 2:  # no step was made
             return [(np.zeros(len(one)), np.full(len(one), np.nan)) for one in shown]
@@ -66,7 +66,7 @@ class AlongSteps:
     def _peaks(
         self, shown: Array, which: Integers, inside: Array, place: Integers
     ) -> tuple[Array, Array]:
-        """Give the peaks of rows in some steps, whose insides stand at some places."""
+        """Give the peaks of rows in the steps `which`, evaluated inside at `place` of `inside`."""
         inner = inside.reshape(len(shown), -1, len(FRACTIONS))[:, place]
         both_ends = shown[:, which - 1, None], shown[:, which, None]
         known = np.concatenate([both_ends[0], inner, both_ends[1]], axis=-1)
@@ -77,7 +77,7 @@ class AlongSteps:
         return peak[row, best], time
 
     def above(self, quantity: Callable[[Values], Array], level: float) -> tuple[float, float]:
-        """Give from when on and how long a quantity is above a level; NaN and 0 where never."""
+        """Give since when and for how long in all a quantity is above a level; NaN, 0 if never."""
         shown = quantity(self.shown)
         beyond = np.maximum(shown[:-1], shown[1:]) > level
         which = 1 + np.flatnonzero(beyond & (self.steps.length[1:] > 0.0))
@@ -87,7 +87,7 @@ class AlongSteps:
         low, high = np.minimum(start, end), np.maximum(start, end)
         with np.errstate(divide="ignore", invalid="ignore"):
             share = (high - level) / (high - low)
-        # from without bound: as fast as its reciprocal falls
+        # from an infinite value: as if the reciprocal were linear
         share = np.where(np.isinf(high), low / level, share)
         share = np.where(low > level, 1.0, share)
         waits = 0.0 if start[0] > level else (1.0 - share[0]) * length[0]
@@ -106,7 +106,7 @@ class AlongSteps:
 
 @inlined
 def greater(a: float, b: float) -> float:
-    """Give the greater of two numbers, of which NaN is none."""
+    """Give the greater of two numbers, ignoring NaN."""
     return a if a >= b or b != b else b
 
 
@@ -120,9 +120,9 @@ def slope_in(shown: Matrix, row: int, i: int, per_length: Vector) -> float:
 
 @entry_at_once
 def promise_of_steps(shown: Matrix, length: Vector, per_length: Vector, out: Matrix) -> None:
-    """Fill what rows may rise to in each step, by its ends and by how slopes differ there.
+    """Fill a bound of each row in each step, from values at its ends and changes of slope there.
 
-    Nothing where steps begin anew, and `per_length` is NaN: what a jump tells nothing of.
+    Slopes across a jump, where steps begin anew and `per_length` is NaN, are left out.
     """
     for row in range(shown.shape[0]):
         bend, slope = math.nan, slope_in(shown, row, 1, per_length)
@@ -138,7 +138,7 @@ def promise_of_steps(shown: Matrix, length: Vector, per_length: Vector, out: Mat
 
 
 def _largest(promise: Array, top: float) -> Integers:
-    """Find what promises no less than is known; of many the most, and of equals the first."""
+    """Find the steps whose bounds reach the known peak `top`; of many those of highest bound."""
     which = np.flatnonzero(~(promise < top))
     if len(which) > LOOKED_INTO:
         which = which[np.argsort(-promise[which], kind="stable")[:LOOKED_INTO]]
@@ -146,10 +146,10 @@ def _largest(promise: Array, top: float) -> Integers:
 
 
 def _tops(known: Array) -> tuple[Array, Array]:
-    """Give the top of each row of values, and its place: that of a parabola where there is one.
+    """Give the maximum of each row of values, and its place: by a parabola where that fits.
 
-    Where second differences beside a top are not about its own there is a kink, such as that of
-    a base that begins to press: no parabola goes through it.
+    It does not where the second differences beside a maximum differ much from the one at it: there
+    is a kink, as where a base begins to press.
     """
     shape, known = known.shape[:-1], known.reshape(-1, known.shape[-1])
     largest, row = np.argmax(known, axis=-1), np.arange(len(known))

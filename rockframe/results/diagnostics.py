@@ -1,4 +1,4 @@
-"""Diagnostics: functions of the state that users register, and what a run tells by them."""
+"""Diagnostics: functions of the state that users register as further outputs of runs."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,24 +21,24 @@ State = Mapping[str, Generic]
 @proposing
 @dataclass(frozen=True)
 class Diagnostic:
-    """A function of the state, to be had of any scene by its name among the outputs.
+    """A function of the state, which any scene can give as an output, by its name.
 
     Parameters
     ----------
     function : callable
         Takes a mapping of arrays by their names in results, in SI units, and returns an array
-        of as many numbers. There are ``time``, the response (``rotation``,
+        of as many numbers. The mapping has ``time``, the response (``rotation``,
         ``angular_velocity``, ``horizontal_displacement``, ...), accelerations, reactions,
         ``friction_demand``, ``ground_acceleration`` and ``vertical_ground_acceleration``, and
-        what else the scene's equations show of the block, the highest of a stack. Each number
-        must follow from those of its own instant: the instants are those of the histories, or
-        those at which a peak is sought.
+        all further columns of the scene for the block, the highest body of a stack. Each number
+        returned must depend only on the numbers at its own instant: instants are those of the
+        histories, or others at which the peak is sought.
     name : str
         Its name among the outputs and in results.
     unit : str
-        Unit of what it gives; ``"1"`` for a ratio.
+        Unit of the numbers returned; ``"1"`` for a ratio.
     long_name : str
-        What it is.
+        Its meaning, in words.
 
     Examples
     --------
@@ -78,12 +78,12 @@ class Diagnostic:
         )
 
     def of(self, state: State) -> Array:
-        """Give its values at instants.
+        """Give its values at some instants.
 
         Parameters
         ----------
         state : mapping of str to ndarray, shape (instants,)
-            By their names in results, in SI units.
+            Arrays by their names in results, in SI units.
 
         Returns
         -------
@@ -92,7 +92,7 @@ class Diagnostic:
         Raises
         ------
         SchemaError
-            There are not as many as instants.
+            The function does not return one number for each instant.
         """
         found = np.asarray(self.function(state), dtype=np.float64)
         if found.shape != state["time"].shape:
@@ -105,10 +105,10 @@ class Diagnostic:
 
 
 DIAGNOSTICS: Final[dict[str, Diagnostic]] = {}
-"""Those that users have registered, by their names."""
+"""Diagnostics that users have registered, by their names."""
 
 
 def add_diagnostic(one: Diagnostic) -> None:
-    """Make a diagnostic known; it takes the place of one of its name."""
+    """Add a diagnostic to the schema; it replaces another one of its name."""
     DIAGNOSTICS[one.name] = one
     SCHEMA.update({row.name: row for row in one.rows})

@@ -1,7 +1,6 @@
-"""Accelerations, reactions and what they ask of the friction under a body.
+"""Accelerations, reactions, and the friction demand of a body: the friction that holds it.
 
-The sums and quotients that follow from a model's columns, page "Forces and accelerations" of
-the manual.
+All of them follow from a model's columns, page "Forces and accelerations" of the manual.
 """
 
 import math
@@ -21,16 +20,16 @@ STACKED: Final = "rotation_on_cap"
 ON_BASE: Final = (STACKED, "rotation_on_base")
 """Columns of the rotation of a body on another one, of which a scene has one at most."""
 OF_SOIL_FRICTION: Final = (STACKED, "base_shear", "soil_reaction")
-"""Columns that the friction between cap and soil follows from, where a scene has them all."""
+"""Columns from which the friction between cap and soil follows, where a scene has them all."""
 OF_SETTLEMENT: Final = ("vertical_displacement", "rotation")
-"""Columns that the settlement of the base follows from."""
+"""Columns from which the settlement of the base follows."""
 HALF: Final = 0.5
 ENOUGH: Final = 1.0
-"""The friction demand is told to last while it is above half its peak, or above what floors seldom
-have."""
+"""The duration of the friction demand is the time above half its peak, or above this coefficient
+if that is less: floors seldom have more."""
 NO_FORCE: Final = 1e-10
-"""Share of the weight below which a force is rounding; of an impulse, in that of a fall by the
-height of the centre of mass."""
+"""Share of the weight below which a force is rounding; for an impulse, a share of the weight times
+the square root of h/g, h the height of the centre of mass."""
 
 
 def force_histories(values: Values, ground: Array, load: BaseLoad) -> dict[str, Generic]:
@@ -62,7 +61,10 @@ def friction_demands(values: Values, load: BaseLoad) -> dict[str, Generic]:
 
 
 def friction_demand(thrust: Array, press: Array, least: float) -> Array:
-    """Give the friction that holds a body, :eq:`eq-friction-demand`; forces to `least` are none."""
+    """Give the coefficient of friction that holds a body, :eq:`eq-friction-demand`.
+
+    A thrust or a pressing force up to `least` counts as zero.
+    """
     held = np.abs(thrust) > least
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(thrust) / press
@@ -71,11 +73,11 @@ def friction_demand(thrust: Array, press: Array, least: float) -> Array:
 
 @dataclass(frozen=True)
 class EventStates:
-    """What a model shows just before and just after the events of a run."""
+    """The columns of a model just before and just after the events of a run."""
 
     time: Array  # of the events [s]
-    # whether an event is an impact from which the body goes on. One that it comes to rest by ends
-    # an endless series: its ratio of impulses is that of no impact
+    # whether an event is an impact after which the body moves on. An impact that brings it to rest
+    # stands for an endless series of impacts, and its ratio of impulses has no meaning
     is_impact: NDArray[np.bool_]
     before: Values  # columns and what follows from them, by their names in the schema
     after: Values
@@ -117,7 +119,7 @@ class EventStates:
 def peaks_along(
     along: AlongSteps, events: EventStates, load: BaseLoad
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """Give peaks of forces, and how far the middle of the base went down from rest at most."""
+    """Give peaks of forces with times and durations, and the peak settlement, by their names."""
     ((shear, most), (_, when)), ((deepest,), _) = along.each_largest(
         lambda values: np.stack([np.abs(values["base_shear"]), values["friction_demand"]]),
         lambda values: _settlement(values, load)[None],
@@ -137,7 +139,7 @@ def peaks_along(
 
 
 def residuals(last: Values, load: BaseLoad) -> dict[str, float]:
-    """Give what is left at the end of a run, by its names in the schema."""
+    """Give residual rotation, settlement and displacement, by their names in the schema."""
     left = {
         "residual_rotation": float(last["rotation"][0]),
         "residual_settlement": float(_settlement(last, load)[0]),

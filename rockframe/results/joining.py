@@ -1,4 +1,4 @@
-"""Many runs in one dataset, which says of all only what holds for each."""
+"""Joining of runs into one dataset, whose attributes are those that all runs share."""
 
 import hashlib
 import json
@@ -39,12 +39,12 @@ OF_ONE_RUN: Final = frozenset(
         "corners_held_without_pressing",
     }
 )
-"""Attributes that tell what became of one run; of several none of them is said."""
+"""Attributes that describe the outcome of one run; joined runs have none of them."""
 CASE_COUNT: Final = "case_count"
-"""Attribute that tells how many cases one sweep has; of several it is not said."""
+"""Attribute with the number of cases of one sweep; joined sweeps do not keep it."""
 
 OF_ITS_MOTIONS: Final = ("motion_names", "motions_json")
-"""Attributes by which a sweep tells its motions."""
+"""Attributes that describe the motions of a sweep."""
 
 _OWNER: Final = "concat"
 
@@ -57,7 +57,7 @@ def concat(
     *,
     histories: bool = False,
 ) -> xr.Dataset:
-    """Join runs, or what was joined before, along a dimension.
+    """Join runs, or datasets of joined runs, along a dimension.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def concat(
     dim : str, optional
         The dimension, such as ``"scale"``; a new one, or one that all of them have.
     labels : sequence or DataArray, optional
-        Values along the dimension, one for each run; those of a DataArray come with its
+        Values along the dimension, one for each run; a DataArray also gives them its
         attributes, such as ``units``.
     histories : bool, optional
         Whether histories are joined too; their times must be the same in all runs.
@@ -75,28 +75,28 @@ def concat(
     Returns
     -------
     xarray.Dataset
-        The variables that all runs have, without events and, unless asked for, without
-        histories; NaN for bodies and restrainers that a run has not. Where motions differ, or
-        `dim` is ``"motion"``, their names are a coordinate ``motion``.
+        The variables that all runs have, without events and, unless `histories`, without
+        histories; NaN for bodies and restrainers that a run does not have. Where motions differ,
+        or `dim` is ``"motion"``, their names are a coordinate ``motion``.
 
     Raises
     ------
     SchemaError
-        No runs, something else than datasets, labels of another number, or runs that do not
-        fit one another.
+        No runs, something other than datasets, a different number of labels than of runs, or
+        runs that do not fit one another.
 
     Notes
     -----
-    An attribute is kept if every run has it with the same value, and if it is none of
-    `verdict`, `overturned`, `overturning_time`, `overturning_direction`, `cautions`,
-    `certificate`, `certificate_runs`, `solver_substeps`, `solver_steps`,
-    `solver_rejected_steps`, `solver_end_time` and `end_state`, which tell of one run, and
-    `case_count` of one sweep, which are left out however many agree. Sweeps that differ along one
-    axis, or in their motions, alone are one sweep again. So it does not matter in
-    which order runs are joined.
-    `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps what some of its datasets do
-    not have: of a row of runs in which some overturned and a row in which none did, it says
-    that none did.
+    An attribute is kept if every run has it with the same value. Attributes that describe the
+    outcome of one run are left out even so: `verdict`, `overturned`, `overturning_time`,
+    `overturning_direction`, `cautions`, `certificate`, `certificate_runs`, `proof`,
+    `proof_verdict`, `proof_bits`, `solver_substeps`, `solver_steps`, `solver_rejected_steps`,
+    `solver_end_time`, `end_state`, `impacts_of_several_modes`, `impacts_of_no_mode` and
+    `corners_held_without_pressing`; and `case_count` of a sweep. Sweeps that differ only along one
+    axis, or only in their motions, become one sweep. So the order in which runs are joined does
+    not matter. `xarray.concat` with ``combine_attrs="drop_conflicts"`` keeps attributes that only
+    some datasets have: joining runs of which some overturned with runs of which none did, it
+    would say that none did.
 
     Examples
     --------
@@ -173,7 +173,7 @@ def _check_dimension(runs: Sequence[xr.Dataset], dim: object) -> None:
 
 
 def _refuse_unlike_units(rows: Sequence[xr.Dataset]) -> None:
-    """Refuse numbers in several units, of which xarray would make one row without a unit."""
+    """Refuse a variable in several units, which xarray would join into one without a unit."""
     for name in set[Any].union(*(set(row.variables) for row in rows)):
         units = dict.fromkeys(row[name].attrs.get("units") for row in rows if name in row.variables)
         if len(units) > 1:
@@ -183,7 +183,7 @@ def _refuse_unlike_units(rows: Sequence[xr.Dataset]) -> None:
 
 
 def _with_all_places(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
-    """Give rows all bodies and restrainers that any has."""
+    """Extend rows to all bodies and restrainers that any of them has, with NaN."""
     places: dict[str, list[Any]] = {}
     for name in (*BODY, *RESTRAINER):
         labels = [row[name].to_numpy().tolist() for row in rows if name in row.coords]
@@ -193,7 +193,7 @@ def _with_all_places(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
 
 
 def _type_flags(joined: xr.Dataset) -> None:
-    """Give flags the type of their values, which gaps in one of the runs have made floats."""
+    """Give `flag_values` the type of their variables, which missing runs have made floats."""
     for name, values in [*joined.data_vars.items()]:
         if "flag_values" in values.attrs and values.dtype.kind == "f":
             flags = np.asarray(values.attrs["flag_values"], np.float64)
@@ -201,7 +201,7 @@ def _type_flags(joined: xr.Dataset) -> None:
 
 
 def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
-    """Give rows their motions' names, which differ and so are no attribute of all."""
+    """Add the names of motions to rows as a coordinate, where they are no shared attribute."""
     lacking = [row for row in rows if MOTION not in row.variables]
     names = {row.attrs.get(MOTION) for row in lacking}
     known = all(isinstance(name, str) for name in names)
@@ -220,7 +220,7 @@ def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
 
 
 def _shared(given: Sequence[Mapping[Any, Any]], context: object = None) -> dict[Any, Any]:
-    """Give the attributes that all have alike, without those of one run."""
+    """Give the attributes that are equal in all runs, without those of the outcome of one run."""
     del context
     first, *others = given
     return {
@@ -236,11 +236,11 @@ _ALIKE: Final = (
     "axes_json", "run_json", "accuracy", "system_json", "function", "spectral_period",
     "rockframe_version",
 )  # fmt: skip
-"""What sweeps have alike that differ along one axis, or in their motions, alone."""
+"""Attributes that are equal in sweeps that differ only along one axis or in their motions."""
 
 
 def _as_one_sweep(given: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
-    """Tell of sweeps that differ along one dimension alone what is told of one; else nothing."""
+    """Give the attributes of one sweep to sweeps that differ only along `dim`; else none."""
     attributes = [run.attrs for run in given]
     if not all(name in one for one in attributes for name in _OF_A_SWEEP):
         return {}

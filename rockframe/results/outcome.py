@@ -1,4 +1,7 @@
-"""A finished run in plain values: what the dataset is built from."""
+"""A finished run in plain values by their names in the schema, from which datasets are built.
+
+Histories, events and scalars, the verdict in words, and the components of gravity on a slope.
+"""
 
 import math
 from collections.abc import Mapping
@@ -33,21 +36,21 @@ from rockframe.system.words import angle_words
 from rockframe.units import ANGLE
 
 MOST_OF_IT: Final = 0.95
-"""Share of the largest slip below which that is told beside what is left at the end."""
+"""Share of the peak slip below which a residual slip is told together with the peak."""
 NOTHING_OF_IT: Final = 1e-9
-"""Share of the largest slip below which what is left is rounding."""
+"""Share of the peak slip below which a residual slip is rounding."""
 SAME: Final = 1e-6
-"""Share by which one body comes no closer to overturning than another."""
+"""Relative difference up to which two bodies came equally close to overturning."""
 LEAST_SLIP: Final = 1e-6
-"""Slip that is worth telling; changes of the held point leave less [m]."""
+"""Least slip that is reported; changes of the held point leave less [m]."""
 PEAK_SLIPS: Final = ("peak_slip", "peak_body_slip", "peak_cap_slip")
-"""Of the block, of all bodies of a stack, and of a cap; those that a scene has."""
+"""Peak slips of the block, of all bodies of a stack, and of a cap, where a scene has them."""
 Generic = NDArray[Any]
 Values = Mapping[str, "Generic | float | int | bool"]
 
 
 def peak_share(run: Summary, angles: OverturningAngles) -> float:
-    """Give the largest share of a peak rotation in the overturning angle of its side and body."""
+    """Give the largest ratio of a peak rotation to the overturning angle of its side and body."""
     own = largest(run.peak_right / angles.right, run.peak_left / angles.left)
     return largest(own, run.other_share)
 
@@ -55,7 +58,7 @@ def peak_share(run: Summary, angles: OverturningAngles) -> float:
 def body_histories(
     model: ContactModel, run: Trajectory, values: Mapping[str, Generic]
 ) -> dict[str, Generic]:
-    """Give histories with those of all bodies, and of all restrainers, in one array each."""
+    """Give histories, those of all bodies and of all restrainers stacked in one array each."""
     kept = {name: each for name, each in values.items() if name in SCHEMA}
     if model.links:
         links = range(model.links)
@@ -79,7 +82,7 @@ def body_histories(
 
 
 def broken_links(model: ContactModel, ending: Ending) -> list[int]:
-    """Tell which restrainers are broken at the end of a run; once broken, they stay so."""
+    """Give the numbers of the restrainers that are broken at the end of a run, from 0."""
     system = cast("Any", model.system)
     rows = [system.row_of_link(i) for i in range(model.links)]
     return [
@@ -88,7 +91,7 @@ def broken_links(model: ContactModel, ending: Ending) -> list[int]:
 
 
 def relative_histories(values: Mapping[str, Generic], setting: Setting) -> dict[str, Generic]:
-    """Give rotation and vertical displacement over their scales."""
+    """Give the rotation over the overturning angle, and vertical displacement over settlement."""
     left, right = setting.overturning_angles
     rotation = values["rotation"]
     limit = np.where(rotation < 0.0, left, right) if left != right else left
@@ -232,13 +235,13 @@ def scalars(
 
 
 def overturns(runs: xr.Dataset) -> xr.DataArray:
-    """Tell which runs overturned, in the sense in which they were asked."""
+    """Give the verdicts of runs, from their status: 1 for overturned, 0 for not, NaN for none."""
     status = runs["status"]
     return status.copy(data=overturned_by(status.to_numpy()), deep=False).drop_attrs()
 
 
 def verdict_of(run: xr.Dataset) -> bool | None:
-    """Tell whether one run overturned, as :func:`overturns`; None where it has no verdict."""
+    """Give the verdict of one run, see :func:`overturns`; None where it has none."""
     found = float(overturns(run))
     return None if math.isnan(found) else bool(found)
 
@@ -300,7 +303,7 @@ def verdict(run: Summary, setting: Setting, model: ContactModel) -> str:
 
 
 def _slid(slips: SlipRange) -> str:
-    """Tell how far a body slid; also how far at most, where that is worth telling."""
+    """Say how far a body slid in the end, and at most where that is much more."""
     if slips.peak < LEAST_SLIP:
         return "Did not slide"
     most = Direction.RIGHT if slips.right > slips.left else Direction.LEFT
@@ -315,7 +318,7 @@ def _slid(slips: SlipRange) -> str:
 
 
 def _overturned(run: Summary, setting: Setting, model: ContactModel) -> str:
-    """Tell when the overturning angle was passed, and what came of it where the run went on."""
+    """Say when the overturning angle was passed and, if the run went on, how the body ended."""
     angles, side = setting.overturning_angles, Direction(run.overturning_direction)
     end = model.rotation_in(run.ending.state)
     when = f"to the {side.name.lower()} at {run.overturning_time:.3f} s"
@@ -339,11 +342,11 @@ def _cut_off(run: Summary) -> str:
 
 
 OF_WHAT_IT_STANDS_ON = ("cap_acceleration",)
-"""Accelerations along the base that a model shows with the part of gravity in them."""
+"""Accelerations along the base in which a model includes the component of gravity."""
 
 
 def slope_attributes(slope: Slope) -> dict[str, str]:
-    """Say in which axes a result is; said of every run."""
+    """Give the attributes of a result that say what its axes are."""
     axes = "horizontal and vertical"
     if not slope.level:
         side = "right" if slope.inclination > 0.0 else "left"
@@ -356,7 +359,7 @@ def slope_attributes(slope: Slope) -> dict[str, str]:
 
 
 def ground_on_slope(ground: Array, slope: Slope) -> tuple[Array, Array]:
-    """Give the ground's acceleration along and normal to the base."""
+    """Give the ground's acceleration along and normal to the base, without and with gravity."""
     if slope.level:
         return ground, ground
     moved = np.column_stack(slope.turned(ground[:, 0], ground[:, 1]))
@@ -364,7 +367,7 @@ def ground_on_slope(ground: Array, slope: Slope) -> tuple[Array, Array]:
 
 
 def without_gravity(shown: Mapping[str, Generic], slope: Slope) -> dict[str, Generic]:
-    """Take gravity out of the absolute accelerations that a model shows."""
+    """Subtract gravity from the absolute accelerations among a model's columns."""
     return {
         name: values - slope.along_gravity if name in OF_WHAT_IT_STANDS_ON else values
         for name, values in shown.items()
@@ -372,7 +375,7 @@ def without_gravity(shown: Mapping[str, Generic], slope: Slope) -> dict[str, Gen
 
 
 def _of_carrier(model: ContactModel, run: Trajectory) -> Array | float:
-    """Give what the body under another one adds to the displacement, by the ratio of masses."""
+    """Give what a lower body adds to the displacement, weighted by mass, in the work of gravity."""
     from rockframe.dynamics.cascade.system import Cascade
     from rockframe.dynamics.coupled.system import Coupled
     from rockframe.dynamics.stacked import LOWER

@@ -20,7 +20,7 @@ from rockframe.system.options import RESTRAINT_CODES, Restraint
 class BodyPoint:
     """A point of a body."""
 
-    name: str  # that it is called by
+    name: str  # name in results
     x: float  # to the right of the middle of the base and above it, at rest [m]
     y: float
 
@@ -28,7 +28,7 @@ class BodyPoint:
 def rotated_points(
     right: Array, up: Array, rotation: Array, *, small_rotation: bool
 ) -> tuple[Array, Array]:
-    """Give how points move by a rotation about their origin, :eq:`eq-point-motion`."""
+    """Give the displacements of points in a rotation about the origin, :eq:`eq-point-motion`."""
     if small_rotation:
         half = 0.5 * rotation
         return up * rotation, -right * rotation - up * (2.0 * half * half)
@@ -102,16 +102,16 @@ UPRIGHT: Mapping[str, float] = {
 
 @dataclass(frozen=True)
 class Placement:
-    """A scene at an instant: the moves of its bodies, and which ends bear."""
+    """A scene at an instant: where its bodies are, and which ends of bases bear."""
 
-    geometry: Geometry  # of the scene
-    values: Mapping[str, float]  # of the instant, by their names in the schema
+    geometry: Geometry  # the scene at rest
+    values: Mapping[str, float]  # values at the instant, by their names in the schema
     restraint: Restraint  # which point of the base is held horizontally
-    # of all bodies of a stack rotation and both displacements; None at rest
+    # rotation and both displacements of each body of a stack; None at rest
     bodies: Array | None = None
 
     def block(self, points: Array) -> Array:
-        """Give where points of the block are, and of all that it is one body with."""
+        """Give where points of the block are, or of anything that is one body with it."""
         values = self.values
         if self.geometry.columns:
             return self._about_corner(points)
@@ -121,7 +121,7 @@ class Placement:
     def _about_corner(self, points: Array) -> Array:
         """Give where points of a column are, as if it stood in the middle of the frame.
 
-        Those above it are of the beam, which moves as the upper corner that bears it.
+        Points above the column belong to the beam, which moves with the upper corner that bears it.
         """
         rotation = np.array(self.values["rotation"])
         pivot, top = self.geometry.half_width * float(np.sign(rotation)), self.geometry.height
@@ -134,7 +134,7 @@ class Placement:
         return points + np.column_stack(moves)
 
     def beam(self, points: Array) -> Array:
-        """Give where points of the beam are that columns carry."""
+        """Give where points of the beam on the columns are."""
         above = np.array([(0.0, 2.0 * self.geometry.height)])
         return points + self._about_corner(above) - above
 
@@ -163,11 +163,11 @@ class Placement:
 
     @property
     def cap_rotation(self) -> float:
-        """Of what the block stands on [rad]."""
+        """Rotation of the cap under the block; 0 where it stands on none that moves apart [rad]."""
         return self.values.get("cap_rotation", 0.0) if self.geometry.stacked else 0.0
 
     def bearing(self, name: str = "contact_state") -> tuple[bool, bool]:
-        """Tell whether the left and the right end of a base bear."""
+        """Give whether the left and whether the right end of a base bears."""
         state = self.values.get(name, float(ContactState.FULL))
         full = state == ContactState.FULL
         return full or state == ContactState.LEFT, full or state == ContactState.RIGHT

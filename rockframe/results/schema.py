@@ -1,6 +1,6 @@
-"""The one table of variables: name, unit, dimension and meaning of everything in a result.
+"""The schema, one table of all variables of results: name, unit, dimensions and meaning.
 
-Also the labelled dataset that is built by it, of which there is no other maker.
+Also the labelled dataset that is built from it; all datasets of results are built here.
 """
 
 from collections.abc import Mapping
@@ -65,7 +65,7 @@ _TABLES: Final = (
 )
 
 SCHEMA: Final = {row.name: row for table in _TABLES for row in table}
-"""All variables by name, with those that users have registered."""
+"""All variables by name, including those that users have registered."""
 
 
 def schema_row(name: str) -> Variable:
@@ -78,9 +78,8 @@ def schema_row(name: str) -> Variable:
 
 
 LABELS: Final = ("point_x", "point_y", studies.MESSAGE, "rotation_limit")
-"""Variables that label a case, or a dimension of another name: arithmetic leaves them alone, as it
-does those that label the dimension of their name. In a dataset they stand in the order of the
-schema."""
+"""Further coordinates: variables that label a case, or a dimension of another name. Arithmetic on
+datasets leaves coordinates alone."""
 
 ENERGIES: Final = tuple(row.name for row in runs.ENERGY_HISTORIES)
 """Histories that are integrated only on request."""
@@ -91,7 +90,7 @@ GROUPS: Final = {
     "reaction": tuple(row.name for row in requests.REACTIONS),
     "impulse": tuple(row.name for row in requests.IMPULSES),
 }
-"""Names that ask for several variables."""
+"""Names in `outputs` that stand for several variables."""
 
 ON_REQUEST: Final = (
     *(name for group in GROUPS.values() for name in group),
@@ -102,7 +101,7 @@ ON_REQUEST: Final = (
 SCHEMA_VERSION: Final = 3
 
 SOURCE: Final = "event-driven integration"
-"""Where the numbers of runs are from, beside the version."""
+"""Method by which the numbers of runs are computed, in the attribute `source`."""
 
 
 def build_dataset(
@@ -113,7 +112,10 @@ def build_dataset(
     title: str = "Rocking response",
     source: str = SOURCE,
 ) -> xr.Dataset:
-    """Label values by the schema and add the provenance every result carries."""
+    """Label values by the schema and add the provenance that every result has.
+
+    The dimensions `over` stand before those of the schema, as for the axes of a sweep.
+    """
     variables: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}
     labels: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
@@ -143,7 +145,7 @@ def build_dataset(
             **attributes,
         },
     )
-    # labelled in place, since xarray copies each variable that it is handed with attributes
+    # labelled in place, since xarray copies each variable that is given to it with attributes
     for name, label in labels.items():
         dataset.variables[name].attrs = label
     return without_fill_values(dataset)
@@ -158,14 +160,14 @@ def with_variables(
 
 
 def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
-    """Tell that coordinates have no missing values, and so need no fill value (CF 2.5.1)."""
+    """Mark coordinates as without fill value: they have no missing values (CF 2.5.1)."""
     for name in dataset.coords:
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
 
 
 def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
-    """Give values that users' own functions gave, where their shapes are those of the schema."""
+    """Give the results of users' functions as arrays; refuse shapes that differ from the schema."""
     sizes, found = dict(sizes), {name: np.asarray(value) for name, value in values.items()}
     for name, data in found.items():
         dims = schema_row(name).dims
@@ -177,6 +179,6 @@ def fitting(values: Mapping[str, Any], sizes: Mapping[str, int]) -> dict[str, ND
 
 
 def dated(done: str) -> str:
-    """Give a line of a dataset's history: when, and what was done by which version."""
+    """Give a line for a dataset's history: when something was done, and by which version."""
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return f"{now} {done} by rockframe {__version__}"

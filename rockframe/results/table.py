@@ -57,7 +57,7 @@ def table(
     contents : {"scalars", "histories", "events"}, optional
         One row for each run; for each of its samples; or for each of its events.
     units : mapping of str to str, optional
-        Units by what they are of, as for figures (:mod:`rockframe.plot`), such as
+        Units by kind of quantity, as for figures (:mod:`rockframe.plot`), such as
         ``{"force": "kN", "angle": "deg"}``; those of the datasets unless given.
 
     Returns
@@ -65,25 +65,25 @@ def table(
     pandas.DataFrame
         A column is headed by name and unit, such as ``peak_rotation [rad]``, and by the name
         alone where there is no unit or it is 1. Flags are words, such as ``right``; truth
-        values are True and False. Of runs what is told of each point, body or restrainer
-        has a column for each, such as ``peak_body_slip 1 [m]``.
+        values are True and False. A variable of runs over points, bodies or restrainers has a
+        column for each of these, such as ``peak_body_slip 1 [m]``.
 
-        Index, of joined runs: their dimensions, one row for each combination. Variables of unlike
-        dimensions, such as responses over the intensity and intensities over the response, have
-        rows of their own, one below the other, in which what the others go over is missing; to
-        have some alone give ``dataset[["name"]]``. Of a single run,
-        or of several: the name of the motion where all have one, and coordinates without
+        The index of joined runs has their dimensions, with one row for each combination. Variables
+        of different dimensions, such as responses over the intensity and intensities over the
+        response, have rows of their own, one below the other, in which the other dimensions are
+        missing; for some variables alone give ``dataset[["name"]]``. The index of a single run, or
+        of several, has the name of the motion, where all runs have one, and coordinates without
         dimension; then the number of the run in the list, where these do not tell the runs
         apart. Histories add ``time [s]``, events their number.
 
     Raises
     ------
     SchemaError
-        No dataset, or one that holds nothing of the kind.
+        No dataset, or one without such contents.
     ComponentError
-        Unknown contents, or a unit of what is not known.
+        Unknown contents, or a unit for an unknown kind of quantity.
     UnitsError
-        A unit of another kind.
+        A unit that does not fit its kind of quantity.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def table(
 
 
 def _each_alone(run: xr.Dataset, kind: Contents) -> xr.Dataset:
-    """Give what scalars are told of points, bodies and restrainers a variable for each of these."""
+    """Split scalars over points, bodies or restrainers into a variable for each of these."""
     if kind is not Contents.SCALARS or "status" not in run.data_vars:
         return run
     alone: dict[str, xr.DataArray] = {}
@@ -159,7 +159,7 @@ def _keys(runs: Mapping[Any, xr.Dataset]) -> pd.Index:
 
 
 def _labels(runs: Sequence[xr.Dataset]) -> pd.Index:
-    """Tell runs apart by motions and scalar coordinates, or else by their number too."""
+    """Give index labels of runs: motions, scalar coordinates and, if these repeat, their number."""
     levels: dict[str, list[Any]] = {}
     motions = [run.attrs.get(MOTION) for run in runs]
     if all(isinstance(name, str) for name in motions) and MOTION not in runs[0].coords:
@@ -192,9 +192,9 @@ def _rows(run: xr.Dataset, kind: Contents) -> pd.DataFrame:
 
 
 def _together(run: xr.Dataset, names: Sequence[str]) -> list[list[str]]:
-    """Divide variables into those whose dimensions lie within those of one of them.
+    """Divide variables into groups, in each of which one has all dimensions of the others.
 
-    One that fits to several goes where the rows are fewest.
+    A variable that fits into several groups joins the one with the fewest rows.
     """
     dims = {name: frozenset(run.variables[name].dims) for name in names}
     widest = [
@@ -208,7 +208,7 @@ def _together(run: xr.Dataset, names: Sequence[str]) -> list[list[str]]:
 
 
 def _rows_of(run: xr.Dataset, kind: Contents, names: list[str]) -> pd.DataFrame:
-    """Give the rows of variables that go together."""
+    """Give the rows of a group of variables."""
     dims = _dimensions(run, names)
     variables = run.variables
     if not dims:
@@ -271,7 +271,7 @@ def head(name: str, unit: object) -> str:
 
 
 def _in_words(column: Any, values: xr.Variable) -> pd.Series:
-    """Give flags as words, and truth values that were joined with gaps as such."""
+    """Give flags as words, and truth values with gaps as nullable booleans."""
     meanings = str(values.attrs.get("flag_meanings", "")).split()
     if values.dtype == bool or not meanings:
         return column

@@ -1,4 +1,4 @@
-"""Arrays of accelerations: what they must be, and copies that nobody can change."""
+"""Arrays of accelerations: checked for shape and finite values, and copied read-only."""
 
 from typing import Final, TypeAlias
 
@@ -10,7 +10,7 @@ from rockframe.errors import ComponentError
 Array: TypeAlias = NDArray[np.float64]
 
 OWNER: Final = "GroundMotion"
-"""What users build, for messages."""
+"""Name of the class that messages speak of."""
 
 
 def frozen(values: object, name: str, shape: tuple[int, ...] | None = None) -> Array:

@@ -1,7 +1,7 @@
-"""The same oscillators without a compiler: their recurrence as a filter.
+"""Peaks of linear oscillators without compiled code: their recurrence as a digital filter.
 
-The matrices of a step and the extremum inside it are those of
-:mod:`rockframe.signals.oscillator`; only the march from step to step is SciPy's.
+The matrices of a step and the extremum inside it come from :mod:`rockframe.signals.oscillator`,
+the compiled counterpart; the recurrence from step to step is done by SciPy.
 """
 
 from collections.abc import Callable
@@ -28,7 +28,7 @@ _KNOTS_AT_ONCE: Final = 4096
 
 
 class _Steps:
-    """Steps of equal length, and what they share for all oscillators."""
+    """The ground in steps of equal length, as all oscillators need it."""
 
     def __init__(self, length: float, pieces: Array) -> None:
         self.length = length
@@ -90,7 +90,7 @@ def _follow_pair(
     directions: Array,
     most: Array,
 ) -> None:
-    """Follow both components; update their states and the greatest displacements (SI)."""
+    """Follow an oscillator under both components; update `state` and `most`, displacements (SI)."""
     histories = np.array(
         [_histories(one, period, damping, start) for one, start in zip(steps, state, strict=True)]
     )
@@ -98,7 +98,7 @@ def _follow_pair(
     for first in range(0, histories.shape[2] - 1, _KNOTS_AT_ONCE):
         knots = histories[:, :, first : first + _KNOTS_AT_ONCE + 1]
         size = np.hypot(knots[0], knots[1])
-        # in no direction is there more than displacement and velocity at the end of a step
+        # no direction has a peak in a step above displacement plus velocity V at its end
         reach = np.flatnonzero(size[0, 1:] + size[1, 1:] > most.min())
         if reach.size == 0:
             continue
@@ -113,7 +113,7 @@ def _follow_pair(
 
 
 def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array) -> Any:
-    """Tell which oscillators may pass their peaks when left alone: their energy only falls."""
+    """Tell which oscillators may pass their peaks in free vibration: their energy only falls."""
     frequency = 2.0 * np.pi / periods
     speed = np.hypot(frequency * state[:, 0], state[:, 1])
     bounds = speed[:, None] * np.column_stack(
@@ -123,7 +123,7 @@ def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array
 
 
 def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest: Array) -> None:
-    """Follow one oscillator; update displacement and velocity, and their greatest (SI)."""
+    """Follow one oscillator; update `state` and its peaks in `greatest` (SI)."""
     length = steps.length
     kappa = 2.0 * np.pi * length / period
     u, v, w = _histories(steps, period, damping, state)
@@ -159,9 +159,9 @@ def _histories(steps: _Steps, period: float, damping: float, state: Array) -> Ar
 
 
 def _march(step: Array, driven: Array, start: Array) -> tuple[Array, Array]:
-    """Solve z(k+1) = A z(k) + d(k), a two-by-two recurrence, one line at a time."""
+    """Solve the two-by-two recurrence z(k+1) = A z(k) + d(k), one row at a time."""
     (uu, uv), (vu, vv) = step[:, :2].tolist()
-    # each line alone, by Cayley and Hamilton: z(k+2) = tr A z(k+1) - det A z(k) + ...
+    # decoupled by the theorem of Cayley and Hamilton: z(k+2) = tr A z(k+1) - det A z(k) + ...
     denominator = [1.0, -(uu + vv), uu * vv - uv * vu]
     crossed = np.array([[-vv, uv], [vu, -uu]])
     inputs = driven.copy()
@@ -175,7 +175,7 @@ def _march(step: Array, driven: Array, start: Array) -> tuple[Array, Array]:
 
 
 def _peak(value: Array, slope: Array, bends: Callable[[Rows], tuple[Array, Array]]) -> float:
-    """Find the greatest absolute value from knots to knots and between them."""
+    """Give the greatest absolute value, at the knots and between them."""
     peak = max(float(value.max()), -float(value.min()))
     rows = np.flatnonzero(slope[:-1] * slope[1:] < 0.0)
     rows = rows[np.abs(value[rows + 1]) + np.abs(slope[rows + 1]) > peak]

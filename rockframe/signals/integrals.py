@@ -1,7 +1,7 @@
-"""What is integrated over a component of the ground, exactly, whatever its polynomials.
+"""Exact integrals over a component of the ground, a polynomial in each interval.
 
-Velocity and displacement, Arias intensity and cumulative absolute velocity, how long a motion is
-strong, and its characteristic periods from the Fourier transform.
+Velocity and displacement, Arias intensity and cumulative absolute velocity, durations of strong
+motion, and characteristic periods from the Fourier transform.
 """
 
 import math
@@ -44,7 +44,7 @@ def absolute_velocity_history(signal: Signal) -> Array:
     """Give the cumulative absolute velocity up to every sample, :eq:`eq-cav` [m s^-1]."""
     if not signal.analytic:
         return _summed(_trapezoids(np.abs(signal.samples))) * signal.time_step
-    # the way that the velocity goes up and down, turning included
+    # the total variation of the velocity, its extrema between samples included
     velocity = integral_of(signal.pieces, signal.time_step)
     knots = knots_of(velocity)
     ways = np.abs(np.diff(knots))
@@ -62,7 +62,7 @@ def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
     seconds = np.arange(0.0, math.ceil(times[-1]) + 1.0)
     at_seconds = np.interp(seconds, times, absolute_velocity_history(signal))
     parts, starts, _ = _at_turns(signal.pieces)
-    count = len(signal.pieces)  # the parts behind them start at peaks
+    count = len(signal.pieces)  # parts from this number on start at peaks
     times = np.concatenate([times, starts[count:] * signal.time_step])
     size = np.abs(np.concatenate([signal.samples, parts[count:, 0]]))
     order = np.argsort(times, kind="stable")
@@ -87,9 +87,9 @@ def _summed(steps: Array) -> Array:
 
 
 def time_between_shares(history: Array, time_step: float, start: float, end: float) -> float:
-    """Give the time from one share of the last value of a growing history to another [s].
+    """Give the time in which a growing history goes from one share of its last value to another.
 
-    Zero if nothing grows.
+    In seconds; zero for a history of zeros.
     """
     if history[-1] <= 0.0:
         return 0.0
@@ -104,7 +104,7 @@ def time_between_shares(history: Array, time_step: float, start: float, end: flo
 
 
 def exceedance(signal: Signal, level: float) -> tuple[float, float]:
-    """Tell how long a level is exceeded [m s^-2]: from first to last time, and in all [s]."""
+    """Give the time from first to last exceedance of a level [m s^-2], and the total time [s]."""
     first, last, total = np.inf, -np.inf, 0.0
     pieces, starts, lengths = _at_turns(signal.pieces)
     for side in (1.0, -1.0):
@@ -126,9 +126,9 @@ def exceedance(signal: Signal, level: float) -> tuple[float, float]:
 
 
 def _at_turns(pieces: Array) -> tuple[Array, Array, Array]:
-    """Divide intervals where they turn; give the parts, and in intervals their starts and lengths.
+    """Divide intervals at their extrema; give the parts, their starts and lengths in time steps.
 
-    A level may be passed and left again inside an interval, about its peak.
+    Each part is monotone, so that it crosses a level once at most.
     """
     starts, lengths, powers = np.arange(float(len(pieces))), np.ones(len(pieces)), pieces.shape[1]
     slopes = slopes_of(pieces)
@@ -162,7 +162,7 @@ def transform_of(signal: Signal, resolution: float) -> tuple[Array, Any]:
     signal : Signal
         Acceleration of the ground.
     resolution : float
-        Greatest distance between frequencies; 0 for one over the length [Hz].
+        Greatest spacing of the frequencies; 0 for one over the duration [Hz].
 
     Returns
     -------
@@ -174,7 +174,7 @@ def transform_of(signal: Signal, resolution: float) -> tuple[Array, Any]:
     Raises
     ------
     ComponentError
-        A resolution that needs too many samples.
+        The resolution needs too many samples.
     """
     dt, count = signal.time_step, signal.samples.size
     if resolution > 0.0:
@@ -194,7 +194,7 @@ def transform_of(signal: Signal, resolution: float) -> tuple[Array, Any]:
 
 
 def _moments(angle: Array, powers: int) -> Any:
-    """Integrate x^j exp(-i angle x) from 0 to 1, for j = 0, 1, ...; angle up to pi."""
+    """Integrate x^j exp(-i angle x) over x from 0 to 1, for j = 0, 1, ...; angle up to pi."""
     moments = np.zeros((angle.size, powers), dtype=complex)
     term = np.ones(angle.size, dtype=complex)
     for n in range(_TERMS):
@@ -204,23 +204,23 @@ def _moments(angle: Array, powers: int) -> Any:
 
 
 MEAN_PERIOD_BAND: Final = (0.25, 20.0)
-"""Frequencies that the mean period looks at [Hz] (Rathje et al. 1998)."""
+"""Range of frequencies of which the mean period is a mean [Hz] (Rathje et al. 1998)."""
 
 MEAN_PERIOD_RESOLUTION: Final = 0.05
-"""Greatest distance between them [Hz] (Rathje et al. 2004)."""
+"""Greatest spacing of these frequencies [Hz] (Rathje et al. 2004)."""
 
 HOUSNER_BAND: Final = (0.1, 2.5)
 """Periods over which the velocity spectrum is integrated [s] (Housner 1952)."""
 
 HOUSNER_PERIODS: Final = np.linspace(*HOUSNER_BAND, 241)
-"""Where the velocity spectrum is computed for its integral [s]."""
+"""Periods at which the velocity spectrum is computed for its integral [s]."""
 
 PREDOMINANT_PERIODS: Final = 10.0 ** (np.arange(-100, 131) / 100.0)
-"""Where the peak of the velocity spectrum is looked for: 0.1 s to 20 s [s]."""
+"""Periods at which the peak of the velocity spectrum is looked for: 0.1 s to 20 s [s]."""
 
 
 def mean_period(signal: Signal) -> float:
-    """Give the mean period, :eq:`eq-mean-period`; NaN for ground still in its band [s]."""
+    """Give the mean period, :eq:`eq-mean-period`; NaN without power in its band [s]."""
     frequency, transform = transform_of(signal, MEAN_PERIOD_RESOLUTION)
     low, high = MEAN_PERIOD_BAND
     inside = (frequency >= low) & (frequency <= high)

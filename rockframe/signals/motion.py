@@ -1,8 +1,7 @@
-"""The ground's motion in numbers: its components, and what is left of them along an inclined base.
+"""Ground motions: their components, resolved along an inclined base, and piecewise polynomials.
 
-A component is samples, and a polynomial from each to the next. Also functions of time that are a
-polynomial in every interval: a row of coefficients, lowest power first, is a polynomial in x, from
-0 to 1 over one time step.
+A component consists of samples, and of a polynomial from each sample to the next. A row of
+coefficients, lowest power first, is a polynomial in x, which goes from 0 to 1 over one time step.
 """
 
 from __future__ import annotations
@@ -26,21 +25,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MAXIMUM_SAMPLES: Final = 50_000_000
-"""A motion that would be longer than this is taken for a slip of the pen."""
+"""Most samples of a motion; more are taken for a mistake."""
 
 COEFFICIENTS: Final = 6
-"""Of a polynomial between two samples of an analytic signal."""
+"""Coefficients of a polynomial between two samples of an analytic signal."""
 
 HORIZONTAL: Final = "acceleration"
 VERTICAL: Final = "vertical"
-"""What the components are called in messages: as the arguments of constructors."""
+"""Names of the components in messages: as the arguments of constructors."""
 
 _SAME_INSTANT: Final = 1e-9
-"""Relative difference up to which a time is that of a sample."""
+"""Relative difference up to which a time is taken for that of a sample."""
 
 _ROUNDING: Final = 1e-14
 
-_HALVINGS: Final = 54  # to the last bit of x
+_HALVINGS: Final = 54  # bisections that find x to its last bit
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +105,7 @@ class Signal:
 
     @cached_property
     def pieces(self) -> Array:
-        """The polynomials of all intervals: shape (n - 1, 6), of a record (n - 1, 2) [m s^-2]."""
+        """The polynomials of all intervals, shape (n - 1, 6); (n - 1, 2) for a record [m s^-2]."""
         if self.polynomials is not None:
             return self.polynomials
         lines = np.column_stack([self.samples[:-1], np.diff(self.samples)])
@@ -140,8 +139,8 @@ class Signal:
         Returns
         -------
         ndarray
-            Of the shape of `time`; at a sample, but for rounding of the time, the sample
-            itself; zero before the start and after the end [m s^-2].
+            Accelerations, in the shape of `time`: a sample itself where the time is its own but
+            for rounding; zero before the start and after the end [m s^-2].
         """
         place = np.asarray(time, dtype=np.float64) / self.time_step
         last = self.samples.size - 1
@@ -154,7 +153,7 @@ class Signal:
         return values
 
     def at_place(self, place: Array) -> Array:
-        """Evaluate the polynomials, at a sample that of the interval which begins there.
+        """Evaluate the polynomials; at a sample, the polynomial of the interval that begins there.
 
         Parameters
         ----------
@@ -164,7 +163,7 @@ class Signal:
         Returns
         -------
         ndarray
-            Of the shape of `place`; zero outside the signal [m s^-2].
+            Accelerations, in the shape of `place`; zero outside the signal [m s^-2].
         """
         last = self.samples.size - 1
         interval = np.clip(np.floor(place), 0, last - 1).astype(np.intp)
@@ -223,14 +222,14 @@ class Motion:
 
     @classmethod
     def of_samples(cls, time_step: float, horizontal: Array, vertical: Array | None = None) -> Self:
-        """Join the samples of a record by straight lines.
+        """Give the motion of a record, whose samples are joined by straight lines.
 
         Parameters
         ----------
         time_step : float
             dt between samples [s].
         horizontal, vertical : ndarray, shape (n,)
-            Accelerations at the samples, if there are vertical ones [m s^-2].
+            Accelerations at the samples; None for no vertical component [m s^-2].
 
         Returns
         -------
@@ -266,7 +265,7 @@ class Motion:
         Parameters
         ----------
         change : callable
-            New component from old one.
+            Function that gives the new component from the old one.
 
         Returns
         -------
@@ -291,13 +290,13 @@ class Motion:
 
 @dataclass(frozen=True)
 class Slope:
-    """A base line that rises to the right, and the gravity that it stands in."""
+    """The inclination of a base line, which rises to the right, and the components of gravity."""
 
     inclination: float  # i [rad]
     gravity: float  # g [m s^-2]
 
     level: bool = field(init=False, repr=False, compare=False)  # whether the base does not rise
-    # accelerations that stand for gravity: along the base, g sin i, and normal to it, g cos i
+    # components of gravity along the base, g sin i, and normal to it, g cos i
     along_gravity: float = field(init=False, repr=False, compare=False)  # [m s^-2]
     normal_gravity: float = field(init=False, repr=False, compare=False)
 
@@ -308,7 +307,7 @@ class Slope:
         )
 
     def turned(self, across: Array, up: Array) -> tuple[Array, Array]:
-        """Give along and normal components of horizontal and vertical ones."""
+        """Give the components along and normal to the base of horizontal and vertical ones."""
         sine, cosine = math.sin(self.inclination), math.cos(self.inclination)
         return across * cosine + up * sine, up * cosine - across * sine
 
@@ -318,16 +317,16 @@ class Slope:
         Parameters
         ----------
         motion : Motion or None
-            Of the ground, horizontal and vertical.
+            Horizontal and vertical motion of the ground; None for still ground.
         duration : float
-            Of the run, all of which gravity lasts [s].
+            Duration of the run, in which gravity acts throughout [s].
         interval : float
-            Between samples, where there is no motion [s].
+            Interval between samples where there is no motion [s].
 
         Returns
         -------
         Motion
-            Along the base, and normal to it.
+            Its horizontal component is along the base, its vertical one normal to it.
         """
         step = interval if motion is None else motion.time_step
         moving = 0 if motion is None else motion.horizontal.samples.size - 1
@@ -350,7 +349,7 @@ def _signal(step: float, pieces: Array, name: str) -> Signal:
 
 
 def values_at(pieces: Array, place: Array | float) -> Array:
-    """Evaluate every row of coefficients, shape (..., m), each at its own place x [1]."""
+    """Evaluate rows of coefficients, shape (..., m), each at its own x, from 0 to 1."""
     values = np.zeros(pieces.shape[:-1])
     for power in reversed(range(pieces.shape[-1])):
         values = values * place + pieces[..., power]
@@ -358,12 +357,12 @@ def values_at(pieces: Array, place: Array | float) -> Array:
 
 
 def slopes_of(pieces: Array) -> Array:
-    """Differentiate by x."""
+    """Give the coefficients of the derivatives by x."""
     return pieces[:, 1:] * np.arange(1.0, pieces.shape[1])
 
 
 def integral_of(pieces: Array, time_step: float) -> Array:
-    """Integrate rows over time, from zero on and continuous, :eq:`eq-ground-velocity`."""
+    """Give the integral over time, continuous and zero at the start, :eq:`eq-ground-velocity`."""
     rising = pieces * (time_step / np.arange(1.0, pieces.shape[1] + 1.0))
     start = np.concatenate([[0.0], np.cumsum(rising.sum(axis=1))[:-1]])
     return np.column_stack([start, rising])
@@ -384,12 +383,12 @@ def divided(pieces: Array, parts: int) -> Array:
 
 
 def knots_of(pieces: Array) -> Array:
-    """Give the values at both ends of all intervals."""
+    """Give the values at the starts of all intervals and at the end of the last, shape (n + 1,)."""
     return np.append(pieces[:, 0], pieces[-1].sum())
 
 
 def roots_of(pieces: Array) -> Array:
-    """Find the x at which every row crosses zero; its ends have different signs [1]."""
+    """Give the x at which each row crosses zero; the signs at its ends must differ [1]."""
     low, high = np.zeros(len(pieces)), np.ones(len(pieces))
     if pieces.shape[1] == 2:
         return -pieces[:, 0] / pieces[:, 1]
@@ -402,14 +401,14 @@ def roots_of(pieces: Array) -> Array:
 
 
 def turning_points(pieces: Array) -> tuple[NDArray[np.intp], Array]:
-    """Find the extrema inside the intervals at whose ends the slopes differ in sign."""
+    """Give the intervals whose slopes at both ends differ in sign, and the extrema in them."""
     slopes = slopes_of(pieces)
     rows = np.flatnonzero(slopes[:, 0] * slopes.sum(axis=1) < 0.0)
     return rows, values_at(pieces[rows], roots_of(slopes[rows]))
 
 
 def greatest(pieces: Array) -> float:
-    """Find the greatest absolute value, between the knots too."""
+    """Give the greatest absolute value, also between the ends of intervals."""
     _, between = turning_points(pieces)
     ends = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
     return float(np.max(np.abs(ends)))

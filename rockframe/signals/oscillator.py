@@ -1,35 +1,36 @@
-"""The linear oscillator under a ground that is a polynomial in every step.
+"""The linear oscillator under a ground acceleration that is a polynomial in every step.
 
-All functions here work in the step's own scale: x = t/h from 0 to 1, displacement
-u, velocity V = h du/dt, acceleration W = h^2 d2u/dt2. The oscillator is then
-:eq:`eq-oscillator-step`, with the one number kappa = 2 pi h/T. Compiled where numba is
+All functions here use scaled variables of a step of length h: x = t/h from 0 to 1, displacement
+u, velocity V = h du/dt, acceleration W = h^2 d2u/dt2. The equation of the oscillator is then
+:eq:`eq-oscillator-step`, with the one parameter kappa = 2 pi h/T. Compiled where numba is
 installed.
 
-Under both horizontal components the displacement in a direction is the sum of those of the
-components, times cosine and sine, :eq:`eq-rotated-displacement`: both are followed once, whatever
-the number of directions.
+Under both horizontal components the displacement in a direction is that under the first times the
+cosine, plus that under the second times the sine, :eq:`eq-rotated-displacement`: an oscillator is
+followed once under each component, whatever the number of directions.
 
-What functions take, by its name:
+Arguments of the functions, by their names:
 
 ``pieces``, ``first``, ``second``
-    Acceleration of the ground in every interval, shape (n, m) [m s^-2]; of one component, of both.
+    Ground acceleration in every interval, shape (n, m): of the only, first or second component
+    [m s^-2].
 ``still``
     Zeros, shape (12, m): the ground during a period after the motion.
 ``row``, ``part``, ``parts``
     An interval, and which of how many equal steps in it.
 ``force``
-    h^2, by which the acceleration becomes a force [s^2].
+    h^2, the factor from a ground acceleration to the scaled force in the equation [s^2].
 ``kappa``, ``damping``
     2 pi h/T and the damping ratio [1].
 ``step``, ``free_step``
-    Matrices of a step, shape (2, 2 + m), as filled by :func:`fill_step`; the latter after the
+    Matrices of a step, shape (2, 2 + m), as filled by :func:`fill_step`; `free_step` after the
     motion.
 ``start``, ``end``
     u, V and W of the first component, then of the second, at both ends of a step, shape (6,) [m].
 ``directions``, ``few``
     Cosines and sines of all directions, shape (d, 2), and of some, shape (f, 2).
 ``most``
-    Greatest absolute displacement so far in every direction, shape (d,); raised [m].
+    Greatest absolute displacement so far in every direction, shape (d,), which is updated [m].
 ``shifted``
     Scratch, shape (m,).
 """
@@ -41,13 +42,13 @@ import numpy as np
 from rockframe.compiled import Matrix, Vector, entry, inlined, kernel
 
 STEPS_PER_PERIOD: Final = 12
-"""Steps are split until a period has that many: kappa is at most 0.52."""
+"""Least number of steps in a period, for which intervals are split: kappa is at most 0.52."""
 
 TERMS: Final = 24
 """Terms of the power series; 0.52^24/24! is 3e-31."""
 
 QUANTITIES: Final = 3
-"""Relative displacement, relative velocity, absolute acceleration (without sign)."""
+"""Number of peaks: relative displacement, relative velocity, absolute acceleration."""
 
 _NEWTON_STEPS: Final = 3
 _TINY: Final = 1e-300
@@ -57,8 +58,8 @@ _TINY: Final = 1e-300
 def fill_step(kappa: float, damping: float, step: Matrix) -> None:
     """Compute the matrices of one step, :eq:`eq-step-matrices`, by :eq:`eq-step-series`.
 
-    By column: displacement and velocity at the end for a unit of displacement and velocity at
-    the start, and of force h^2 a = x^0, x^1, ...
+    A column holds u and V at the end: of the first two, for u = 1 and for V = 1 at the start; of
+    the others, for the forces h^2 a = x^0, x^1, ...
     """
     for column in range(step.shape[1]):
         term = 1.0 if column == 0 else 0.0
@@ -96,7 +97,7 @@ def turning_value(
 
 @kernel
 def shift_piece(pieces: Matrix, row: int, part: int, parts: int, shifted: Vector) -> None:
-    """Write a part of an interval's polynomial in the part's own x."""
+    """Write the polynomial of an interval as one of the x of a part of it."""
     powers = pieces.shape[1]
     for j in range(powers):
         shifted[j] = pieces[row, j]
@@ -124,8 +125,8 @@ def march_oscillator(
 ) -> None:
     """Follow one oscillator from interval to interval.
 
-    `state` is displacement and velocity V, from the start to the end [m]; `peaks` the greatest
-    absolute u, V and 2 xi kappa V + kappa^2 u, raised [m].
+    `state`, u and V at the start, becomes that at the end [m]. `peaks`, the greatest absolute u, V
+    and 2 xi kappa V + kappa^2 u so far, is updated [m].
     """
     stiffness, drag = kappa * kappa, 2.0 * damping * kappa
     powers = pieces.shape[1]
@@ -158,7 +159,7 @@ def march_oscillator(
             next_pull = drag * next_v + stiffness * next_u
             next_w = -next_pull - force * end_ground
             next_rate = drag * next_w + stiffness * next_v
-            # a turn inside the step lies no higher than the end and the slope there
+            # an extremum inside the step is no larger than value plus slope at its end
             if abs(next_u) + abs(next_v) > most_u:
                 most_u = max(most_u, abs(next_u))
                 if v * next_v < 0.0:
@@ -241,12 +242,12 @@ def raise_peaks(
     end: Vector,
     most: Vector,
 ) -> float:
-    """Raise the peaks in all directions by those of one step; give the least of them [m]."""
+    """Update the peaks in all directions by those of one step; give the least peak [m]."""
     least = np.inf
     for d in range(directions.shape[0]):
         c, s = directions[d, 0], directions[d, 1]
         u, v = c * end[0] + s * end[3], c * end[1] + s * end[4]
-        # a turn inside the step lies no higher than the end and the slope there
+        # an extremum inside the step is no larger than value plus slope at its end
         if abs(u) + abs(v) > most[d]:
             most[d] = max(most[d], abs(u))
             before = c * start[1] + s * start[4]
@@ -320,11 +321,11 @@ def outermost(
     few: Matrix,
     reached: Matrix,
 ) -> None:
-    """Find the points that the oscillator reaches furthest out in a few directions.
+    """Find the points of the oscillator's path that lie farthest out in a few directions.
 
-    What it reaches there bounds its peaks in all directions from below, so that most steps
-    need not be looked at in every direction. `reached`, shape (f, 3), is raised: how far it
-    comes, and both displacements there [m].
+    These points bound its peaks in all directions from below, so that most steps need not be
+    examined in every direction. `reached`, shape (f, 3), is updated: the distance in each of these
+    directions, and both displacements there [m].
     """
     least = 0.0
     for row in range(first.shape[0]):
@@ -373,7 +374,7 @@ def march_pair(
             follow_component(
                 second, row, part, parts, force, kappa, damping, step, shifted, 3, start, end
             )
-            # in no direction is there more than this
+            # no direction has a larger peak in this step
             reach = np.sqrt(end[0] * end[0] + end[3] * end[3])
             reach += np.sqrt(end[1] * end[1] + end[4] * end[4])
             if reach > least:

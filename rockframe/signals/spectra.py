@@ -1,4 +1,4 @@
-"""Peaks of linear oscillators in SI units."""
+"""Response spectra: peaks of linear oscillators, for one component or in all directions (SI)."""
 
 from typing import Final
 
@@ -12,7 +12,7 @@ from rockframe.signals.oscillator import QUANTITIES, STEPS_PER_PERIOD, march_all
 from rockframe.units import Condition
 
 DAMPING_RATIO: Final = Condition("from 0 to 1", lambda value: 0.0 <= value <= 1.0)
-"""What a damping ratio of an oscillator may be."""
+"""Range of the damping ratio of an oscillator."""
 
 MAXIMUM_STEPS: Final = 2_000_000_000
 """Steps of all oscillators together beyond which a spectrum is refused."""
@@ -99,9 +99,9 @@ def _march(signal: Signal, periods: Array, damping_ratio: float) -> Array:
 
 
 _BOTH: Final = 6
-"""Displacement, velocity and acceleration of both components."""
+"""Number of displacements, velocities and accelerations under both components."""
 _FEW: Final = 16
-"""Directions in which bounds are looked for first."""
+"""Number of directions in which the peaks are first bounded from below."""
 
 
 def unit_vectors(count: int) -> Array:
@@ -117,7 +117,7 @@ def rotated_displacements(
 ) -> Array:
     """Find the greatest displacement of oscillators in each direction: shape (k, d) [m].
 
-    `directions` are cosines and sines, shape (d, 2); the signals are alike in time step and length.
+    `directions` are cosines and sines, shape (d, 2); both signals have one time step and length.
     """
     one, other = (np.ascontiguousarray(pieces) for pieces in _of_one_degree(first, second))
     powers = one.shape[1]

@@ -1,1 +1,1 @@
-"""Event-driven integration; knows contact models only by their protocol."""
+"""Event-driven time integration; knows a contact model only by its protocol."""

@@ -1,6 +1,6 @@
-"""How accurate, and so how costly, a run shall be.
+"""Accuracy settings of a run: an error tolerance, or a number of fixed steps.
 
-Also into how many fixed steps that cuts an interval of the motion, :eq:`eq-substeps`.
+Also the number of fixed steps in each interval of the motion, :eq:`eq-substeps`.
 """
 
 import math
@@ -37,14 +37,13 @@ class Accuracy:
         Error allowed in one step, relative to the size of each state variable [1].
         None where `substeps` are given.
     floor : float
-        Share of a variable's largest size so far below which the error is no
-        longer measured relative to its present size; without meaning beside
-        `substeps` [1].
+        Errors are relative to the present size of a variable, or to this share of
+        its largest size so far where that is more; not used with `substeps` [1].
     steps_per_period : float
-        Least number of steps per period of the model's highest frequency; without
-        meaning beside a number of `substeps` [1].
+        Least number of steps per period of the model's highest frequency; not used
+        where `substeps` is a number [1].
     max_steps : int
-        Steps after which a run is ended with status ``step_limit``.
+        Steps after which a run ends with the status ``step_limit``.
     substeps : int, "fewest" or None
         Equal steps into which each sample interval of the motion is cut; ``"fewest"``
         is the least number for which `steps_per_period` holds. None where `rtol` is
@@ -114,7 +113,7 @@ LEVELS = {
 
 
 def accuracy_of(choice: "str | float | Accuracy", *, owner: str) -> Accuracy:
-    """Give the settings of a named level or of a tolerance, or those given."""
+    """Give the settings that a user means by a named level, a tolerance or an `Accuracy`."""
     if isinstance(choice, Accuracy):
         return choice
     if isinstance(choice, float):
@@ -136,20 +135,20 @@ def accuracy_of(choice: "str | float | Accuracy", *, owner: str) -> Accuracy:
 
 
 STABLE: Final = 0.85
-"""Largest step times fastest rate for which the method damps every damped vibration;
-it is 0.857 for dashpots without end, 1.0 for critical damping and 2.45 without damping."""
+"""Largest product of fixed step and fastest rate at which the method is stable for any damping;
+the bound is 0.857 for infinite, 1.0 for critical and 2.45 for no damping."""
 WHOLE: Final = 1e-9
-"""Share of a sub-step by which it may be longer than asked."""
+"""Share of a sub-step by which it may be longer than its limit."""
 
 
 def fastest_rate(model: ContactModel) -> float:
-    """Give the rate that fixes the step: of the fastest vibration, with its damping [s^-1]."""
+    """Give the rate of the fastest vibration with its damping, which limits the step [s^-1]."""
     half = 0.5 * model.damping_rate
     return half + hypot(model.fastest_frequency, half)
 
 
 def substeps_of(accuracy: Accuracy, model: ContactModel, interval: float) -> int:
-    """Give the number of fixed steps in each interval of a motion, 0 if by tolerance.
+    """Give the number of fixed steps in each interval of a motion; 0 for steps by tolerance.
 
     Parameters
     ----------
@@ -158,7 +157,7 @@ def substeps_of(accuracy: Accuracy, model: ContactModel, interval: float) -> int
     model : ContactModel
         The equations.
     interval : float
-        Of the motion [s].
+        Interval between samples of the motion [s].
 
     Returns
     -------

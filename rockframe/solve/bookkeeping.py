@@ -1,4 +1,4 @@
-"""Keeping account of a run: outputs, peaks, events, energies."""
+"""What a run records as it goes on: output samples, peaks, events, the energy balance."""
 
 import math
 import sys
@@ -31,10 +31,10 @@ from rockframe.solve.workspace import (
 )
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
-"""Share of a term by which it is rounded."""
+"""Relative rounding error of a term of the energy balance, and of times."""
 RIGHT_ANGLE: Final = 0.5 * math.pi
 ON_SAMPLE: Final = 1e-9
-"""Share of the output step within which a step's end is an output time."""
+"""Share of the output step within which the end of a step counts as an output time."""
 
 
 # Gauss-Legendre rule on (0, 1), exact for polynomials of the ninth degree
@@ -47,10 +47,10 @@ GAUSS_WEIGHTS: Final = table(0.5 * _WEIGHTS)
 def audit(
     equations: BoundEquations, mode: int, memory: Vector, clock: Vector, w: Workspace
 ) -> None:
-    """Compare the energy now with its start and all that came and went, :eq:`eq-audit`.
+    """Check the balance of the energies since the start of the run, :eq:`eq-audit`.
 
-    The largest term is that of what moves: the elastic energy at rest, and the gravity energy
-    that it takes over, say nothing of a quiet run.
+    The imbalance is related to the largest energy of the motion: gravity and elastic energy count
+    by what they differ from those at rest, which would hide the errors of a quiet run.
     """
     equations.stored.call(mode, w.state, w.answers, equations.numbers)
     energies = Energies(w.answers[0], w.answers[1], w.answers[2], w.answers[3])
@@ -64,7 +64,7 @@ def audit(
     clock[at.LARGEST_MOVED] = max(clock[at.LARGEST_MOVED], moved)
     terms = max(moved, abs(energies.gravity), energies.elastic)
     clock[at.LARGEST_TERM] = max(clock[at.LARGEST_TERM], terms)
-    # the terms themselves are rounded, those at rest among them
+    # all terms are rounded, the energies at rest too
     imbalance = abs(balance) - ROUNDING * clock[at.LARGEST_TERM]
     clock[at.RESIDUAL] = max(clock[at.RESIDUAL], imbalance)
 
@@ -79,7 +79,7 @@ def work_between(
     span: Span,
     w: Workspace,
 ) -> Work:
-    """Integrate the dashpots' and the ground's power over a part of a step, by Gauss' rule."""
+    """Integrate the powers of dashpots and ground over a part of a step, by Gauss's rule."""
     powers = equations.coordinate_count + equations.variable_count
     dissipated = supplied = 0.0
     for i in range(len(GAUSS_POINTS)):
@@ -103,12 +103,15 @@ def work_until(
     span: Span,
     w: Workspace,
 ) -> Work:
-    """Share the work of a step out to a fraction of it, by the powers of the dense solution."""
+    """Give the work up to a fraction of a step, so that all of the step has the given work.
+
+    Within the step it grows by the powers of the dense solution.
+    """
     if fraction >= 1.0:
         return work
     first = work_between(equations, 0.0, fraction, mode, count, span, w)
     second = work_between(equations, fraction, 1.0, mode, count, span, w)
-    # what is dissipated never comes back: scaled, not shifted, to the work of the step
+    # dissipated energy only grows: it is scaled, not shifted, to the work of the step
     both = first.dissipated + second.dissipated
     share = first.dissipated / both if both > 0.0 else fraction
     lacking = work.supplied - first.supplied - second.supplied
@@ -156,9 +159,9 @@ def store_outputs(
 def follow_peak(
     equations: BoundEquations, count: int, h: float, clock: Vector, w: Workspace
 ) -> None:
-    """Raise the peaks of the rotation to both sides by what the step holds, to its inside.
+    """Update the peaks of the rotation to both sides, with extrema inside the step.
 
-    Of other rotations the largest share in a limit.
+    Of other bodies, the largest ratio of a rotation to its limit.
     """
     size = equations.coordinate_count
     clock[at.PEAK_LEFT], clock[at.PEAK_RIGHT] = peaks_in_step(
@@ -177,7 +180,10 @@ def follow_peak(
 def peaks_in_step(
     row: int, size: int, count: int, h: float, left: float, right: float, w: Workspace
 ) -> tuple[float, float]:
-    """Raise the peaks of a rotation to both sides, by the place of its limits."""
+    """Give the peaks of a rotation to both sides, raised by a step; `row` is where its limits are.
+
+    Peaks are absolute values [rad].
+    """
     rotation = rotation_in_step(row, size, w.limits, w.state, w.new)
     peaks = rotation.may_peak(h, left, right)
     left, right = max(left, rotation.left), max(right, rotation.right)
@@ -196,7 +202,7 @@ def peaks_in_step(
 
 @kernel
 def reach_limit(time: float, size: int, progress: Progress, w: Workspace) -> tuple[int, int]:
-    """Mark overturning, or the fall that ends a run; give the event's kind and a status."""
+    """Record overturning, or the end of the fall after it; give kind of event and status."""
     clock = progress.clock
     if not math.isnan(clock[at.OVERTURNING_TIME]):
         return TOPPLED, at.FELL
@@ -223,7 +229,10 @@ def record_event(
     events: EventTable,
     w: Workspace,
 ) -> int:
-    """Count an event and fill its row of the table, whose state before stands there already."""
+    """Count an event and fill its row of the table, where the state before it stands already.
+
+    Give `CHATTER` where events repeat themselves or follow too close upon one another.
+    """
     clock, counters = progress.clock, progress.counters
     row = counters[at.EVENTS]
     width = len(w.state)
@@ -259,7 +268,7 @@ def record_event(
 def accept(
     fixed: bool, work: Work, ground: Ground, clock: Vector, counters: Integers, w: Workspace
 ) -> None:
-    """Take a step's end for what is reached."""
+    """Add an accepted step to the progress of the run."""
     if not fixed:
         for i in range(len(w.state)):
             w.reference[i] = max(w.reference[i], abs(w.new[i]))

@@ -1,7 +1,7 @@
-"""The solution inside a step, and where a guard falls through zero there.
+"""Dense solution inside a step, and the search for zero crossings of guards in it.
 
-The solution is the quintic through position, rate and acceleration at the ends of the step,
-:eq:`eq-hermite`; its error is of sixth order in the step. The variables of first order follow the
+A coordinate follows the quintic through position, rate and acceleration at the ends of the step,
+:eq:`eq-hermite`; its error is of sixth order in the step. A variable of first order follows the
 cubic through value and rate.
 """
 
@@ -17,16 +17,16 @@ from rockframe.solve.workspace import Span, Workspace, ground_in
 class Crossing(NamedTuple):
     """Where a guard falls through zero, as fractions of a step."""
 
-    guard: int  # -1 if none does
-    place: float
-    negative: float  # where it is negative
+    guard: int  # number of the guard; -1 if none falls
+    place: float  # where it is zero
+    negative: float  # where, behind that, it is negative
 
 
 @kernel
 def quintic(
     x0: float, v0: float, a0: float, x1: float, v1: float, a1: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Give the coefficients in u = t/h; rates are per u, accelerations per u squared."""
+    """Give the coefficients of the quintic in u = t/h, from values and derivatives by u."""
     rise = x1 - x0 - v0 - 0.5 * a0
     change = v1 - v0 - a0
     bend = a1 - a0
@@ -52,7 +52,7 @@ def cubic(x0: float, v0: float, x1: float, v1: float, u: float) -> tuple[float, 
 def interpolate(
     equations: BoundEquations, count: int, fraction: float, h: float, w: Workspace
 ) -> None:
-    """Fill the scratch state and accelerations at a fraction of a step of length h.
+    """Fill the scratch state and its rates at a fraction of a step of length h [s].
 
     Coordinates beyond the first `count` do not move and are copied.
     """
@@ -85,7 +85,7 @@ def interpolate(
 
 @kernel
 def extremum(x0: float, v0: float, a0: float, x1: float, v1: float, a1: float) -> float:
-    """Give the value of the quintic where its slope changes sign (arguments as `quintic`)."""
+    """Give the extremum of a quintic whose slope changes sign (arguments as of `quintic`)."""
     c0, c1, c2, c3, c4, c5 = quintic(x0, v0, a0, x1, v1, a1)
     low = 0.0
     high = 1.0
@@ -110,13 +110,14 @@ def extremum(x0: float, v0: float, a0: float, x1: float, v1: float, a1: float) -
 ROOT_TOLERANCE: Final = 1e-13
 """Width of the bracket, as a share of the step, at which the search for a root ends."""
 SEARCHING: Final = 100
-"""Most guards evaluated in that search; halving alone takes 44."""
+"""Most evaluations of the guards in that search; bisection alone takes 44."""
 LOOKING: Final = 40
-"""Most guards evaluated in the search of a dip; each halves it."""
+"""Most evaluations of the guards in the search of a dip; each halves its bracket."""
 GUESSING: Final = 5
-"""Corrections of the guess with which it begins."""
+"""Newton's corrections of the root of the cubic, from which the search for a root begins."""
 CONVERGED: Final = 1e-7
-"""Correction, as a share of the step, whose square is rounding: the last one of Newton's method."""
+"""Newton's correction, as a share of the step, after which no other is needed: its square, the
+size of the next one, is rounding."""
 
 
 @kernel
@@ -130,8 +131,8 @@ def earliest_crossing(
 ) -> Crossing:
     """Give the guard that falls through zero first.
 
-    Looks into the first dip of each guard that may have one, however it begins, and at the
-    step's end.
+    A guard is evaluated at the end of the step and, where its cubic dips towards zero, in that
+    dip, whether it begins positive or at zero.
     """
     found, place, negative = -1, 2.0, 1.0
     for i in range(len(tolerance)):
@@ -146,7 +147,7 @@ def earliest_crossing(
             end = _point_below_zero(
                 equations, i, bottom, low, high, mode, count, span, tolerance, w
             )
-        # of one that starts at zero, within its rounding noise, only what lies deeper is a fall
+        # a guard that starts at zero, within its rounding noise, falls only if it goes below that
         if end < 0.0 and w.after[i] < (0.0 if w.before[i] > tolerance[i] else -tolerance[i]):
             end = 1.0
         if end >= 0.0:
@@ -169,10 +170,10 @@ def _cubic_of(
 
 @kernel
 def _dip(c1: float, c2: float, c3: float) -> tuple[float, float, float]:
-    """Give the place of a cubic's dip, and the places inside the step between which it lies.
+    """Give the place of a cubic's minimum, and a bracket of it inside the step.
 
-    Where its rate comes close to zero without a change of sign, that of the least rate; outside
-    the step where there is neither.
+    Without a minimum, the place where the falling cubic is flattest. Without that either, a place
+    outside the step.
     """
     root = math.sqrt(max(c2 * c2 - 3.0 * c3 * c1, 0.0))
     bottom = 2.0
@@ -223,9 +224,10 @@ def _point_below_zero(
     tolerance: Vector,
     w: Workspace,
 ) -> float:
-    """Search a predicted dip for a negative value by the guard's rate; -1 if there is none.
+    """Give a place in a predicted dip at which a guard is negative; -1 if there is none.
 
-    Of a guard that starts at zero, within its rounding noise, only what lies deeper is a dip.
+    Bisection by the guard's rate. For a guard that starts at zero, within its rounding noise,
+    values must be below that noise.
     """
     start, noise = w.before[which], tolerance[which]
     zero = 0.0 if start > noise else min(start, 0.0) - noise
@@ -234,7 +236,7 @@ def _point_below_zero(
         if g < zero:
             return bottom
         rate = span.h * w.inside[len(tolerance) + which]
-        if g - zero > abs(rate) * (high - low):  # it is convex there, and nowhere lower by more
+        if g - zero > abs(rate) * (high - low):  # convex: no value in the bracket is negative
             break
         if rate > 0.0:
             high = bottom
@@ -271,13 +273,12 @@ def _first_root(
     tolerance: Vector,
     w: Workspace,
 ) -> float:
-    """Give the first root between the step's start and `end` (negative).
+    """Give the first root of a guard before `end`, where it is negative.
 
     Newton's method from the root of the cubic through the guard's values and rates at both ends
-    of the step, kept inside its bracket by bisection. A guard that starts at its limit, within
-    its rounding noise, may rise before it falls: the root sought is then the one behind its
-    rise, of the cubic without its root at the start. A corner that has just left is not about
-    to land.
+    of the step, kept inside its bracket by bisection. A guard that starts at zero, within its
+    rounding noise, may rise before it falls: then the root behind its rise is meant, that of the
+    cubic divided by u. Else a corner that has just lifted off would seem to land at once.
     """
     guards = len(tolerance)
     start, c1, c2, c3 = _cubic_of(which, span.h, tolerance, w)

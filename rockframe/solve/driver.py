@@ -1,8 +1,8 @@
-"""The event-driven integration of any contact model, page "Numerics" of the manual.
+"""The loop over events of a run of any contact model, page "Numerics" of the manual.
 
-Written once: compiled where numba is installed, plain Python where not. The driver knows a
-scene only by its :class:`rockframe.solve.equations.BoundEquations`. It can be left for want
-of room in the event table and entered again.
+`integrate` calls it; between events it calls the march, which makes steps. The driver knows a
+scene only by its :class:`rockframe.solve.equations.BoundEquations`. It returns where a table is
+full, and goes on when it is called again with a larger one.
 """
 
 import math
@@ -56,20 +56,20 @@ from rockframe.solve.workspace import (
 )
 
 POLISHING: Final = 4
-"""Corrections of an event's time on the Runge-Kutta solution itself, if they become small."""
+"""Corrections of an event's time, by repeated steps, after which one that is small is the last."""
 MOST_POLISHING: Final = 60
-"""Corrections if they do not; halving alone takes 50."""
+"""Most corrections of an event's time; bisection alone takes 50."""
 SMALL: Final = 1e-6
 """Share of the step below which a correction is small."""
 ROUNDING: Final = 1e-15
-"""Share of the time so far below which such a correction is rounding."""
+"""Share of the time of the run below which such a correction is rounding."""
 TIME_NOISE: Final = 8.0 * ROUNDING
-"""Share of the time so far by which an event may be misplaced."""
+"""Share of the time of the run that is the rounding error of an event's time."""
 
 
 @inlined
 def time_of(progress: Progress) -> float:
-    """Give the time that a run has come to."""
+    """Give the present time of a run [s]."""
     began = progress.counters[at.INTERVAL] * progress.controls[at.TIME_STEP]
     return began + progress.clock[at.INTO_INTERVAL]
 
@@ -78,10 +78,10 @@ def time_of(progress: Progress) -> float:
 def look_ahead(
     equations: BoundEquations, mode: int, tolerance: Vector, progress: Progress, w: Workspace
 ) -> int:
-    """Evaluate accelerations and guards anew, after a switch or a jump of the ground.
+    """Evaluate accelerations and guards anew, after an event or a jump of the ground.
 
-    Gives a guard that the mode breaks from its start, or -1. One that rises may lie below zero by
-    what it changes within the rounding of time.
+    Gives a guard that is negative, or zero and falling, already at the start of the mode, or -1. A
+    guard that rises may be negative by its change within the rounding error of time.
     """
     clock, guards = progress.clock, len(tolerance)
     ground = ground_in(0.0, span_of(0.0, progress), w.ground)
@@ -100,7 +100,7 @@ def look_ahead(
 
 @inlined
 def span_of(h: float, progress: Progress) -> Span:
-    """Give a step of some length from where the run is."""
+    """Give a step of length h [s] from the present time of a run."""
     clock, counters, time_step = progress.clock, progress.counters, progress.controls[at.TIME_STEP]
     return Span(
         h, clock[at.INTO_INTERVAL] / time_step, h / time_step, counters[at.DEGREE_X],
@@ -115,8 +115,8 @@ def step_to_event(
 ) -> tuple[float, int]:  # fmt: skip
     """Repeat a step up to the first crossing of a guard; give its length and the guard, or -1.
 
-    The place is found on the dense solution, and corrected. What that may pass by, another guard
-    that has fallen before, is looked for in what is left of the step.
+    The crossing is found on the dense solution, then corrected by repeated steps. If another guard
+    is negative at the end of the shortened step, its crossing is searched in that step.
     """
     found = earliest_crossing(
         equations, known.mode, known.moving, span_of(whole, progress), tolerance, w
@@ -139,7 +139,7 @@ def step_to_event(
 
 @kernel
 def another_has_fallen(crossed: int, tolerance: Vector, w: Workspace) -> bool:
-    """Whether another guard has fallen below zero at the end of a step."""
+    """Whether a guard other than `crossed` is negative at the end of a step."""
     for i in range(len(tolerance)):
         if i != crossed and w.before[i] > tolerance[i] and w.after[i] < -tolerance[i]:
             return True
@@ -151,19 +151,19 @@ def correct_crossing(
     equations: BoundEquations, known: KnownMode, whole: float, crossing: Crossing,
     tolerance: Vector, pieces: Pieces, progress: Progress, steps: StepTable, w: Workspace,
 ) -> float:  # fmt: skip
-    """Repeat a step up to where a guard falls; give its length.
+    """Repeat a step up to where a guard falls through zero; give its length [s].
 
-    Newton's method on the Runge-Kutta solution itself, kept by bisection between lengths at which
-    the guard is positive and negative: of a step that is long beside a damped vibration the dense
-    solution tells little of the other. So is the guard that rises from zero and falls again from
-    its first root, the start. A dip that the Runge-Kutta solution does not have is an event where
-    it comes closest.
+    Newton's method on the end of the repeated step, kept by bisection between lengths at which the
+    guard is positive and negative: in a step that is long compared with a damped vibration the
+    dense solution is far from it. The bracket also keeps a guard that rises from zero and falls
+    again from its first root, the start. Where the dense solution has a dip below zero that
+    repeated steps do not have, the event is where the guard is smallest.
     """
     crossed, place, negative = crossing
     now = time_of(progress)
     h, rates = place * whole, equations.guard_count + 1
     noise, low, high = tolerance[crossed], 0.0, negative * whole
-    above, below, last = w.before[crossed], w.after[crossed], 0.0  # values at both
+    above, below, last = w.before[crossed], w.after[crossed], 0.0  # values at low and high
     begins_positive = above > noise or w.before[rates + crossed] > 0.0
     has_root = h > 0.0 and begins_positive
     if has_root and negative < 1.0:
@@ -185,7 +185,7 @@ def correct_crossing(
             high, above, below = h, 0.5 * above if last < 0.0 else above, guard
         last = guard
         moved = h - guard / fall if fall < 0.0 else low
-        if fall == 0.0 and above > 0.0 > below:  # of forces no rate is known
+        if fall == 0.0 and above > 0.0 > below:  # guards that are forces come without a rate
             moved = low + (high - low) * (above / (above - below))
         if has_root and not low < moved < high:
             moved = 0.5 * (low + high)
@@ -200,7 +200,7 @@ def correct_crossing(
 
 @kernel
 def stand_still(w: Workspace) -> None:
-    """Make a step of no length."""
+    """Make a step of length zero: copy its start to its end."""
     for i in range(len(w.state)):
         w.new[i] = w.state[i]
     for i in range(len(w.first)):
@@ -221,7 +221,7 @@ def carry_out(
     events: EventTable,
     w: Workspace,
 ) -> tuple[KnownMode, int]:
-    """Carry out the switch that a crossed guard calls for; give the new mode and a status."""
+    """Carry out the event of a crossed guard; give the new mode and a status."""
     clock = progress.clock
     row = progress.counters[at.EVENTS]
     for i in range(len(w.state)):
@@ -243,7 +243,7 @@ def carry_out(
 
 @kernel
 def keep_start(mode: int, progress: Progress, steps: StepTable, w: Workspace) -> None:
-    """Keep where steps start anew, in place of a start from which no step was made."""
+    """Store a start in the table of steps, in place of the last row if that is an unused start."""
     clock, counters = progress.clock, progress.counters
     row, width, slopes = counters[at.STEPS_KEPT], len(w.state), len(w.first) - POWERS
     if row > 0 and steps.values[(row - 1) * (BESIDE + width + slopes) + 1] == 0.0:
@@ -277,7 +277,7 @@ def run_on(
     counters[at.DEGREE_Y] = load_interval(index, pieces.y, TERMS, w.ground)
     fixed, shortest = controls[at.RTOL] == at.FIXED_STEPS, SHORTEST * controls[at.DURATION]
     crossed = counters[at.PENDING]
-    stale = counters[at.STALE] == 1  # slope and guards at the state, after a switch or a jump
+    stale = counters[at.STALE] == 1  # slope and guards are to be evaluated anew
     steps, anew = output.steps, False
     status = at.COMPLETED
     while True:
@@ -305,7 +305,7 @@ def run_on(
         if anew and len(steps.codes) > 0:
             keep_start(known.mode, progress, steps, w)
         anew = False
-        row = counters[at.OUTPUTS]  # that is stored at the end of a step
+        row = counters[at.OUTPUTS]  # the next output
         more = row < len(output.mode)
         clock[at.NEXT_OUTPUT] = (row - ON_SAMPLE) * controls[at.OUTPUT_STEP] if more else math.inf
         happened = equations.make_steps(known, 0.0, pieces, progress, steps, w)
@@ -353,7 +353,7 @@ def run_on(
         w = swapped(w)
     if status not in (at.PAUSED, at.MORE_ROOM):
         audit(equations, known.mode, memory, clock, w)
-    if half == 1:  # where the caller looks for it
+    if half == 1:  # copy to where the caller reads it
         for i in range(len(home.state)):
             home.state[i] = w.state[i]
         for i in range(len(home.first)):
@@ -368,4 +368,4 @@ def run_on(
 
 
 advance = entry_at_once(run_on)
-"""Integrates one run, as machine code where there is some."""
+"""Integrates one run: `run_on` as machine code as soon as that has been compiled."""

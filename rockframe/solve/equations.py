@@ -1,8 +1,9 @@
 """A system's equations as the integrator calls them: functions of arrays, of fixed types.
 
 So one integrator, compiled once, serves every system: it knows these functions by their
-addresses, and the system's numbers as a vector. Steps have most equations compiled into their
-loop. Those that take long to compile and to evaluate, which a call hardly delays, they call.
+addresses, and the system's numbers as a vector. Most equations are compiled into the loop of
+steps. Equations that take long to compile and to evaluate are called from that loop instead: the
+call itself hardly delays them.
 """
 
 import math
@@ -53,13 +54,13 @@ def switched(
     system: Equations, mode: int, guard: int, state: Vector, ground_x: float, ground_y: float,
     memory: Vector,
 ) -> int:  # fmt: skip
-    """Carry out what the fall of a guard calls for; give the new mode."""
+    """Carry out the event of a guard that has fallen through zero; give the new mode."""
     return system.switch(mode, guard, state, Ground(ground_x, ground_y), memory)
 
 
 @kernel
 def meaning(system: Equations, mode: int, out: Vector) -> None:
-    """Write how many coordinates move in a mode, the contact state, and a rate of decay."""
+    """Write how many coordinates move in a mode, the contact state, and the rate of relaxation."""
     out[0] = system.moving_in(mode)
     out[1] = system.contact_state_of(mode, 0)
     out[2] = system.relaxation_in(mode)
@@ -85,14 +86,14 @@ def powered(
     system: EquationsWithPowers, mode: int, state: Vector, ground_x: float, ground_y: float,
     out: Vector,
 ) -> None:  # fmt: skip
-    """Write the powers at the rates of a state into the slope that was found at its place."""
+    """Write the powers of a state into a slope at the same coordinates but other rates."""
     powers = system.coordinates() + system.variables()
     found = system.powers(mode, state, out, Ground(ground_x, ground_y))
     out[powers], out[powers + 1] = found
 
 
 class KnownMode(NamedTuple):
-    """A mode, and what it means for steps: asked for when it begins, and kept as long as it lasts.
+    """A mode, and what it means for steps: unpacked when it begins.
 
     The contact state is that of the body that the scene is about.
     """
@@ -100,17 +101,17 @@ class KnownMode(NamedTuple):
     mode: int
     moving: int  # leading coordinates that move
     contact: int  # rockframe.dynamics.events.ContactState
-    longest: float  # stable fixed step, where that is not for vibrations [s]
+    longest: float  # longest fixed step that is stable for the relaxation of a constraint [s]
 
 
 class BoundEquations(NamedTuple):
-    """A system, bound: its functions, its numbers, and how many there are of everything.
+    """The bound functions of a system, its numbers, and its sizes.
 
-    Two processes compile the functions from both ends; the march is half of it. What is called at
-    events only is compiled when it is worth it.
+    Two processes compile the functions, from the first and from the last on; the march takes half
+    of the time. Functions that are called at events only are compiled when that pays.
     """
 
-    stepping: Bound  # what steps call: the march, with the equations in it
+    stepping: Bound  # the march, with the equations compiled into it
     slope: Bound
     observing: Bound
     switching: Bound
@@ -137,7 +138,7 @@ class BoundEquations(NamedTuple):
 
 
 class CalledEquations(BoundEquations):
-    """A system whose equations steps call."""
+    """A system whose equations are called from the loop of steps."""
 
     __slots__ = ()
 
@@ -146,7 +147,7 @@ class CalledEquations(BoundEquations):
         self, scheme: Scheme, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
         steps: StepTable, w: Workspace,
     ) -> int:  # fmt: skip
-        """Make steps in some way."""
+        """Make steps by a scheme, until something happens."""
         return march(
             scheme, Called(self), known.mode, known.moving, int(known.contact == FLIGHT), trial,
             pieces.x, pieces.y, w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground,
@@ -155,7 +156,7 @@ class CalledEquations(BoundEquations):
 
 
 class CalledByTolerance(CalledEquations):
-    """The same in steps by a tolerance: `stepping` is the slope."""
+    """Called equations in steps by a tolerance; `stepping` is the slope here."""
 
     __slots__ = ()
 
@@ -170,7 +171,7 @@ class CalledByTolerance(CalledEquations):
 
 
 class CalledInFixedSteps(CalledEquations):
-    """The same in steps of fixed length: `stepping` writes powers into a slope."""
+    """Called equations in steps of fixed length; `stepping` writes powers into a slope here."""
 
     __slots__ = ()
 
@@ -185,7 +186,7 @@ class CalledInFixedSteps(CalledEquations):
 
 
 class Called(NamedTuple):
-    """Equations that steps call."""
+    """Equations as the loop of steps calls them, one by one."""
 
     equations: BoundEquations
 
@@ -235,14 +236,17 @@ def gives_powers(system: Equations) -> bool:
 
 
 def is_called(system: Equations) -> bool:
-    """Whether steps call the equations, which then give powers, too."""
+    """Whether equations are called from the loop of steps; such equations give powers, too."""
     return isinstance(system, CalledBySteps)
 
 
 def equations_of(
     system: Equations, *, fixed_steps: bool, with_work: bool = False
 ) -> BoundEquations:
-    """Bind a system's equations for the integrator; work at outputs is found from many slopes."""
+    """Bind a system's equations for the integrator.
+
+    For work at the output times (`with_work`) slopes are evaluated so often that they are compiled.
+    """
     kind: type[BoundEquations] = BoundEquations
     if is_called(system):
         kind = CalledInFixedSteps if fixed_steps else CalledByTolerance
@@ -275,30 +279,30 @@ def equations_of(
 
 
 def runs_as_python(equations: BoundEquations) -> bool:
-    """Whether runs of a system are those of plain Python: its equations could not be compiled."""
+    """Whether a system runs as plain Python, as nothing is compiled or its equations cannot be."""
     return not COMPILED or any(one.source.failed for one in equations if isinstance(one, Bound))
 
 
 def has_machine_code(equations: BoundEquations) -> bool:
-    """Whether the functions of a system are there as machine code, those called at events too."""
+    """Whether all functions of a system are compiled, those called at events too."""
     return all(one.source.address for one in equations if isinstance(one, Bound))
 
 
 def call_nothing_back(equations: BoundEquations) -> None:
-    """Have what is called at events compiled as well, with the next run: one that is timed."""
+    """Have the functions called at events compiled in the next run, too: for measuring times."""
     for one in equations:
         if isinstance(one, Bound):
             one.source.seconds_called_back = math.inf
 
 
 def steps_as_machine_code(equations: BoundEquations) -> bool:
-    """Whether what each step calls is there as machine code."""
+    """Whether the functions that steps call are compiled."""
     return bool(equations.stepping.source.address)
 
 
 @inlined
 def known_mode(equations: BoundEquations, mode: int, room: Vector) -> KnownMode:
-    """Ask what a mode means; `room` is for three numbers."""
+    """Unpack a mode; `room` is scratch for three numbers."""
     equations.meaning.call(mode, room, equations.numbers)
     longest = STABLE / room[2] if room[2] > 0.0 else math.inf
     return KnownMode(mode, int(room[0]), int(room[1]), longest)

@@ -55,7 +55,7 @@ class Histories:
         """Find the expected output times in the steps, as far as the run came, and their modes."""
         if not self._expected:
             return
-        # the first row at each multiple of the output step, or a share before it
+        # the first row at, or just before, each multiple of the output step
         passed = np.floor(steps.time / self.step + ON_SAMPLE)
         self.in_steps = 1 + np.flatnonzero(passed[1:] > passed[:-1])[: self._expected]
         count = 1 + len(self.in_steps)
@@ -74,7 +74,7 @@ class Histories:
         self.work = self.work[:stored]
         time: Vector = np.arange(stored, dtype=np.float64) * self.step
         at_once = int(np.count_nonzero(events.time == 0.0))
-        if stored and at_once:  # before that, nothing was as it is shown
+        if stored and at_once:  # the first sample shows the state after the events at the start
             self.state[0] = events.state_after[at_once - 1]
             self.mode[0] = events.mode_after[at_once - 1]
         end = float(clock[at.TIME])

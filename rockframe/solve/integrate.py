@@ -1,4 +1,7 @@
-"""From a model, a start and a ground motion to a trajectory."""
+"""Integration of a model under a ground motion, from a start to a trajectory.
+
+Allocates all arrays of a run and calls `advance` (`solve/driver.py`) until the run ends.
+"""
 
 import math
 from collections.abc import Generator, Mapping
@@ -67,7 +70,7 @@ CHATTER_SHARE: Final = 1e-6
 ENERGY_NOISE: Final = 1e-12
 """Share of the model's typical energy below which energies are rounding noise."""
 NEVER: Final = 2**62
-"""An interval that no run comes to."""
+"""Number of an interval of the motion beyond the end of any run."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +79,8 @@ class Begun:
 
     mode: int  # of the model
     state: Vector  # coordinates, their rates, and variables of first order
-    memory: Vector  # the model's memory, twice
-    start_memory: Vector
+    memory: Vector  # the system's memory, which changes in the run
+    start_memory: Vector  # a copy of it, as it is at the start
     controls: Vector  # laid out in :mod:`rockframe.solve.workspace`
     clock: Vector
     counters: Integers
@@ -97,18 +100,18 @@ def begun(
     output_step: float | None,
     stop_at_overturning: bool,
 ) -> Begun:
-    """Begin a run.
+    """Give the arrays of a run as they are before its first step.
 
     Parameters
     ----------
     model : ContactModel
         The equations.
     start : Start or Ending
-        Where the run starts, or another run of the same model ended.
+        Start of the run, or the end of another run of the same model, from which it goes on.
     accuracy : Accuracy
         Settings.
     interval : float
-        Of the motion [s].
+        Interval between samples of the motion [s].
     duration : float
         Length of the run [s].
     output_step : float or None
@@ -123,7 +126,7 @@ def begun(
     Raises
     ------
     SolverError
-        Steps of the length asked for would not be stable.
+        Fixed steps of that length would not be stable.
     """
     if isinstance(start, Start):
         mode, state, memory = model.initial(start)
@@ -134,7 +137,7 @@ def begun(
     contact = model.system.contact_state_of(mode, 0)
     shortest_period = 2.0 * math.pi / model.fastest_frequency
     substeps = substeps_of(accuracy, model, interval)
-    # numbers may be those of many cases: put together first, then made a row
+    # each number may stand for many cases: collected first, then made an array
     controls = {
         at.RTOL: accuracy.rtol or at.FIXED_STEPS,
         at.FLOOR: accuracy.floor,
@@ -181,14 +184,14 @@ def begun(
 
 
 def _filled(size: int, numbers: Mapping[int, float]) -> Vector:
-    """Give a row of numbers by their places, of zeros elsewhere."""
+    """Give an array with numbers at some places, and zeros elsewhere."""
     return np.array([numbers.get(place, 0.0) for place in range(size)])
 
 
 def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: float) -> Vector:
     sizes: Vector = np.maximum(np.abs(state), FIRST_SCALE * model.scales)
     if model.rounding is not None and accuracy.rtol is not None and accuracy.floor > 0.0:
-        # no step is short enough for an error below the rounding of the forces
+        # no step is so short that its error is below the rounding error of the forces
         noise = model.rounding(abs(rotation))
         sizes = np.maximum(sizes, noise / (accuracy.rtol * accuracy.floor))
     return sizes
@@ -197,24 +200,23 @@ def _sizes(model: ContactModel, accuracy: Accuracy, state: Vector, rotation: flo
 EVENT_ROOM = 256
 STEP_ROOM = 1024
 STEPS_PER_INTERVAL = 3.0
-"""Room for steps, more than most runs need: memory that is not written to costs nothing."""
+"""Steps for which memory is allocated, more than most runs need: unwritten memory costs nothing."""
 MOST_STEPS_KEPT = 2_000_000
-"""Rows of steps, some hundred megabytes, of which the first are kept where there are more."""
+"""Rows of the table of steps, some hundred megabytes, from which on it grows no more."""
 STEPS_UNHEARD = 2_000_000
-"""Steps of machine code, a second or less, after which an interruption is heard."""
+"""Steps of machine code, a second or less, between checks for a keyboard interrupt."""
 STEPS_CALLING_BACK = 5000
-"""Steps of machine code, after which it is seen what it calls back in Python for long."""
+"""Steps of machine code between checks whether functions that it calls back pay to be compiled."""
 STEPS_AT_ONCE = 100
-"""Steps in plain Python, after which it is seen whether there is machine code by now."""
+"""Steps in plain Python between checks whether machine code is ready."""
 TELLING = 0.1
-"""Time in plain Python that tells how long the rest will take [s]."""
+"""Time in plain Python from which on the remaining time of the run is estimated [s]."""
 AND_AGAIN = 2.0
-"""Time of a run of fixed steps with its histories and half as many steps once more, over its own.
-
-Measured for blocks on one another: 1.9.
+"""Time of a run of fixed steps with its histories and the run that checks it with half as many
+steps more, over the time of the run itself. Measured for blocks on one another: 1.9.
 """
 STILL_INTERVAL = 0.01
-"""Interval into which time is cut where the ground has no samples [s]."""
+"""Interval that takes the place of the sample interval where there is no motion [s]."""
 
 
 def _steps_at_once(equations: BoundEquations) -> int:
@@ -300,7 +302,7 @@ class Tables:
 
 
 def _longer(values: Matrix, codes: Integers) -> tuple[Matrix, Integers]:
-    """Give the arrays of a table with as much room again."""
+    """Give the arrays of a table, twice as long."""
     return (
         np.concatenate([values, np.empty_like(values)]),
         np.concatenate([codes, np.empty_like(codes)]),
@@ -326,9 +328,9 @@ def integrate(
     model : ContactModel
         The equations.
     start : Start or Ending
-        Where the run starts, or another run of the same model ended.
+        Start of the run, or the end of another run of the same model, from which it goes on.
     motion : Motion or None
-        Of the ground, which stands still beyond its last sample, or all the time.
+        Motion of the ground, without acceleration after its last sample; None for still ground.
     accuracy : Accuracy
         Settings.
     duration : float
@@ -338,9 +340,9 @@ def integrate(
     stop_at_overturning : bool
         Whether the run ends when the rotation reaches its limit.
     with_work : bool
-        Whether dashpot and input work are stored at the output times.
+        Whether the works of dashpots and ground are stored at the output times.
     keep_steps : bool
-        Whether both ends of all steps are kept, or of the first of very many.
+        Whether the ends of all steps are kept; of very many, those of the first.
 
     Returns
     -------
@@ -377,7 +379,7 @@ def integrate(
             break
         if not tables.make_room(counters):
             histories.read_from_steps(tables.close(counters, complete=False))
-    if not COMPILED or not runs_as_python(equations):  # of which more has been said
+    if not COMPILED or not runs_as_python(equations):  # else a warning has been given already
         say_slow(waiting.taken)
     steps = tables.close(counters) if keep_steps else None
     if steps is not None:
@@ -406,7 +408,7 @@ def integrate(
 def make_workspace(
     equations: BoundEquations, state: Vector, reference: Vector, limits: Vector
 ) -> Workspace:
-    """Allocate the arrays beside those that a run begins with."""
+    """Allocate the arrays of steps, with a state as the start of the first one."""
     size = equations.coordinate_count
     slope = size + equations.variable_count + POWERS
     guards = 2 * (equations.guard_count + 1)
@@ -436,7 +438,7 @@ def make_workspace(
 
 
 def pieces_of(motion: Motion | None) -> Pieces:
-    """Give the polynomials of both directions."""
+    """Give the polynomials of the ground acceleration in both directions."""
     if motion is None:
         return Pieces(_STILL, _STILL)
     vertical = _STILL if motion.vertical is None else motion.vertical.pieces

@@ -1,7 +1,8 @@
-"""Steps on end, until something happens; guards of a step, and whether one may fall inside it.
+"""The loop of steps between events; guards of a step, and whether one may fall inside it.
 
-Written for any system and compiled for each, so that the equations are compiled into the loop;
-the driver calls it by its address, and sees to all that is not a quiet step.
+Written for any system and compiled for each, so that the equations are compiled into the loop.
+The driver (`driver.py`) calls the loop by its address, and handles each step in which more happens
+than motion; `schemes.py` makes a single step.
 """
 
 import math
@@ -24,15 +25,16 @@ from rockframe.solve.workspace import TERMS, Span, ground_in, has_no_room, keep_
 
 LEFT_LIMIT: Final = 0
 RIGHT_LIMIT: Final = 1
-"""Places of the limits of the rotation; the weights of the coordinates in it stand behind, then
-the same of other rotations that have limits."""
+"""Places in `limits` of the largest rotations to either side [rad]. Behind both stand the weights
+of the coordinates in the rotation, then limits and weights of other bodies that may overturn."""
 WEIGHTS: Final = 2
 
 
 DIP_MARGIN: Final = 0.02
-"""Share of a guard's variation in a step below which a predicted dip is looked into."""
+"""A dip of a guard's cubic is searched for negative values where its minimum is below this share
+of the guard's variation in the step."""
 DOUBT: Final = 1.01 * DIP_MARGIN
-"""The same for a bound of the dip, with room for rounding."""
+"""The same share for a lower bound of that minimum, with room for rounding."""
 THIRD: Final = 1.0 / 3.0
 
 
@@ -41,7 +43,7 @@ def guards_at(
     system: Equations, mode: int, state: Vector, slope: Vector, ground_x: float, ground_y: float,
     limits: Vector, out: Vector,
 ) -> None:  # fmt: skip
-    """Write the guards of a state, see :func:`put_guards`; of several limits the nearest."""
+    """Write the guards of a state as :func:`put_guards`, with the nearest limit of all bodies."""
     found = system.guards_in(mode, state, slope, Ground(ground_x, ground_y))
     put_guards(system, found, state, limits, out)
     size, last = system.coordinates(), system.guards()
@@ -64,7 +66,7 @@ def guards_at(
 def put_guards(
     system: Equations, found: Guards, state: Vector, limits: Vector, out: Vector
 ) -> None:
-    """Write guards, then their rates; the last is the distance of the rotation from its limit."""
+    """Write guards, then their rates; the last guard is how far the rotation is from its limit."""
     size, last = system.coordinates(), system.guards()
     rotation = rate = 0.0
     for i in range(size):
@@ -113,17 +115,17 @@ class CompiledIn(NamedTuple):
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the powers at the rates of a state, of equations that give them."""
+        """Give the powers of a state whose slope at other rates is known."""
         return self.system.powers(mode, state, slope, ground)
 
 
 @inlined
 def may_dip(start: float, change: float, end: float, end_change: float) -> bool:
-    """Whether a guard with these rates, by its step, is negative at its end or may be inside it.
+    """Whether a guard is negative at the end of a step, or may be so inside it.
 
-    The cubic through values and rates is nowhere below its lowest Bernstein coefficient, however
-    it begins and ends; divided by the place in the step, where it begins at zero, it has the
-    same ones but for factors.
+    `change` and `end_change` are its rates at both ends, per step. The cubic through values and
+    rates is nowhere below its lowest Bernstein coefficient. Where the guard begins at zero, so is
+    the cubic over the place in the step, whose coefficients are the same but for factors.
     """
     lowest = min(start + THIRD * change, end - THIRD * end_change)
     return (lowest < DOUBT * (abs(change) + abs(end_change))) | (end < 0.0)
@@ -139,18 +141,18 @@ def may_fall(system: Counted, h: float, before: Vector, after: Vector) -> bool:
 
 
 class RotationInStep(NamedTuple):
-    """A rotation and its rate at the start and at the end of a step."""
+    """A rotation [rad] and its rate [rad s^-1] at the start and at the end of a step."""
 
     start: float
     start_rate: float
     end: float
     end_rate: float
-    left: float  # largest to either side at the ends
-    right: float
+    left: float  # larger rotation to the left of both ends; negative if both are to the right
+    right: float  # likewise to the right
 
     @inlined
     def may_peak(self, h: float, left: float, right: float) -> bool:
-        """Whether it reverses within a step of length h, and may do so beyond its peaks so far."""
+        """Whether it reverses in a step of length h, possibly beyond its peaks so far."""
         ahead = 0.5 * h * max(abs(self.start_rate), abs(self.end_rate))
         rises = self.right + ahead > right if self.start_rate > 0.0 else self.left + ahead > left
         return (self.start_rate * self.end_rate < 0.0) & rises
@@ -160,7 +162,7 @@ class RotationInStep(NamedTuple):
 def rotation_in_step(
     row: int, size: int, limits: Vector, state: Vector, new: Vector
 ) -> RotationInStep:
-    """Give a rotation, a weighted sum of the coordinates, by the place of its limits."""
+    """Give the rotation whose limits stand in `limits` from `row` on, at both ends of a step."""
     r0 = v0 = r1 = v1 = 0.0
     for i in range(size):
         r0 += limits[row + WEIGHTS + i] * state[i]
@@ -174,7 +176,7 @@ def rotation_in_step(
 def other_may_peak(
     size: int, limits: Vector, h: float, state: Vector, new: Vector, share: float
 ) -> bool:
-    """Whether another rotation may come nearer to its limit inside a step than it has come."""
+    """Whether another body may come nearer to its limit inside a step than any has come so far."""
     found, row = False, WEIGHTS + size
     while row < len(limits):
         rotation = rotation_in_step(row, size, limits, state, new)
@@ -187,7 +189,7 @@ def other_may_peak(
 
 @inlined
 def other_share(size: int, limits: Vector, state: Vector) -> float:
-    """Give the largest share of another rotation in its limit; zero where there is none."""
+    """Give the largest ratio of another body's rotation to its limit; 0 without other bodies."""
     share, row = 0.0, WEIGHTS + size
     while row < len(limits):
         rotation = 0.0
@@ -201,21 +203,21 @@ def other_share(size: int, limits: Vector, state: Vector) -> float:
 
 Scheme: TypeAlias = FixedSteps | StepsByTolerance
 
-# why a march ended
-AT_END: Final = 0  # of the run
-JUMPED: Final = 1  # the ground, from one interval to the next
-GUARDED: Final = 2  # a step was made, and some guard asks for a closer look
-# a step was made that holds an output time, or a reversal, or is the last that there is room for
+# reasons for which a march ends
+AT_END: Final = 0  # the end of the run is reached
+JUMPED: Final = 1  # the ground acceleration has jumped between two intervals
+GUARDED: Final = 2  # a step was made in which a guard falls or may fall
+# a step was made that contains an output time, or a reversal, or that fills the table of steps
 TO_BE_SEEN: Final = 3
-EXHAUSTED: Final = 4  # the steps after which it was asked to stop
+EXHAUSTED: Final = 4  # the number of steps PAUSE_AT is reached
 TOO_SMALL: Final = 5  # no step was small enough
-PAUSED: Final = 6  # the end of the interval at which it was asked to stop
-TRIED: Final = 7  # a step that was only tried
+PAUSED: Final = 6  # the end of the interval LAST_INTERVAL is reached
+TRIED: Final = 7  # a trial step was made
 
 SHORTEST: Final = 1e-14
 """Shortest step, as a share of the run's duration."""
 JUMP: Final = 1e-12
-"""Share of the ground acceleration by which it must differ to have jumped at a sample."""
+"""Relative difference of the ground acceleration at a sample from which on it is a jump."""
 
 
 @inlined
@@ -226,7 +228,7 @@ def jumps(now: float, before: float) -> bool:
 
 @inlined
 def fit_step(h: float, remaining: float) -> float:
-    """Give a step that ends on the interval's end, or leaves a fair rest of it."""
+    """Give the step h, changed so that it ends with the interval or leaves no tiny rest of it."""
     if h >= 0.999999 * remaining:
         return remaining
     return min(h, 0.5 * remaining)
@@ -234,7 +236,7 @@ def fit_step(h: float, remaining: float) -> float:
 
 @inlined
 def interval_length(index: int, intervals: int, controls: Vector) -> float:
-    """Give the length of an interval of the motion; of the rest of the run behind the last."""
+    """Give the length of an interval of the motion, or of the rest of the run after the motion."""
     rest = controls[at.DURATION] - index * controls[at.TIME_STEP]
     return min(controls[at.TIME_STEP], rest) if index < intervals else rest
 
@@ -246,28 +248,28 @@ def march(
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
     counters: Integers, kept: Vector, codes: Integers,
 ) -> int:  # fmt: skip
-    """Make steps until something happens that the driver must see to.
+    """Make steps until something happens that the driver must handle.
 
     Parameters
     ----------
     scheme : Scheme
-        Way to step.
+        The method of a step.
     system : Evaluated
         The equations.
     mode, count, flies : int
         Contact mode, how many leading coordinates move in it, and whether it is flight.
     trial : float
-        Length of a step that is only tried; 0 to go on [s].
+        Length of a single trial step; 0 to go on with the run [s].
     pieces_x, pieces_y : ndarray
-        Ground motion.
+        Polynomials of the ground acceleration.
     ends : ndarray
         State, slope and guards with their rates at both ends of a step; ``counters[HALF]``
         tells which half is the start.
     stages, works : ndarray
-        Room for stages; the energies dissipated and put in by a step, the error of their
-        difference, and the errors of everything in the state.
+        Scratch for stages; the energies dissipated and put in by a step, the error of their
+        difference, and the error of each element of the state.
     reference, limits : ndarray
-        Largest size so far of each variable; limits of the rotation.
+        Largest size so far of each element of the state; limits of rotations.
     ground : ndarray
         Coefficients of the ground motion in the interval.
     controls, clock, counters : ndarray
@@ -278,7 +280,7 @@ def march(
     Returns
     -------
     int
-        Why it ended.
+        Why it ended, such as ``AT_END``.
     """
     size = system.coordinates()
     width = 2 * size + system.variables()
@@ -398,7 +400,7 @@ def march_fixed_by_rates(
     reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
     counters: Integers, kept: Vector, codes: Integers,
 ) -> int:  # fmt: skip
-    """Make such steps, of equations that give powers at any rates; see :func:`march`."""
+    """Make steps of fixed length of equations that give powers apart, see :func:`march`."""
     return march(
         FixedStepsByRates(longest), CompiledIn(system), mode, count, flies, trial, pieces_x,
         pieces_y, ends, stages, works, reference, limits, ground, controls, clock, counters, kept,

@@ -1,4 +1,4 @@
-"""From states to the quantities a model can be observed by."""
+"""Columns of the results from states: of a run's samples, events and steps."""
 
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
@@ -22,13 +22,13 @@ from rockframe.solve.trajectory import Trajectory
 from rockframe.solve.workspace import BESIDE
 
 MANY: Final = 500
-"""Rows without slopes from which on these are worth compiling."""
+"""Number of rows without slopes from which on it pays to compile the slope."""
 NO_SAMPLES: Final = np.zeros(0, dtype=np.int64)
 NO_COLUMNS: Final = np.zeros((0, 0))
 
 
 class Room(NamedTuple):
-    """Room for one row."""
+    """Scratch for one row."""
 
     state: Vector
     slope: Vector
@@ -69,9 +69,10 @@ def observe_rows(
     out: Matrix,
     shown: Matrix,
 ) -> None:
-    """Fill the wanted columns for each row of steps, by the slopes there if they are exact.
+    """Fill the columns `wanted` of `out` for each row of the table of steps.
 
-    With it, fill all columns for some rows, `samples`, behind a first that is none of them.
+    Slopes are taken from the table if they are `exact`, else evaluated. For the rows `samples`,
+    all columns are filled in `shown` as well, from its second place on.
     """
     sample = 0
     width, slopes = len(room.state), values.shape[1] - BESIDE - len(room.state)
@@ -100,7 +101,7 @@ def observe_rows(
 def energy_rows(
     storing: OfSystem, mode: Integers, state: Matrix, row: Vector, stored: Vector, out: Matrix
 ) -> None:
-    """Fill a row of energies for each row of states; `row` and `stored` are room for one."""
+    """Fill a row of energies for each row of states; `row` and `stored` are scratch."""
     for i in range(len(mode)):
         copy_row(state, i, row)
         storing.function.call(mode[i], row, stored, storing.numbers)
@@ -109,13 +110,14 @@ def energy_rows(
 
 
 def memory_at_outputs(trajectory: Trajectory) -> tuple[Matrix, Integers]:
-    """Give the memories of a run, and which of them holds at each output time.
+    """Give the memories of a run, and for each output time the number of the one that is valid.
 
-    At an event that is what was before; at the start, after all that happens at once.
+    At the time of an event it is the memory before the event; at the start of the run, the one
+    after all events at the start.
     """
     events = trajectory.events
     memory = np.vstack([trajectory.start_memory, events.memory])
-    # of the few events is asked when they are, not of each of many times what was before
+    # search the few events among the many times, not the other way round
     behind = np.searchsorted(trajectory.time, events.time, side="right")
     behind[events.time == 0.0] = 0
     counts = np.diff(behind, prepend=0, append=len(trajectory.time))
@@ -139,11 +141,11 @@ def observe_states(
     mode : ndarray of int64, shape (states,)
         Modes of the model.
     state : ndarray, shape (states, 2 n + variables)
-        As the system has them.
+        States of the system.
     memory : ndarray, shape (memories, memory)
         Memories of the system.
     memory_row : ndarray of int, shape (states,)
-        Which of them holds for each state.
+        Row of `memory` that belongs to each state.
     ground : ndarray, shape (states, 2)
         Horizontal and vertical ground acceleration [m s^-2].
 
@@ -187,16 +189,16 @@ def _observe(
 def observe_run(
     model: ContactModel, run: Trajectory, names: tuple[str, ...] | None, ground: Matrix
 ) -> tuple[dict[str, Vector], dict[str, Vector]]:
-    """Give some columns at the ends and starts of steps, and all at samples and events.
+    """Give some columns along the steps of a run, and all columns at its samples and events.
 
     Parameters
     ----------
     model : ContactModel
         The equations.
     run : Trajectory
-        With its steps.
+        A run that kept its steps.
     names : tuple of str or None
-        Columns along the steps; None for all.
+        Columns to give along the steps; None for all.
     ground : ndarray, shape (samples + 2 events, 2)
         Horizontal and vertical ground acceleration at the output times, and twice at the events
         [m s^-2].
@@ -204,14 +206,14 @@ def observe_run(
     Returns
     -------
     along : dict of str to ndarray, shape (rows,)
-        In the rows of the steps.
+        Values at the rows of the table of steps.
     shown : dict of str to ndarray, shape (samples + 2 events,)
-        At the output times, then before, then after all events.
+        Values at the output times, then before all events, then after all events.
 
     Raises
     ------
     ValueError
-        Of a run without its steps.
+        The run has not kept its steps.
     """
     steps, events, in_steps = run.kept_steps, run.events, run.outputs_in_steps
     memory, row = memory_at_outputs(run)
@@ -245,7 +247,7 @@ def _room(model: ContactModel, memory: Matrix) -> Room:
 
 
 def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[str, Vector]:
-    """Give columns by their names, in the units of the schema."""
+    """Give columns by their names, in the units of the schema: multiplied by masses."""
     found: dict[str, Vector] = {}
     for column, values in zip(columns, out, strict=True):
         if column.per_mass:
@@ -255,7 +257,7 @@ def _named(model: ContactModel, columns: Sequence[Column], out: Matrix) -> dict[
 
 
 def energies_of(model: ContactModel, trajectory: Trajectory) -> Matrix:
-    """Give kinetic, gravity and elastic energy, and elastic less that at rest.
+    """Give kinetic, gravity and elastic energy, and elastic energy less that at rest.
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""A step: by a tolerance, after Dormand and Prince, or of fixed length, and what differs there.
+"""A single time step: by Dormand and Prince with a tolerance, or of fixed length.
 
-A step of fixed length takes two evaluations, :eq:`eq-fixed-stages` and :eq:`eq-fixed-step`; page
-"Numerics" of the manual has both.
+A step of fixed length takes two evaluations, :eq:`eq-fixed-stages` and :eq:`eq-fixed-step`; the
+page "Numerics" of the manual derives both methods. `march.py` makes one step after the other.
 """
 
 import math
@@ -16,9 +16,9 @@ ORDER: Final = 5
 STAGES: Final = 7
 
 NODES: Final = table([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
-"""Share of the step at which each stage stands."""
+"""Nodes: the share of the step at which each stage is evaluated."""
 
-# weights of the stages before, by which each is made; the last makes the step
+# weights of the stages before each stage; the last ones also make the step
 STAGE_1: Final = (1 / 5,)
 STAGE_2: Final = (3 / 40, 9 / 40)
 STAGE_3: Final = (44 / 45, -56 / 15, 32 / 9)
@@ -27,19 +27,19 @@ STAGE_5: Final = (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656)
 STAGE_6: Final = (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84)
 
 STAGE_WEIGHTS: Final = table([*STAGE_1, *STAGE_2, *STAGE_3, *STAGE_4, *STAGE_5, *STAGE_6])
-"""The same, one after the other: those of stage s, which has s stages before, from s(s-1)/2 on."""
+"""All these weights, one after the other: those of stage s begin at s(s-1)/2."""
 
 WEIGHTS: Final = table([*STAGE_6, 0.0])
-"""Weights of the fifth order."""
+"""Weights of the solution of fifth order."""
 
 ERROR_WEIGHTS: Final = table(
     [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40]
 )
-"""Weights of the fifth order less those of the fourth."""
+"""Weights of the solution of fifth order less those of fourth order."""
 
 
 class Counted(Protocol):
-    """Equations, as far as it matters how many there are."""
+    """The sizes of a system of equations."""
 
     def coordinates(self) -> int:
         """Give the number of coordinates."""
@@ -66,16 +66,16 @@ class Evaluated(Counted, Protocol):
     def write_guards(
         self, mode: int, state: Vector, slope: Vector, ground: Ground, limits: Vector, out: Vector
     ) -> None:
-        """Write guards, then their rates, behind each that of the limits of rotations."""
+        """Write guards, then their rates; the last of each is for the limits of rotations."""
         ...
 
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the powers at the rates of a state, at the place of the slope found last."""
+        """Give the powers of a state, from a slope at the same coordinates but other rates."""
         ...
 
 
 Weights: TypeAlias = Vector | tuple[float, ...]
-"""Of the stages before one; of a tuple the number is known when it is compiled."""
+"""Weights of the stages before one; the length of a tuple is known when it is compiled."""
 
 
 @inlined
@@ -100,7 +100,7 @@ def stage_places(
         way = 0.0
         for j in range(len(weights)):
             way += weights[j] * stages[j * size + i]
-        own = h if i < count else 0.0  # what does not move makes steps of no length
+        own = h if i < count else 0.0  # coordinates that do not move make steps of length zero
         new[i] = state[i] + own * way
 
 
@@ -175,11 +175,11 @@ EASY: Final = 0.5
 
 @kernel
 def next_step(h: float, h_next: float, excess: float) -> float:
-    """Give the step size that a step's error suggests."""
+    """Give the next step after a step h, planned was h_next, by its error over that allowed."""
     growth = LARGEST_FACTOR
     if excess > 0.0:
         growth = min(growth, max(SMALLEST_FACTOR, SAFETY * excess ** (-1.0 / ORDER)))
-    if h < h_next and growth >= 1.0:  # cut short by its interval: it says little of longer ones
+    if h < h_next and growth >= 1.0:  # cut short by its interval: the planned step stays possible
         return max(h_next, h * growth)
     return h * growth
 
@@ -192,14 +192,14 @@ def fixed_step(
 ) -> bool:  # fmt: skip
     """Step the first `count` coordinates and all variables of first order.
 
-    Arguments as in :func:`rockframe.solve.march.march`, with the ground in the middle and at
-    the end of the step. Gives the energies dissipated and put in by the ground, integrated with
-    the weights of the velocities, and whether the step has ended in numbers.
+    Arguments as of :func:`rockframe.solve.march.march`, with the ground in the middle and at
+    the end of the step. Writes the energies dissipated and put in by the ground, integrated with
+    the weights of the velocities. Gives whether all rates and variables at its end are finite.
     """
     size = system.coordinates()
     half, sixth = 0.5 * h, h / 6.0
     powers = size + system.variables()
-    for i in range(size):  # what does not move makes steps of no length
+    for i in range(size):  # coordinates that do not move make steps of length zero
         own_half = half if i < count else 0.0
         j = size + i
         stage[i] = state[i] + own_half * (state[j] + 0.5 * half * first[i])
@@ -216,8 +216,8 @@ def fixed_step(
         v, a1, a2 = state[j], first[i], last[i]
         new[i] = state[i] + own * (v + sixth * (a1 + 2.0 * a2))
         new[j] = v + own_sixth * (a1 + 4.0 * a2)
-        # off the solution by as much as makes up for the stage before, and for this one
-        # when it serves as the first of the next step
+        # a state beside the solution: its error cancels that of the stage before, and its own
+        # where its slope serves as the first stage of the next step
         stage[i] = state[i] + own * (v + 0.5 * sixth * (a1 + 5.0 * a2))
         stage[j] = v + 3.0 * own_sixth * (3.0 * a2 - a1)
     for i in range(size, powers):
@@ -240,30 +240,30 @@ def fixed_step(
 
 @inlined
 def rest_of(asked: float, h: float, shortest: float, controls: Vector) -> float:
-    """Give the next fixed step: after a shorter one, on to the end of the sub-step."""
+    """Give the next fixed step: the rest of the sub-step if only a part of it has been made."""
     rest = asked - h
     return rest if rest > shortest else controls[at.MAX_STEP]
 
 
 @inlined
 def adapted(h: float, h_next: float, excess: float, controls: Vector) -> float:
-    """Give the step that the error of an accepted one suggests."""
+    """Give the next step after an accepted step h, planned was h_next, by the error of h."""
     if excess > EASY or h < controls[at.TIME_STEP] or h >= h_next:
         return next_step(h, h_next, excess)
     return h_next
 
 
 class FixedSteps(NamedTuple):
-    """Steps of a fixed length, of equations that give powers at the rates of the stages alone."""
+    """Steps of fixed length, of equations that give powers only with their slope."""
 
-    longest: float  # that is stable in the mode
+    longest: float  # longest step that is stable in the mode [s]
 
     @inlined
     def powers_in_middle(
         self, system: Evaluated, mode: int, count: int, half: float, state: Vector, first: Vector,
         stage: Vector, slope: Vector, ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
-        """Give the powers dissipated and put in, as the slope of the stage has them."""
+        """Give the powers dissipated and put in at the middle stage, which its slope contains."""
         powers = system.coordinates() + system.variables()
         return slope[powers], slope[powers + 1]
 
@@ -272,7 +272,7 @@ class FixedSteps(NamedTuple):
         self, system: Evaluated, mode: int, new: Vector, stage: Vector, slope: Vector,
         ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
-        """Give the same at the end of the step."""
+        """Give the powers dissipated and put in at the last stage, which its slope contains."""
         powers = system.coordinates() + system.variables()
         return slope[powers], slope[powers + 1]
 
@@ -281,7 +281,7 @@ class FixedSteps(NamedTuple):
         self, system: Evaluated, mode: int, count: int, span: Span, ground: Vector, state: Vector,
         first: Vector, new: Vector, last: Vector, stages: Vector, works: Vector,
     ) -> bool:  # fmt: skip
-        """Make a step; give whether it has ended in numbers."""
+        """Make a step; give whether its end is finite."""
         in_middle, at_end = ground_in(0.5, span, ground), ground_in(1.0, span, ground)
         return fixed_step(
             self, system, mode, count, span.h, in_middle, at_end, state, first, new, last, stages,
@@ -293,12 +293,12 @@ class FixedSteps(NamedTuple):
         self, system: Counted, count: int, done: bool, scale: float, new: Vector, works: Vector,
         reference: Vector, controls: Vector,
     ) -> float:  # fmt: skip
-        """Give 0, or infinity where the step has not ended in numbers."""
+        """Give 0, or infinity where the end of the step is not finite."""
         return 0.0 if done else math.inf
 
 
 class FixedStepsByRates(FixedSteps):
-    """The same, of :class:`rockframe.dynamics.protocol.EquationsWithPowers`."""
+    """Steps of fixed length of :class:`rockframe.dynamics.protocol.EquationsWithPowers`."""
 
     __slots__ = ()
 
@@ -307,7 +307,7 @@ class FixedStepsByRates(FixedSteps):
         self, system: Evaluated, mode: int, count: int, half: float, state: Vector,
         first: Vector, stage: Vector, slope: Vector, ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
-        """Give the powers at the place of the stage and the rates :eq:`eq-fixed-powers`."""
+        """Give the powers at the middle stage, with the rates of :eq:`eq-fixed-powers`."""
         size = system.coordinates()
         for i in range(size):
             own_half = half if i < count else 0.0
@@ -319,7 +319,7 @@ class FixedStepsByRates(FixedSteps):
         self, system: Evaluated, mode: int, new: Vector, stage: Vector, slope: Vector,
         ground: Ground,
     ) -> tuple[float, float]:  # fmt: skip
-        """Give the same at the place of the last stage and the rates at the end of the step."""
+        """Give the powers at the last stage, with the rates at the end of the step."""
         size = system.coordinates()
         for i in range(size):
             stage[size + i] = new[size + i]
@@ -327,7 +327,7 @@ class FixedStepsByRates(FixedSteps):
 
 
 class StepsByTolerance(NamedTuple):
-    """Steps of the Dormand-Prince pair, which may be as long as its errors let them."""
+    """Steps of the Dormand-Prince pair, whose length is limited by their errors alone."""
 
     longest: float = math.inf
 
@@ -338,10 +338,10 @@ class StepsByTolerance(NamedTuple):
     ) -> bool:  # fmt: skip
         """Step the first `count` coordinates and all variables of first order.
 
-        Arguments as in :func:`rockframe.solve.march.march`. Gives the energies
+        Arguments as of :func:`rockframe.solve.march.march`. Writes to `works` the energies
         dissipated and put in by the ground, integrated with the weights of the fifth order, the
-        error of their difference, and the local errors of what moves, which tell whether the step
-        has ended in numbers.
+        error of their difference, and the local errors of the state. Gives True: whether the end
+        of the step is finite is seen from these errors.
         """
         size = system.coordinates()
         slope = size + system.variables() + POWERS
@@ -365,7 +365,7 @@ class StepsByTolerance(NamedTuple):
     ) -> float:  # fmt: skip
         """Give the largest error of a step, of the state or of its works, over the error allowed.
 
-        `scale` is the largest energy, over which the error of the works is taken.
+        The error of the works is relative to `scale`, the largest energy of the run so far.
         """
         size, floor = system.coordinates(), controls[at.FLOOR]
         imbalance = works[2] / scale

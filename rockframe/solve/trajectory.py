@@ -1,6 +1,6 @@
-"""What an integration leaves behind: plain arrays, in SI units and per unit mass.
+"""The result of an integration: plain arrays, in SI units and per unit mass.
 
-Also the steps of a run as they were made, and the solution inside them.
+Also the steps of a run as they were made, and the dense solution inside them.
 """
 
 import math
@@ -24,18 +24,18 @@ _cubic: Final = cast("Callable[..., tuple[Matrix, ...]]", cubic)
 
 @dataclass(frozen=True)
 class Steps:
-    """Ends of steps, each the start of the next; and starts of those that begin anew."""
+    """Table of steps: a row for the end of each, and for each start that is not an end."""
 
-    # rows of :class:`rockframe.solve.workspace.StepTable`, without a start at their end
+    # rows of :class:`rockframe.solve.workspace.StepTable`; the last one is no start
     values: Matrix
-    codes: Integers  # the same
+    codes: Integers
     width: int  # numbers in a state
-    # whether slopes are those of the equations at the states; of fixed steps they are near
+    # whether slopes are those of the equations at the states; those of fixed steps are only near
     exact: bool
     complete: bool = True  # whether they go on to the end of the run
 
     # columns of these: time of each row, and length of the step that ends there, 0 in the row of a
-    # start [s]; mode of the model; number of events before, by which its memory is found; ground
+    # start [s]; mode of the model; number of events before, which is the row of its memory; ground
     # acceleration as the equations take it, shape (rows, 2) [m s^-2]; state; accelerations, and
     # rates of variables of first order
     time: Vector = field(init=False)
@@ -57,7 +57,7 @@ class Steps:
     def until(self, time: float) -> "Steps":
         """Give the steps that end up to a time [s]."""
         count = int(np.searchsorted(self.time, time, side="right"))
-        if count and self.length[count - 1] == 0.0:  # no step goes on from there
+        if count and self.length[count - 1] == 0.0:  # a start without its step
             count -= 1
         return replace(self, values=self.values[:count], codes=self.codes[:count])
 
@@ -85,7 +85,7 @@ class Steps:
 
 
 def steps_of(table: StepTable, counters: Integers, width: int, *, exact: bool) -> Steps:
-    """Give the kept steps, whose states have `width` numbers."""
+    """Give the steps that a run has kept, whose states have `width` numbers."""
     codes, count = table.codes.reshape(-1, CODES), int(counters[at.STEPS_KEPT])
     values = table.values.reshape(len(codes), -1)
     return Steps(values[:count], codes[:count], width, exact).until(np.inf)
@@ -93,10 +93,10 @@ def steps_of(table: StepTable, counters: Integers, width: int, *, exact: bool) -
 
 @dataclass(frozen=True)
 class Events:
-    """Table of events; `n` coordinates."""
+    """Table of the events of a run."""
 
     time: Vector  # [s]
-    # :class:`rockframe.dynamics.events.EventKind`, or ``SILENT`` where users are shown none
+    # :class:`rockframe.dynamics.events.EventKind`, or ``SILENT`` for one that results leave out
     kind: Integers
     mode_before: Integers  # modes of the model
     mode_after: Integers
@@ -110,21 +110,21 @@ class Summary:
     """What became of a run."""
 
     status: Status  # how the run ended
-    end_time: float  # of the dense solution; times are NaN where nothing of the kind happened
-    peak_left: float
-    peak_right: float
-    overturning_time: float
+    end_time: float  # [s]
+    peak_left: float  # largest rotation to the left [rad]
+    peak_right: float  # and to the right
+    overturning_time: float  # when the overturning angle was reached, NaN if it was not [s]
     overturning_direction: int  # sign of the rotation at overturning, 0 if none
-    first_uplift_time: float
-    flight_time: float
-    impact_count: int  # counts
+    first_uplift_time: float  # when contact was first lost, NaN if it was not [s]
+    flight_time: float  # total time of flight [s]
+    impact_count: int
     flight_count: int
     step_count: int
-    rejected_count: int
+    rejected_count: int  # steps that were refused, their errors being too large
     substeps: int  # fixed steps in each interval of the motion, 0 for steps by tolerance
-    energy_residual: float  # largest imbalance of the energies over their largest term
+    energy_residual: float  # largest imbalance of the energies over the largest energy of motion
     ending: Ending  # where the run ended
-    # largest share of the rotation of another body in the angle at which that overturns
+    # largest ratio of another body's rotation to its overturning angle
     other_share: float = 0.0
 
     @property
@@ -139,19 +139,19 @@ class Summary:
 
     @property
     def overturned(self) -> bool | None:
-        """The verdict: whether the block overturned, in the sense in which the run was asked."""
+        """The verdict, see :attr:`rockframe.solve.workspace.Status.overturned`."""
         return self.status.overturned
 
     @property
     def verdict_time(self) -> float:
-        """When it overturned in that sense; NaN if it did not [s]."""
+        """When the block overturned by the verdict; NaN if it did not [s]."""
         if self.status is Status.TOPPLED:
             return self.end_time
         return self.overturning_time if self.overturned else math.nan
 
     @property
     def verdict_direction(self) -> int:
-        """Sign of the rotation at that time; 0 if it did not overturn."""
+        """Sign of the rotation at the time of the verdict; 0 if the block did not overturn."""
         if self.status is Status.TOPPLED:
             return 1 if self.peak_right > self.peak_left else -1
         return self.overturning_direction if self.overturned else 0
@@ -159,20 +159,20 @@ class Summary:
 
 @dataclass(frozen=True, kw_only=True)
 class Trajectory(Summary):
-    """A run."""
+    """A run: its histories, events and, if they were kept, its steps."""
 
     time: Vector  # output times [s]
-    # states there, but for those that stand in the steps
+    # states at these, except where `outputs_in_steps` says that `steps` has them
     other_state: Matrix
     mode: Integers  # modes of the model
-    work: Matrix  # energies dissipated by dashpots and put in by the ground, if asked for
+    work: Matrix  # energies dissipated by dashpots and put in by the ground; no rows unless stored
     start_mode: int  # the model's mode at the start
     start_memory: Vector  # the model's memory at the start
     events: Events  # what happened when
-    start_energy: float  # kinetic, gravity and elastic energy at the start, from that at rest
-    as_python: bool  # whether it was made in plain Python, not by machine code
-    steps: Steps | None  # both ends of all steps, if they are kept
-    # rows of steps at whose ends the output times behind the first lie, as far as they do
+    start_energy: float  # kinetic, gravity and elastic energy at the start, the last less at rest
+    as_python: bool  # whether its system runs as plain Python for good: it cannot be compiled
+    steps: Steps | None  # None where they were not kept
+    # rows of `steps` that are the second and following output times, as far as these are ends
     outputs_in_steps: Integers
 
     @cached_property
@@ -185,7 +185,7 @@ class Trajectory(Summary):
 
     @property
     def kept_steps(self) -> Steps:
-        """The steps of a run that kept them; ValueError of another one."""
+        """The steps of the run; raises ValueError where they were not kept."""
         if self.steps is None:
             msg = "no steps were kept"
             raise ValueError(msg)
@@ -193,7 +193,7 @@ class Trajectory(Summary):
 
 
 def run_counts(clock: Vector, counters: Integers) -> dict[str, Any]:
-    """Give what an integrator's progress tells of a finished run, by the names of a summary."""
+    """Give the fields of a summary that follow from the progress of a finished run."""
     reals, wholes = clock.tolist(), counters.tolist()
     moved, residual = reals[at.LARGEST_MOVED], reals[at.RESIDUAL]
     return {

@@ -1,8 +1,8 @@
-"""The arrays of a run, and what stands where in them: read, worked on and filled by the integrator.
+"""The arrays of a run, and the index of each number in them.
 
-The integrator can stop (for want of room for events) and go on; everything it must remember stands
-in three small arrays, :class:`Progress`. Also the ground acceleration inside one interval of the
-motion, a polynomial.
+The integrator can pause, as where its table of events is full, and go on: all that it must remember
+stands in three small arrays, :class:`Progress`. Also the ground acceleration inside one interval of
+the motion, a polynomial. Energies are per unit mass [m^2 s^-2].
 """
 
 from enum import IntEnum
@@ -33,15 +33,15 @@ class Status(IntEnum):
 
     @property
     def finished(self) -> bool:
-        """Whether the run went as far as it was asked to."""
+        """Whether the run went to its end, or to the overturning that ends it."""
         return self <= Status.TOPPLED
 
     @property
     def overturned(self) -> bool | None:
-        """Whether the block overturned; None if the run was cut off before it could tell.
+        """Whether the block overturned; None if the run was cut off before that was known.
 
-        This is the verdict of a run, in the sense in which it was asked: one that ends at the
-        overturning angle has reached it; one that goes on beyond it has fallen flat.
+        This is the verdict of a run. A run that stops at overturning overturns where it reaches the
+        overturning angle; a run that goes on beyond it, only where the block falls flat.
         """
         return self is not Status.COMPLETED if self.finished else None
 
@@ -58,84 +58,84 @@ STEP_TOO_SMALL: Final = int(Status.STEP_TOO_SMALL)
 CHATTER: Final = int(Status.CHATTER)
 
 # controls: real settings
-RTOL: Final = 0
-FLOOR: Final = 1
-MAX_STEP: Final = 2
-DURATION: Final = 3
-TIME_STEP: Final = 4
-OUTPUT_STEP: Final = 5
-CHATTER_TIME: Final = 6
+RTOL: Final = 0  # relative tolerance of a step [1], or FIXED_STEPS
+FLOOR: Final = 1  # see `floor` of :class:`rockframe.solve.accuracy.Accuracy` [1]
+MAX_STEP: Final = 2  # longest step; for fixed steps, their length [s]
+DURATION: Final = 3  # of the run [s]
+TIME_STEP: Final = 4  # interval between samples of the motion [s]
+OUTPUT_STEP: Final = 5  # between output samples [s]
+CHATTER_TIME: Final = 6  # time between events below which they count as chatter [s]
 CONTROLS: Final = 7
 
 FIXED_STEPS: Final = 0.0
-"""Stands for the tolerance of a run with fixed sub-steps."""
+"""Value of RTOL that means fixed sub-steps."""
 
-# clock: real progress; what a step changes stands first
-INTO_INTERVAL: Final = 0
-NEXT_STEP: Final = 1
-FLIGHT_TIME: Final = 2
-PEAK_LEFT: Final = 3
-PEAK_RIGHT: Final = 4
-DISSIPATED: Final = 5
-SUPPLIED: Final = 6
-LARGEST_MOVED: Final = 7
-GROUND_X: Final = 8
+# clock: real progress; first the numbers that every step changes, OF_STEPS in all
+INTO_INTERVAL: Final = 0  # time since the start of the interval of the motion [s]
+NEXT_STEP: Final = 1  # length that is planned for the next step [s]
+FLIGHT_TIME: Final = 2  # total time of flight [s]
+PEAK_LEFT: Final = 3  # largest rotation of the block to the left [rad]
+PEAK_RIGHT: Final = 4  # and to the right
+DISSIPATED: Final = 5  # work of dashpots
+SUPPLIED: Final = 6  # work of the ground
+LARGEST_MOVED: Final = 7  # largest energy of the motion so far
+GROUND_X: Final = 8  # ground acceleration at the end of the last step [m s^-2]
 GROUND_Y: Final = 9
 OF_STEPS: Final = 10
-FIRST_UPLIFT: Final = 10
-OVERTURNING_TIME: Final = 11
-OVERTURNING_SIDE: Final = 12
-RESIDUAL: Final = 13
-LARGEST_TERM: Final = 14
-START_ENERGY: Final = 15
-EVENT_TIME: Final = 16
-TIME: Final = 17
-STEP: Final = 18
-ASKED: Final = 19
-EXCESS: Final = 20
-NEXT_OUTPUT: Final = 21
-OTHER_SHARE: Final = 22  # largest of another rotation in its limit
+FIRST_UPLIFT: Final = 10  # time of the first loss of contact, or NaN [s]
+OVERTURNING_TIME: Final = 11  # or NaN [s]
+OVERTURNING_SIDE: Final = 12  # sign of the rotation then
+RESIDUAL: Final = 13  # largest imbalance of the energies
+LARGEST_TERM: Final = 14  # largest term of their balance, energies at rest included
+START_ENERGY: Final = 15  # energy at the start, or NaN before it is known
+EVENT_TIME: Final = 16  # time of the last event [s]
+TIME: Final = 17  # time that the run has reached, written when the driver returns [s]
+STEP: Final = 18  # length of the last step, where the march leaves it to the driver [s]
+ASKED: Final = 19  # length of the sub-step that it is, or is a part of [s]
+EXCESS: Final = 20  # its error over the error allowed
+NEXT_OUTPUT: Final = 21  # next output time, less a margin for rounding [s]
+OTHER_SHARE: Final = 22  # largest ratio of another body's rotation to its limit
 CLOCK: Final = 23
 
 # counters: integer progress and switches
-MODE: Final = 0
-INTERVAL: Final = 1
-OUTPUTS: Final = 2
-EVENTS: Final = 3
-STEPS: Final = 4
-REJECTED: Final = 5
+MODE: Final = 0  # present mode
+INTERVAL: Final = 1  # number of the present interval of the motion
+OUTPUTS: Final = 2  # output samples stored
+EVENTS: Final = 3  # rows in the table of events
+STEPS: Final = 4  # accepted steps
+REJECTED: Final = 5  # refused steps
 IMPACTS: Final = 6
 FLIGHTS: Final = 7
-PENDING: Final = 8
-CLOSE_EVENTS: Final = 9
+PENDING: Final = 8  # guard that has fallen and whose event is still to be carried out, or -1
+CLOSE_EVENTS: Final = 9  # events in a row that count as chatter
 MAX_STEPS: Final = 10
-STOP_AT_OVERTURNING: Final = 11
-HALF: Final = 12
-DEGREE_X: Final = 13
+STOP_AT_OVERTURNING: Final = 11  # 1 if the run ends there
+HALF: Final = 12  # half of `both_ends` that is the start of the next step
+DEGREE_X: Final = 13  # degree of the ground's polynomial in the present interval
 DEGREE_Y: Final = 14
 STALE: Final = 15  # whether slope and guards at the state are to be evaluated anew
-LAST_INTERVAL: Final = 16  # at whose end the run pauses
-STEPS_KEPT: Final = 17
-PAUSE_AT: Final = 18  # steps, tried ones too, after which the run pauses
+LAST_INTERVAL: Final = 16  # interval at whose end the run pauses
+STEPS_KEPT: Final = 17  # rows in the table of steps
+PAUSE_AT: Final = 18  # number of steps, refused ones included, after which the run pauses
 COUNTERS: Final = 19
 
 CLOSE_EVENTS_LIMIT: Final = 1000
-"""Events in a row, each within CHATTER_TIME of the one before, that end a run as chatter."""
+"""Most events in a row, each within CHATTER_TIME of the one before; more end a run as chatter."""
 
 TERMS: Final = 6
 """Most coefficients per direction and interval; a record needs two, an analytic pulse six."""
 
 BESIDE: Final = 4
-"""Numbers of a row of steps before its state."""
+"""Numbers before the state in a row of :class:`StepTable`."""
 CODES: Final = 2
-"""Whole numbers of such a row."""
+"""Whole numbers in such a row."""
 
 ERRORS: Final = 3
-"""Place of the errors of the state behind the works of a step."""
+"""Index in `works` from which on the errors of the state stand."""
 
 
 class Pieces(NamedTuple):
-    """Ground acceleration as polynomials, a row for each interval; none where it stands still."""
+    """Ground acceleration as polynomials, a row for each interval; no rows for still ground."""
 
     x: ReadOnlyMatrix
     y: ReadOnlyMatrix
@@ -152,18 +152,17 @@ class Progress(NamedTuple):
 class StepTable(NamedTuple):
     """Ends of steps, each the start of the step in the next row; or no rows.
 
-    Time, length of the step, both directions of the ground's acceleration, state, and slope
-    without powers; mode and number of events before. A start that is not the end of the row
-    before it has a row of its own, of length 0. Row follows row: the functions that are compiled
-    for a system take vectors.
+    A start that is not the end of the row before it has a row of its own, of length 0. Rows follow
+    one another in vectors, which compiled functions of a system can take.
     """
 
+    # time, length of the step, ground acceleration in x and y, state, and slope without powers
     values: Vector
-    codes: Integers
+    codes: Integers  # mode, and number of events before
 
 
 class Output(NamedTuple):
-    """Samples at the output times; `work` may have no rows."""
+    """Samples at the output times (`work` may have no rows), and the table of steps."""
 
     state: Matrix
     mode: Integers
@@ -184,23 +183,23 @@ class Workspace(NamedTuple):
     A *slope* holds accelerations, rates of variables of first order, and powers.
     """
 
-    both_ends: Vector  # both ends of a step, of which the next six are parts
-    state: Vector  # at its start
-    first: Vector  # slope
-    before: Vector  # guards and their rates
-    new: Vector  # state at its end
-    last: Vector  # slope
-    after: Vector  # guards and their rates
-    stages: Vector  # room for stages
-    works: Vector  # energies dissipated and put in, the error of their difference, other errors
-    reference: Vector  # largest size so far of each variable
-    limits: Vector  # of the rotation, see rockframe.solve.march
-    scratch: Vector  # state and its slope in between
-    scratch_rates: Vector
-    inside: Vector  # guards in between
-    powers: Vector  # another slope in between
-    ground: Vector  # coefficients of the ground motion in this interval
-    answers: Vector  # room for a few numbers that the system gives
+    both_ends: Vector  # memory of both ends of a step: of the next six arrays
+    state: Vector  # state at the start
+    first: Vector  # slope at the start
+    before: Vector  # guards and their rates at the start
+    new: Vector  # state at the end
+    last: Vector  # slope at the end
+    after: Vector  # guards and their rates at the end
+    stages: Vector  # velocities and slopes of the stages
+    works: Vector  # energies dissipated and put in, error of their difference, errors of the state
+    reference: Vector  # largest size so far of each element of the state
+    limits: Vector  # limits of rotations, see rockframe.solve.march
+    scratch: Vector  # a state inside the step
+    scratch_rates: Vector  # its slope
+    inside: Vector  # guards and their rates inside the step
+    powers: Vector  # a slope inside the step, evaluated for its powers
+    ground: Vector  # coefficients of the ground acceleration in the present interval
+    answers: Vector  # scratch for a few numbers that the system gives
 
 
 NO_STEPS: Final = StepTable(np.empty(0), np.empty(0, dtype=np.int64))
@@ -227,13 +226,13 @@ def keep_row(
 
 @inlined
 def has_no_room(codes: Integers, counters: Integers) -> bool:
-    """Whether a table of steps that are kept has no room for a start and the step from it."""
+    """Whether a table of steps, if one is kept, has no room for a start and a step from it."""
     return CODES * (counters[STEPS_KEPT] + 2) > len(codes) > 0
 
 
 @inlined
 def swapped(w: Workspace) -> Workspace:
-    """Give the workspace in which a step's end is the start of the next."""
+    """Give the workspace with both ends exchanged: the end of a step is the start of the next."""
     return Workspace(
         w.both_ends, w.new, w.last, w.after, w.state, w.first, w.before, w.stages, w.works,
         w.reference,
@@ -244,15 +243,15 @@ def swapped(w: Workspace) -> Workspace:
 class Span(NamedTuple):
     """One step: its length, and where it lies in its interval of the motion."""
 
-    h: float
-    u: float
-    du: float
-    degree_x: int
+    h: float  # length [s]
+    u: float  # where it starts in the interval, from 0 to 1
+    du: float  # its length over that of the interval
+    degree_x: int  # degree of the ground's polynomial
     degree_y: int
 
 
 class Work(NamedTuple):
-    """Energies that dashpots have dissipated and that the ground has put in."""
+    """Energies that dashpots have dissipated and that the ground has put in [m^2 s^-2]."""
 
     dissipated: float
     supplied: float
@@ -277,7 +276,7 @@ def load_interval(index: int, pieces: ReadOnlyMatrix, first: int, coefficients: 
 
 @inlined
 def polynomial(u: float, degree: int, first: int, coefficients: Vector) -> float:
-    """Give a polynomial, of which the coefficients stand from index `first` on."""
+    """Evaluate at u the polynomial whose coefficients stand from index `first` on."""
     value = coefficients[first + degree]
     for j in range(degree - 1, -1, -1):
         value = value * u + coefficients[first + j]

@@ -1,7 +1,8 @@
-"""The lists of a chain as numbers: a row for each body with its base, and room to work in.
+"""The array of a chain of bodies: a row of data for each body with its base, and a workspace.
 
-Bodies are counted from the top down. One machine code serves all chains, whatever their length and
-their bases, since it reads both from here.
+Bodies are counted from the top down. The same machine code serves all chains, whatever their
+number of bodies and their bases, since it reads both from this array. Masses, inertias and forces
+are over the reference mass of the model, the one that "per unit mass" means.
 """
 
 from collections.abc import Sequence
@@ -20,38 +21,40 @@ from rockframe.dynamics.pads import CORNER, CORNER_GUARDS, ElasticPads
 from rockframe.dynamics.point_law import Viscoelastic
 from rockframe.dynamics.protocol import POWERS, CalledBySteps
 
-# a row: the body's numbers in their order in `Body`, among them
-INERTIA: Final = 3
-GRAVITY: Final = 4
+# columns of a row: the fields of `Body` in their order, among them
+INERTIA: Final = 3  # about the centre of mass, over the reference mass [m^2]
+GRAVITY: Final = 4  # g [m s^-2]
 # then
-MASS: Final = 8  # over the mass that all is measured by
-TOP: Final = 9  # of the body above its centre of mass; what stands on it stands there
-BESIDE: Final = 10  # of the body's centre of mass from that of the one below, upright
-PER_MASS: Final = 11
-PER_INERTIA: Final = 12
-PLACE_VALUE: Final = 13  # of its mode in that of the chain
-LAW: Final = 14  # which law its base has
-FORCE_SIZE: Final = 15  # of what its corners bear, by which rounding is known
-MODE_COUNT: Final = 16  # of its modes
-BASE: Final = 17  # numbers of that law
-ROW: Final = BASE + BASE_NUMBERS
+MASS: Final = 8  # over the reference mass [1]
+TOP: Final = 9  # height of the top, on which the next body stands, above the centre of mass [m]
+BESIDE: Final = 10  # centre of mass to the right of that of the body below, both upright [m]
+PER_MASS: Final = 11  # 1/MASS
+PER_INERTIA: Final = 12  # 1/INERTIA
+PLACE_VALUE: Final = 13  # factor of the body's mode in the number of the chain's mode
+LAW: Final = 14  # law of the base: ON_PADS, ON_BED or ON_RIGID
+FORCE_SIZE: Final = 15  # typical force on its corners, for rounding noise of forces [m s^-2]
+MODE_COUNT: Final = 16  # number of modes of the body
+BASE: Final = 17  # first of the numbers of that law
+ROW: Final = BASE + BASE_NUMBERS  # length of a row
 
 OBSERVED: Final = 3
 """Columns of a base, of which pads have two."""
 
-# room to work in, behind the rows, for each body: geometry and rates of its contact
-SINE: Final = 0  # of the rotation of what it stands on
+# workspace behind the rows, for each body. First its frame, which rotates with the body below or
+# rests with the ground: its axes lie along and normal to the surface that the body stands on
+SINE: Final = 0  # of the rotation of the frame
 COSINE: Final = 1
-ACROSS: Final = 2  # its centre of mass along that, from the centre of mass of the body below
-ARM: Final = 3  # and normal to it
-SWAY: Final = 4  # rate of the former
-RISE: Final = 5  # and of the latter
-REACH: Final = 6  # of its centre of mass about the held point
-DRIFT: Final = 7  # what that adds to the acceleration along what it stands on
-FRAME_RATE: Final = 8  # angular velocity of what it stands on
-RATE: Final = 9  # its own, relative to that
-HELD: Final = 10  # whether a point is held
-# velocity of its centre of mass, loads, and accelerations, in the axes of the ground
+ACROSS: Final = 2  # centre of mass from that of the body below, along the frame [m]
+ARM: Final = 3  # the same, normal to it [m]
+SWAY: Final = 4  # rate of ACROSS [m s^-1]
+RISE: Final = 5  # rate of ARM [m s^-1]
+REACH: Final = 6  # dx/da of the centre of mass about the point of the base that is held [m]
+DRIFT: Final = 7  # d2x/da2 times the square of RATE, an acceleration along the frame [m s^-2]
+FRAME_RATE: Final = 8  # angular velocity of the frame [s^-1]
+RATE: Final = 9  # angular velocity of the body relative to the frame [s^-1]
+HELD: Final = 10  # whether a point of its base is held along the frame
+# velocity of the centre of mass, loads, and accelerations, in the axes of the ground; in an event
+# impulses stand for loads, and changes of velocities for accelerations
 SPEED_X: Final = 11
 SPEED_Y: Final = 12
 LOAD_X: Final = 13
@@ -60,12 +63,12 @@ LOAD_MOMENT: Final = 15
 X: Final = 16
 Y: Final = 17
 ROTATION: Final = 18
-# forces of its base along and normal to what it stands on
+# force of the base on the body, along and normal to the frame [m s^-2]
 THRUST: Final = 19
 PRESS: Final = 20
-# constraints of the corners on a rigid base, and their impulses in an event; impulses of all such
-# bases on the body; those of its own base that gives way, where an end has landed: normal to it,
-# their moment, and along it
+# on a rigid base: numbers of the constraints of the corners, or -1, and impulses of these in an
+# event; impulses of all rigid bases on the body, in the axes of the ground; impulses of a base that
+# is not rigid as an end lands on it: normal to the base, their moment, and along it
 LEFT_CORNER: Final = 21
 RIGHT_CORNER: Final = 22
 LEFT_IMPULSE: Final = 23
@@ -76,47 +79,42 @@ IMPULSE_MOMENT: Final = 27
 BLOW: Final = 28
 BLOW_MOMENT: Final = 29
 BLOW_ALONG: Final = 30
-IMPULSES: Final = 8
-# of bodies that may slip on rigid bases: the sense that is tried, that in which a slip starts, and
-# the force along the base over that normal to it
-SLIPS: Final = 31
-STARTS: Final = 32
-RUBS: Final = 33
-# of bodies that may slip at all: their friction among the loads, on a base that gives way; and the
-# constraint that holds a body along its base, as that is tried
-DRAG: Final = 34
-HOLDS_ALONG: Final = 35
-# of the left and the right corner on a rigid base, as sets of them are tried: the lever, the
-# acceleration at which it rests, or change of its speed, and both along the base, held there
+IMPULSES: Final = 8  # numbers from LEFT_IMPULSE on
+# senses of slip along the base, 1 to the right, -1 to the left, 0 for none
+SLIPS: Final = 31  # in the trial at hand
+STARTS: Final = 32  # in which friction that is overcome lets the body start to slip
+RUBS: Final = 33  # friction over normal force at a corner that slips, with its sign [1]
+DRAG: Final = 34  # friction among the loads, of a body that slips on a base that is not rigid
+HOLDS_ALONG: Final = 35  # number of the constraint that holds the body along its base
+# of the left, then the right corner on a rigid base, for the search for corners that bear: rate of
+# its height with the rotation, the normal acceleration (or change of velocity) by which it rests on
+# the base; dx/da about it, and the tangential acceleration (or change) by which it does not slip
 LEVERS: Final = 36
 RESTS: Final = 38
 REACHES: Final = 40
 STAYS: Final = 42
-# how the body stands in the mode that was read last, and that mode, in two numbers
+# the body's part of the mode that was unpacked last, and that mode, its bits in two halves
 CONTACT: Final = 44
 PIVOT: Final = 45
 SLIDES: Final = 46
 HIGH_BITS: Final = 47
 LOW_BITS: Final = 48
-# sine, cosine and rise of its rotation on its base
-ATTITUDE: Final = 49
-# how it is tried with a set of corners, a number, and how many constraints it and those below have
-TRIED: Final = 52
-CONSTRAINTS: Final = 53
-# whether the forces stand that were solved for last, for a mode, a state and a ground acceleration
-SOLVED: Final = 54
-PLACES: Final = 55
+ATTITUDE: Final = 49  # sine and cosine of the rotation on the base, and h(1 - cos a) [m]
+TRIED: Final = 52  # code of the constraints of the body in the last trial of corners
+CONSTRAINTS: Final = 53  # how many constraints it and the bodies below have in that trial
+SOLVED: Final = 54  # whether the forces of the last solution are valid, see `solved_room`
+PLACES: Final = 55  # numbers of each body
 
-# constraints, at most so many of each body; of each
-MOST_CONSTRAINTS: Final = 3
-BODY: Final = 0  # the body
-VALUE: Final = 1  # what is kept
-FORCE: Final = 2
-KEEPS: Final = 3  # the combination of accelerations, of the body and of the one below
-HOLDS: Final = 9  # that of forces
-LEFT: Final = 15  # of the value, by elimination
-CONSTRAINT: Final = 16
-# then their matrix, slopes, guards and their rates, velocities, columns, and what was solved for
+MOST_CONSTRAINTS: Final = 3  # of each body; the numbers of a constraint are
+BODY: Final = 0  # number of its body
+VALUE: Final = 1  # prescribed value of the combination of accelerations that it constrains
+FORCE: Final = 2  # Lagrange multiplier: its force, or its impulse in an event
+KEEPS: Final = 3  # that combination: weights of X, Y, ROTATION of its body, then of the one below
+HOLDS: Final = 9  # force and moment of a unit multiplier on its body, then on the one below
+LEFT: Final = 15  # right-hand side of its equation, reduced by elimination
+CONSTRAINT: Final = 16  # numbers of a constraint
+# then slopes, guards and their rates, velocities, columns, the matrix of the constraints, and what
+# the forces were solved for
 
 GUARDS: Final = 2 * CORNER_GUARDS + BODY_GUARDS
 """Guards of each body."""
@@ -129,19 +127,19 @@ ENDS: Final = 4
 """States of both ends on a bed, or of both corners on a rigid base."""
 PIVOTS: Final = 3
 HALF_OF_BITS: Final = 32
-"""Of the number of a mode, each half of which a float holds exactly."""
+"""Half of the bits of a mode's number: a float holds each half exactly."""
 PAD_MODES: Final = 2 * PIVOTS * CORNERS * CORNERS
 BED_MODES: Final = 2 * PIVOTS * ENDS
 RIGID_MODES: Final = 2 * 2 * ENDS  # what is held follows from the corners that bear
 
 
 SOLVED_FOR: Final = 4
-"""Both halves of a mode, and ground acceleration, before a state."""
+"""Numbers before the state in `solved_room`: both halves of the mode, and ground acceleration."""
 
 
 @kernel
 def room_of(count: int) -> int:
-    """Give the size of the room behind the rows of some bodies."""
+    """Give the length of the workspace behind the rows, for a number of bodies."""
     each = PLACES + MOST_CONSTRAINTS * CONSTRAINT + 4 * DEGREES + 2 * GUARDS + COLUMNS
     return count * each + POWERS + (MOST_CONSTRAINTS * count) ** 2 + SOLVED_FOR
 
@@ -150,11 +148,11 @@ class Lists(NamedTuple):
     """The numbers of a chain."""
 
     body_count: int
-    rows: Vector  # of all bodies; then room to work in
+    rows: Vector  # the rows of all bodies, then the workspace
 
 
 class Rows(InState, CalledBySteps, Lists):
-    """What stands in the lists. A mixin of systems."""
+    """Access to the rows and the workspace of a chain. A mixin of systems."""
 
     __slots__ = ()
 
@@ -165,12 +163,12 @@ class Rows(InState, CalledBySteps, Lists):
 
     @inlined
     def number(self, k: int, which: int) -> float:
-        """Give a number of a body's row."""
+        """Give a number of a body's row, by its column."""
         return float(self.rows[k * ROW + which])
 
     @inlined
     def places(self) -> Vector:
-        """Give the room for the places and forces of all bodies."""
+        """Give the workspace of all bodies: frames, forces and accelerations."""
         return stretch(self.rows, self.body_count * ROW, self.body_count * PLACES)
 
     @inlined
@@ -186,7 +184,7 @@ class Rows(InState, CalledBySteps, Lists):
 
     @inlined
     def after_constraints(self) -> int:
-        """Give the place behind the constraints."""
+        """Give the index behind the constraints."""
         return self.body_count * (ROW + PLACES + MOST_CONSTRAINTS * CONSTRAINT)
 
     @inlined
@@ -209,20 +207,20 @@ class Rows(InState, CalledBySteps, Lists):
 
     @inlined
     def matrix(self) -> Vector:
-        """Give the room for what constraints do to one another."""
+        """Give the room for the matrix of the constraints: what each does to each other one."""
         room = 2 * DEGREES + 2 * GUARDS + COLUMNS
         first = self.after_constraints() + self.body_count * room + POWERS
         return stretch(self.rows, first, (MOST_CONSTRAINTS * self.body_count) ** 2)
 
     @inlined
     def solved_room(self) -> Vector:
-        """Give the room for mode, ground acceleration and state that forces were solved for."""
+        """Give the room for the mode, ground acceleration and state of the last solution."""
         first = self.behind_chain() - SOLVED_FOR - 2 * DEGREES * self.body_count
         return part_of(self.rows, first)
 
     @inlined
     def behind_chain(self) -> int:
-        """Give the place behind all these rooms."""
+        """Give the index behind rows and workspace."""
         return self.body_count * ROW + room_of(self.body_count)
 
     @inlined
@@ -238,7 +236,7 @@ class Rows(InState, CalledBySteps, Lists):
 
     @inlined
     def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
-        """Give placement and rates of a body as its contacts allow them."""
+        """Give placement and rates of a body, free of what its contacts rule out."""
         return self.state_of(k, state)
 
     @inlined
@@ -249,7 +247,7 @@ class Rows(InState, CalledBySteps, Lists):
 
     @inlined
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give how a body stands; divisions are slow, so what was read last is kept."""
+        """Give the mode of a body; as divisions are slow, the one unpacked last is remembered."""
         room, i, high = self.places(), k * PLACES, mode >> HALF_OF_BITS
         low = mode - (high << HALF_OF_BITS)
         if room[i + HIGH_BITS] != high or room[i + LOW_BITS] != low:
@@ -261,7 +259,7 @@ class Rows(InState, CalledBySteps, Lists):
 
     @kernel
     def read_mode(self, mode: int, k: int) -> Mode:
-        """Read how a body stands from the number of a mode."""
+        """Unpack the mode of a body from the number of the chain's mode."""
         number = mode // int(self.number(k, PLACE_VALUE)) % int(self.number(k, MODE_COUNT))
         if self.number(k, LAW) == ON_RIGID:
             ends, rest = number % ENDS, number // ENDS
@@ -272,7 +270,7 @@ class Rows(InState, CalledBySteps, Lists):
 
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the mode in which a body stands otherwise."""
+        """Give the chain's mode with another mode of a body."""
         value, modes = int(self.number(k, PLACE_VALUE)), int(self.number(k, MODE_COUNT))
         low, high = part.contact % CORNER, part.contact // CORNER
         if self.number(k, LAW) == ON_RIGID:
@@ -284,7 +282,7 @@ class Rows(InState, CalledBySteps, Lists):
 
 
 def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float) -> Vector:
-    """Give a body's row."""
+    """Give a body's row, from its lengths [m] and its mass over the reference mass [1]."""
     if isinstance(base.law, ElasticPads) and isinstance(base.law.law, Viscoelastic):
         law = ON_PADS
     elif isinstance(base.law, Rigid):
@@ -307,7 +305,7 @@ def row_of(body: Body, base: BaseNumbers, mass: float, top: float, beside: float
 
 
 def lists_of(rows: Sequence[Vector]) -> Lists:
-    """Give the lists of bodies, from the top down, with room to work in."""
+    """Give the array of a chain from the rows of its bodies, from the top down."""
     count, value = len(rows), 1
     for row in rows:
         row[PLACE_VALUE] = value

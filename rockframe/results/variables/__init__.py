@@ -1,1 +1,1 @@
-"""The rows of the table of variables, by what they describe."""
+"""The rows of the table of variables, grouped by what they describe."""

@@ -31,7 +31,7 @@ BODIES: Final = (
     ),
     *rows_over(EVENT, event_body=("number of the body whose contact changed", int)),
 )
-"""What a run of a stack has beside that of its highest body."""
+"""Variables of a run of a stack, beside those of its highest body."""
 
 OF_EACH_BODY: Final = {
     "body_rotation": "rotation",
@@ -42,7 +42,7 @@ OF_EACH_BODY: Final = {
     "body_horizontal_reaction": "horizontal_reaction",
     "body_vertical_reaction": "vertical_reaction",
 }
-"""Histories of all bodies, and the columns of each that they are made of."""
+"""Histories of all bodies, and the column of each body that they are made of."""
 
 
 RESTRAINER: Final = ("restrainer",)
@@ -71,7 +71,7 @@ RESTRAINERS: Final = (
         "given [m]",
     ),
 )
-"""What a scene with restrainers has beside others."""
+"""Variables that only scenes with restrainers have."""
 
 RESTRAINER_SCALARS: Final = rows_over(
     (),
@@ -79,4 +79,4 @@ RESTRAINER_SCALARS: Final = rows_over(
 )
 
 OF_EACH_LINK: Final = ("restrainer_force", "restrainer_elongation", "restrainer_state")
-"""Histories of all restrainers, and the columns of each that they are made of."""
+"""Histories of all restrainers, and the column of each restrainer that they are made of."""

@@ -49,7 +49,7 @@ OTHERS: Final = rows_over(
     toe_pressure="greater force of the soil per length of the base at the ends of the bearing part "
     "[N m^-1]",
 )
-"""On request one by one."""
+"""Variables that are requested one by one."""
 
 POINT_LABELS: Final = rows_over(
     POINT,
@@ -71,7 +71,7 @@ POINTS: Final = (
         point_vertical_acceleration="absolute vertical acceleration of the point, upwards [m s^-2]",
     ),
 )
-"""Of points that are named."""
+"""Variables of the points that users name."""
 
 POINT_PEAKS: Final = tuple(
     Variable(
@@ -84,7 +84,7 @@ POINT_PEAKS: Final = tuple(
     for row in POINTS
     if row.dims == POINT_TIME
 )
-"""Of points, in runs with samples."""
+"""Peaks at the points that users name."""
 
 SLIPS: Final = (
     *rows_over(
@@ -107,7 +107,7 @@ SLIPS: Final = (
         "run, to the right [m]",
     ),
 )
-"""Of scenes in which a body slides; the slip is that of the corner that bears."""
+"""Variables of scenes in which a body slides; the slip is that of the corner that bears."""
 
 FORCE_SCALARS: Final = rows_over(
     (),
@@ -127,4 +127,4 @@ FORCE_SCALARS: Final = rows_over(
     sliding_time="time from which on it does, NaN if it never does [s]",
     sliding_duration="time in all for which it does [s]",
 )
-"""Of runs with histories, or points; the last three of scenes to which friction was given."""
+"""Scalars of runs with histories or points; the last three need a base with a given friction."""

@@ -1,4 +1,4 @@
-"""Variables of a run: histories, energies, events and scalars; of answers that need no run."""
+"""Variables of a run: histories, energies, events and scalars; also of statics, without a run."""
 
 from enum import IntEnum
 from typing import Final
@@ -63,7 +63,7 @@ HISTORIES: Final = rows_over(
     cap_vertical_acceleration="absolute vertical acceleration of the middle of the cap's top "
     "[m s^-2]",
 )
-"""Over time, wherever the scene has them."""
+"""Histories, as far as the scene has them."""
 
 MOTION_AFTER_END: Final = rows_over(
     AFTER_END,
@@ -82,7 +82,7 @@ ENERGY_HISTORIES: Final = rows_over(
     repinning_energy="energy lost in changes of the horizontal restraint so far [J]",
     input_energy="relative energy put in by the ground so far [J]",
 )
-"""Over time, only on request."""
+"""Histories of energies, only on request."""
 
 EVENTS_AND_SCALARS: Final = (
     *rows_over(
@@ -122,7 +122,7 @@ EVENTS_AND_SCALARS: Final = (
         "[rad]",
     ),
 )
-"""Over events, and one for the run."""
+"""Variables over events, and scalars of the run."""
 
 CERTIFICATE: Final = rows_over(
     (),
@@ -143,7 +143,7 @@ CERTIFICATE: Final = rows_over(
     peak_sensitivity="largest difference of the peak rotation from that of a run with a nudged "
     "parameter [rad]",
 )
-"""How sure the verdict is, on request."""
+"""Certificate: how sure the verdict is, on request."""
 
 PROOF: Final = rows_over(
     (),
@@ -153,7 +153,7 @@ PROOF: Final = rows_over(
     proved_overturning_latest="time by which it is proved to have overturned, NaN unless it is [s]",
     proof_width="greatest radius of the rotations that a proof encloses [rad]",
 )
-"""What is proved of the verdict, on request."""
+"""Proof of the verdict, on request."""
 
 
 MODE_BODY: Final = ("mode", "body")

@@ -9,10 +9,10 @@ CASE: Final = "case"
 MOTION: Final = "motion"
 """Dimensions of sweeps, beside their axes."""
 MESSAGE: Final = "message"
-"""What is said of each case."""
+"""Variable with messages about each case."""
 REPEATED: Final = "repeated"
 VERDICT_CHANGED: Final = "verdict_changed"
-"""What is told of each case of a screened sweep."""
+"""Variables of each case of a screened sweep."""
 
 
 class Outcome(IntEnum):
@@ -51,7 +51,7 @@ CRITICAL_SCALE: Final = (
         outcome=("verdict of the run", Outcome),
     ),
 )
-"""Of a motion that is scaled until a block overturns."""
+"""Variables of a motion that is scaled until a block overturns."""
 
 SWEEP: Final = (
     *rows_over((CASE,), **{CASE: ("number of the row in the table of cases", int)}),
@@ -67,7 +67,7 @@ SWEEP: Final = (
         verdict_changed=("whether the case then had another verdict", bool),
     ),
 )
-"""Of a sweep, beside the scalars of its runs."""
+"""Variables of a sweep, beside the scalars of its runs."""
 
 
 COMPARISON: Final = rows_over(
@@ -84,7 +84,7 @@ COMPARISON: Final = rows_over(
     history_error="largest error of the rotation over its peak, against the scene itself",
     verdict_agrees=("whether the verdict is that of the scene itself", bool),
 )
-"""One for each rung."""
+"""Variables of a comparison of models, with a value for each model."""
 
 
 PARAMETER: Final = ("parameter",)
@@ -92,7 +92,7 @@ PEAK: Final = ("peak",)
 
 
 class FitStatus(IntEnum):
-    """Why a fit ended, in SciPy's numbers."""
+    """Why a fit ended, by the status codes of SciPy."""
 
     TRIAL_LIMIT = 0
     GRADIENT_VANISHED = 1
@@ -146,4 +146,4 @@ FREE_DECAY: Final = (
         trial_count=("number of trials of the last fit, without those for derivatives", int),
     ),
 )
-"""Of a fit to a free-decay test; those over peaks, or over time, as it was measured."""
+"""Variables of a fit to a free-decay test: over peaks or over time, whichever was measured."""

@@ -1,4 +1,4 @@
-"""A row of the table of variables, and the shapes that rows have."""
+"""A row of the table of variables (the schema), and the dimensions that rows have."""
 
 import re
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ FLIP: Final = ("flip",)
 SCALE: Final = ("scale",)
 
 TRUTH: Final = ("false", "true")
-"""Meanings of 0 and 1, as which files hold truth values."""
+"""Meanings of the flags 0 and 1, by which truth values are stored in files."""
 
 
 @proposing
@@ -38,9 +38,9 @@ class Variable:
     dims : tuple of str
         Dimensions, such as ``("time",)``; none for a scalar.
     unit : Unit, str or None
-        None for flags and truth values.
+        Unit of the values; None for flags and truth values.
     long_name : str
-        Meaning.
+        Meaning, in words.
     flags : type of IntEnum, optional
         Values and meanings of an integer flag.
     dtype : str
@@ -60,7 +60,7 @@ class Variable:
         Parameters
         ----------
         dtype : str, optional
-            Of the values, where gaps among them leave no other than floats.
+            Type of the values, where it differs since gaps have made them floats.
 
         Returns
         -------
@@ -83,16 +83,16 @@ class Variable:
 
 
 def unit_behind(attributes: Mapping[Any, Any]) -> str:
-    """Write the unit of values as it stands behind a number of them; nothing where it is 1."""
+    """Give the unit of values with a space before it, to follow a number; empty where it is 1."""
     unit = str(attributes.get("units", Unit.ONE))
     return "" if unit == Unit.ONE else f" {unit}"
 
 
 def rows_over(dims: tuple[str, ...], /, **meanings: str | tuple[str, type]) -> tuple[Variable, ...]:
-    """Make the rows of variables over some dimensions, by their names, of what these mean.
+    """Make rows of variables over some dimensions, from their names and meanings.
 
-    Behind the meaning of a number stands its unit in brackets, unless that is 1; beside that of
-    anything else its kind: bool, int, str, or the :class:`~enum.IntEnum` of a flag.
+    The meaning of a real number ends with its unit in brackets, unless that is 1. For anything else
+    give the meaning and the type: bool, int, str, or the :class:`~enum.IntEnum` of a flag.
     """
     return tuple(_row(name, dims, meaning) for name, meaning in meanings.items())
 
@@ -113,5 +113,5 @@ def _row(name: str, dims: tuple[str, ...], meaning: str | tuple[str, type]) -> V
 
 
 def bounds(name: str, words: str) -> dict[str, str]:
-    """Give the meanings of a lower and an upper bound, whose words say which at ``{}``."""
+    """Give the meanings of a lower and an upper bound: ``{}`` in `words` becomes either word."""
     return {f"{name}_{end}_bound": words.format(end) for end in ("lower", "upper")}

@@ -1,1 +1,1 @@
-"""Many runs of one kind of system side by side, with steps of fixed length."""
+"""Many runs of one kind of system side by side, one in each lane of a processor's registers."""

@@ -1,7 +1,8 @@
-"""Many runs, one after the other in lanes: quiet steps together, all else one run at a time.
+"""A batch of runs in lanes: quiet steps of all lanes together, all else one run at a time.
 
-What a run gives depends on that run alone: not on its lane, on its neighbours or on when a
-lane takes it up.
+`steps.py` makes a step in all lanes. A run that comes to an event is copied from its lane to its
+row, goes on to the end of its interval by the driver of single runs, and is copied back. The
+results of a run depend neither on its lane, nor on its neighbours, nor on when it starts.
 """
 
 from typing import NamedTuple
@@ -39,27 +40,27 @@ from rockframe.solve.workspace import (
 class BatchSizes(NamedTuple):
     """Sizes of the rows of a batch."""
 
-    rows: int
-    width: int  # of a row
-    state: int  # place of the state, behind which the rest of a step's start stands
-    half: int  # fields of a step's start
-    numbers: int  # place of a system's numbers
-    number_count: int  # of these
-    memory: int  # number of memory's elements
+    rows: int  # number of rows, one for each run
+    width: int  # length of a row
+    state: int  # index of the state, behind which slope and guards of a step's start stand
+    half: int  # number of fields of a step's start
+    numbers: int  # index of a system's numbers
+    number_count: int  # their number
+    memory: int  # length of a system's memory
 
 
 class Batch(NamedTuple):
-    """Runs that are to be made, and what they share."""
+    """The runs to make, and all that they share."""
 
     shape: BatchSizes
-    rows: Vector
-    room: Vector  # of the lanes
-    taken: Integers  # the row of each lane, and the next one to take up
-    pieces: Pieces  # of all motions
-    equations: BoundEquations  # of one of the systems; all are of one class
+    rows: Vector  # of all runs, one row after the other
+    room: Vector  # the lanes: element ``field * LANES + lane``
+    taken: Integers  # the row of each lane, then the next row to start
+    pieces: Pieces  # ground acceleration of all motions, one below the other
+    equations: BoundEquations  # those of one of the systems; all are of one class
     output: Output  # without rows
-    events: EventTable  # room for events, which are not kept
-    w: Workspace  # room for a step of a single run
+    events: EventTable  # scratch: events are not kept
+    w: Workspace  # scratch for a step of a single run
 
 
 @inlined
@@ -93,7 +94,7 @@ def equations_in(batch: Batch, row: Vector) -> BoundEquations:
 
 @inlined
 def note_mode(batch: Batch, row: Vector) -> None:
-    """Note what a run's mode means for its steps."""
+    """Write what a run's mode means for its steps to its row."""
     counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
     whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
     known = known_mode(equations_in(batch, row), counters[at.MODE], batch.w.answers)
@@ -133,7 +134,7 @@ def load_ground(batch: Batch, index: int, whole: Integers, ground: Vector) -> No
 
 @inlined
 def enter_interval(batch: Batch, lane: int) -> bool:
-    """Take a lane on to its next interval; give whether only the driver of runs can go on."""
+    """Move a lane to its next interval; give whether the driver of single runs must go on there."""
     room = batch.room
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
     own, ground = lane_of(room, fields.OWN, lane), lane_of(room, fields.GROUND, lane)
@@ -196,7 +197,7 @@ def run_alone(batch: Batch, row: Vector) -> int:
 
 @inlined
 def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> None:
-    """Copy a run that has paused into a lane; of one that has been there what changes."""
+    """Copy a run that has paused into a lane: everything, or only fields that have changed."""
     shape = batch.shape
     counters = as_integers(stretch(row, fields.COUNTERS, at.COUNTERS))
     whole = as_integers(stretch(row, fields.OWN_WHOLE, fields.WHOLES))
@@ -214,7 +215,7 @@ def return_to_lane(batch: Batch, row: Vector, lane: int, everything: bool) -> No
 
 @kernel
 def start_next_run(batch: Batch, lane: int) -> None:
-    """Give a lane the next run, after its first interval; or none, if none is left."""
+    """Start the next run, and give it to a lane after its first interval; none if none is left."""
     shape = batch.shape
     lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)[fields.BUSY] = 0
     while batch.taken[LANES] < shape.rows:
@@ -231,7 +232,7 @@ def start_next_run(batch: Batch, lane: int) -> None:
 
 @kernel
 def continue_alone(batch: Batch, lane: int) -> None:
-    """See to a lane that asks: run on alone to the end of the interval, or take up another run."""
+    """Run a lane's run alone to the end of its interval; start another one if it ends there."""
     shape = batch.shape
     row = stretch(batch.rows, batch.taken[lane] * shape.width, shape.width)
     copy_to_row(batch, row, lane, 0, shape.state + shape.half)
@@ -245,7 +246,7 @@ def continue_alone(batch: Batch, lane: int) -> None:
 
 @kernel
 def see_to_lanes(batch: Batch) -> int:
-    """Continue what asks, and take all lanes into an interval; give how many have a run."""
+    """Run lanes alone that need the driver, and move all into an interval; give how many run."""
     busy = 0
     for lane in range(LANES):
         own = lane_of(as_integers(batch.room), fields.OWN_WHOLE, lane)

@@ -1,11 +1,10 @@
-"""What is kept of each of many runs: the fields of a row, and of a lane; the ground in all lanes.
+"""The fields of a run in lanes: what each number is, and where it stands; the ground in all lanes.
 
-A row holds a whole run, one number after the other, so that the driver of single runs works
-on it as it stands. A lane holds the same fields between those of its neighbours.
+A row holds a whole run, one number after the other, so that the driver of single runs can work
+on it. The room of the lanes holds the same fields, each of sixteen runs next to one another.
 
-Lanes go from one interval of the motion to the next at once. What is not just the end of an
-interval, such as the end of the motion or a jump of the ground, is left to the driver of single
-runs.
+At the end of an interval of the motion all lanes go on to the next one together. The end of the
+motion, the end of a run and jumps of the ground are left to the driver of single runs.
 """
 
 from typing import Final, NamedTuple
@@ -17,37 +16,38 @@ from rockframe.solve.march import SHORTEST, WEIGHTS, jumps
 from rockframe.solve.schemes import STAGES
 from rockframe.solve.workspace import ERRORS, TERMS
 
-# what lanes need beside the clock, controls and counters of a run
-LENGTH: Final = 0  # of the interval
-LONGEST: Final = 1  # stable step in the mode
-STEP: Final = 2  # length of the step
-PLACE: Final = 3  # in the interval, from 0 to 1, at which the ground is evaluated
-MIDDLE_X: Final = 4  # ground acceleration in the middle of a step of fixed length
+# real numbers of a lane (OWN), beside the clock and controls of a run
+LENGTH: Final = 0  # length of the interval of the motion [s]
+LONGEST: Final = 1  # longest fixed step that is stable in the mode [s]
+STEP: Final = 2  # length of the step [s]
+PLACE: Final = 3  # where in the interval the ground is evaluated, from 0 to 1
+MIDDLE_X: Final = 4  # ground acceleration in the middle of a step of fixed length [m s^-2]
 MIDDLE_Y: Final = 5
-NOW_X: Final = 6  # at a stage; at last at the end of the step
+NOW_X: Final = 6  # at the stage at hand; after the last stage, at the end of the step [m s^-2]
 NOW_Y: Final = 7
 REALS: Final = 8
 
-# the same in whole numbers
+# whole numbers of a lane (OWN_WHOLE), beside the counters of a run
 BUSY: Final = 0  # whether the lane has a run
 ACTIVE: Final = 1  # leading coordinates that move
-FLIES: Final = 2
-ASKS: Final = 3  # whether the last step is for the driver of single runs
-FIRST_X: Final = 4  # row of the first interval in the polynomials of all motions
-COUNT_X: Final = 5  # intervals of the motion
+FLIES: Final = 2  # whether the mode is flight
+ASKS: Final = 3  # whether the driver of single runs must make the last step
+FIRST_X: Final = 4  # row of the motion's first interval in the polynomials of all motions
+COUNT_X: Final = 5  # number of intervals of the motion
 FIRST_Y: Final = 6
 COUNT_Y: Final = 7
-STATUS: Final = 8
-TAKEN: Final = 9  # all bits where the last step is taken, none where not
-ENTERS: Final = 10  # whether the lane comes to its next interval
+STATUS: Final = 8  # how the run ended
+TAKEN: Final = 9  # all bits set where the last step is accepted, none where it is not
+ENTERS: Final = 10  # whether the lane goes on to its next interval
 REFUSED: Final = 11  # whether the error of the last step was too large
 WHOLES: Final = 12
 
-# what a step in all lanes has found
-ALL_QUIET: Final = 0
-SOME_ASK: Final = 1  # the step of some lane is for the driver of single runs
-SOME_WAIT: Final = 2  # some lane is at an end that is not just that of an interval; no step is made
+# results of a step in all lanes
+ALL_QUIET: Final = 0  # no lane needs the driver of single runs
+SOME_ASK: Final = 1  # some lane needs it for its step
+SOME_WAIT: Final = 2  # no step was made: some lane needs it at the end of its interval
 
+# indices of the fields that every system has; the rest depends on its size
 CLOCK: Final = 0
 COUNTERS: Final = CLOCK + at.CLOCK
 CONTROLS: Final = COUNTERS + at.COUNTERS
@@ -55,29 +55,28 @@ OWN: Final = CONTROLS + at.CONTROLS
 OWN_WHOLE: Final = OWN + REALS
 GROUND: Final = OWN_WHOLE + WHOLES
 LIMITS: Final = GROUND + 2 * TERMS
-"""Places of what every system has; the rest depends on its size."""
 
 
 class Places(NamedTuple):
-    """Places of fields that depend on the size of a system."""
+    """Indices of the fields that depend on the size of a system."""
 
-    reference: int  # largest size so far of each variable
-    state: int  # at the start of a step; both ends of a step stand together
+    reference: int  # largest size so far of each element of the state
+    state: int  # the start of a step: state, slope, guards and their rates
     first: int
     before: int
-    new: int
+    new: int  # the end of a step, likewise
     last: int
     after: int
-    end: int  # of both
+    end: int  # the first field behind both
     stages: int
     works: int
-    clock: int  # at the end of a step, as far as steps change it
-    numbers: int  # of the system; behind them memory and tolerances, which only rows have
+    clock: int  # the first `OF_STEPS` numbers of the clock, at the end of a step
+    numbers: int  # numbers of the system; memory and tolerances, which only rows have, follow
 
 
 @inlined
 def places_of(system: Equations) -> Places:
-    """Give where the fields of a system are."""
+    """Give the indices of the fields of a system."""
     size, variables, guards = system.coordinates(), system.variables(), system.guards() + 1
     width, slope = 2 * size + variables, size + variables + POWERS
     reference = LIMITS + WEIGHTS + size
@@ -101,7 +100,7 @@ def evaluate_ground(
     lanes: int, room: Vector, pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix,
     fraction: float, x: int, y: int,
 ) -> None:  # fmt: skip
-    """Write the acceleration at a fraction of the step in all lanes to two of their own fields."""
+    """Write the ground acceleration at a fraction of the step to the own fields `x` and `y`."""
     for lane in range(lanes):
         clock, controls = lane_of(room, CLOCK, lane), lane_of(room, CONTROLS, lane)
         own = lane_of(room, OWN, lane)
@@ -141,7 +140,7 @@ def is_at_end(room: Vector, lane: int) -> bool:
 
 @inlined
 def comes_to_next(room: Vector, lane: int) -> bool:
-    """Whether a lane is at the end of an interval, and behind it lies another like it."""
+    """Whether a lane is at the end of an interval, and run and motion go on after it."""
     whole, controls = as_integers(room), lane_of(room, CONTROLS, lane)
     own, numbers = lane_of(room, OWN, lane), lane_of(whole, OWN_WHOLE, lane)
     index, length = lane_of(whole, COUNTERS, lane)[at.INTERVAL], own[LENGTH]
@@ -155,7 +154,7 @@ def comes_to_next(room: Vector, lane: int) -> bool:
 def load_next(
     room: Vector, lane: int, pieces: ReadOnlyMatrix, count: int, row: int, first: int
 ) -> None:
-    """Write the polynomial of a lane's next interval, in a direction in which it moves."""
+    """Write the polynomial of one direction in the next interval, if the lane goes on to it."""
     own = lane_of(as_integers(room), OWN_WHOLE, lane)
     index = lane_of(as_integers(room), COUNTERS, lane)[at.INTERVAL] + 1
     ground = lane_of(room, GROUND, lane)
@@ -166,7 +165,7 @@ def load_next(
 
 @inlined
 def enter_next(room: Vector, lane: int) -> int:
-    """Take a lane to its next interval, unless the ground jumps; give whether it has to wait."""
+    """Move a lane to its next interval, unless the ground jumps; give 1 if it must wait, else 0."""
     whole = as_integers(room)
     clock, controls = lane_of(room, CLOCK, lane), lane_of(room, CONTROLS, lane)
     own, numbers = lane_of(room, OWN, lane), lane_of(whole, OWN_WHOLE, lane)
@@ -187,7 +186,7 @@ def enter_next(room: Vector, lane: int) -> int:
 def enter_intervals(
     lanes: int, room: Vector, pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix
 ) -> int:
-    """Take all lanes that are at the end of an interval to the next; give whether some wait."""
+    """Move all lanes at the end of an interval to the next; give 1 if some must wait, else 0."""
     for lane in range(lanes):
         own = lane_of(as_integers(room), OWN_WHOLE, lane)
         own[ENTERS] = 1 if comes_to_next(room, lane) else 0

@@ -1,4 +1,7 @@
-"""From many runs of one kind of system to what became of them."""
+"""Integration of many runs of one kind of system in lanes: the counterpart of `solve/integrate.py`.
+
+Puts each run into a row, makes batches of rows, and reads the outcomes from the rows.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,34 +33,34 @@ from rockframe.solve.workspace import (
 )
 
 ROOM: Final = 4_000_000
-"""Numbers of polynomials that a batch may hold: what stays in the caches near a processor."""
+"""Most coefficients of ground motions in a batch, so that they stay in a processor's caches."""
 
 Whole = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
 class LaneRun:
-    """A run that is to be made under some motions, or many runs whose numbers differ."""
+    """A run to make under one or more motions; or many runs of systems that differ in numbers."""
 
-    model: ContactModel  # the equations, of many those of one
-    begun: Begun  # where it starts, without outputs; all runs with steps of fixed length, or none
-    # of many runs, that of each, of which the numbers above are those of one; else it follows
+    model: ContactModel  # the equations; those of one of many runs
+    begun: Begun  # its start, without outputs; in one batch steps are all fixed, or all are not
+    # the row of each of many runs; None for a single run, whose row is made from the above
     rows: Matrix | None = None
 
 
 @dataclass(frozen=True)
 class Outcomes:
-    """What became of runs, by their number."""
+    """How runs ended: arrays with a row, or a number, for each run."""
 
-    clock: Matrix  # ndarray, shape (runs, n)
-    counters: Whole  # laid out in :mod:`rockframe.solve.workspace`
-    status: Whole  # how they ended, :class:`rockframe.solve.workspace.Status`
-    modes: Whole  # of the model, where they ended
-    states: Matrix
-    memories: Matrix
+    clock: Matrix  # laid out in :mod:`rockframe.solve.workspace`
+    counters: Whole  # likewise
+    status: Whole  # :class:`rockframe.solve.workspace.Status`
+    modes: Whole  # modes of the model in which they ended
+    states: Matrix  # states at the end
+    memories: Matrix  # memories at the end
 
     def summary(self, k: int, substeps: int) -> Summary:
-        """Give what became of a run."""
+        """Give the summary of run `k`, made in steps by tolerance (0 substeps) or fixed steps."""
         ending = Ending(int(self.modes[k]), self.states[k].copy(), self.memories[k].copy())
         return Summary(
             status=Status(int(self.status[k])),
@@ -67,7 +70,7 @@ class Outcomes:
         )
 
     def summary_of_many(self, some: Whole, substeps: int) -> Summary:
-        """Give what became of runs that ended in the same way, in numbers of many."""
+        """Give one summary of runs that ended in the same way, whose numbers are `Many`."""
 
         def each(rows: Any) -> Any:
             return np.array([Many(row[some].astype(np.float64)) for row in rows.T], dtype=object)
@@ -82,13 +85,13 @@ class Outcomes:
 
 
 def joined(several: Sequence[Outcomes]) -> Outcomes:
-    """Put what became of runs one below the other."""
+    """Join outcomes, one below the other."""
     columns = [vars(one).values() for one in several]
     return Outcomes(*(np.concatenate(each) for each in zip(*columns, strict=True)))
 
 
 def kind_of(model: ContactModel) -> Any:
-    """Give what models must have in common to run side by side."""
+    """Give a key that is equal for models that can run side by side."""
     return structure_of(model.system), len(model.memory)
 
 
@@ -100,12 +103,12 @@ def lanes_compiled(run: LaneRun, patience: float) -> bool:
     run : LaneRun
         One of them.
     patience : float
-        Longest time in which what lanes need may be compiled now [s].
+        Longest time that compiling may take now [s].
 
     Returns
     -------
     bool
-        False too where it cannot be compiled: there are no lanes in plain Python.
+        False also where compiling is impossible: there are no lanes in plain Python.
     """
     rows, one = _Rows([run]), np.zeros(1, dtype=np.int64)
     return compiled_within(patience, advance_batch, rows.batch([None], one, one), rows.steps)
@@ -117,7 +120,10 @@ def integrate_lanes(
     run_of: Whole,
     motion_of: Whole,
 ) -> Outcomes:
-    """Make many runs, whose systems are of one kind; `run_of` counts each of many."""
+    """Make many runs of systems of one kind.
+
+    Case i is run `run_of[i]`, counted over all rows of `runs`, under motion `motion_of[i]`.
+    """
     made = _Rows(runs)
     clock = np.empty((len(run_of), at.CLOCK))
     counters = np.empty((len(run_of), at.COUNTERS), dtype=np.int64)
@@ -138,7 +144,7 @@ def integrate_lanes(
 
 
 def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
-    """Cut cases where their motions would not fit into the caches."""
+    """Divide cases into batches whose motions fit into the caches."""
     sizes = np.array([0 if one is None else one.horizontal.samples.size * 2 for one in motions])
     found: list[slice] = []
     begin, seen, total = 0, set[int](), 0
@@ -153,7 +159,7 @@ def _batches(motions: Sequence[Motion | None], motion_of: Whole) -> list[slice]:
 
 
 def rows_of(model: ContactModel, begun: Begun, count: int = 1) -> Matrix:
-    """Give the row of a run, or those of many, whose numbers are :class:`Many`."""
+    """Give the row of a run, or the rows of many runs, whose numbers are :class:`Many`."""
     there, numbers = places_of(model.system), list(elements_of(model.system))
     memory = there.numbers + len(numbers)
     tolerance = memory + len(begun.memory)
@@ -177,7 +183,7 @@ def rows_of(model: ContactModel, begun: Begun, count: int = 1) -> Matrix:
 
 
 class _Rows:
-    """Rows of runs, from which those of cases are copied."""
+    """Rows of runs, which are copied for each of their cases."""
 
     def __init__(self, runs: Sequence[LaneRun]) -> None:
         model, first = runs[0].model, runs[0].begun
@@ -193,18 +199,18 @@ class _Rows:
 
     @property
     def of_endings(self) -> tuple[int, int]:
-        """The numbers of a state, and of what a system remembers."""
+        """The lengths of a state and of a memory."""
         return self._places.first - self._places.state, self._memory
 
     def endings(self, rows: Matrix) -> tuple[Whole, Matrix, Matrix]:
-        """Give modes, states and memories where runs ended, from their rows."""
+        """Give modes, states and memories at the end of runs, from their rows."""
         there, behind = self._places, self._places.numbers + self._count
         modes = rows.view(np.int64)[:, fields.COUNTERS + at.MODE]
         memories = rows[:, behind : behind + self._memory]
         return modes, rows[:, there.state : there.first], memories
 
     def batch(self, motions: Sequence[Motion | None], run_of: Whole, motion_of: Whole) -> Batch:
-        """Give the rows of cases, and all that they need to run."""
+        """Give the batch of some cases: their rows, and all else that `advance_batch` needs."""
         rows = self._rows[run_of]
         own = rows.view(np.int64)[:, fields.OWN_WHOLE : fields.OWN_WHOLE + fields.WHOLES]
         both = [pieces_of(motion) for motion in motions]
@@ -229,7 +235,7 @@ class _Rows:
 def _scratch(
     equations: BoundEquations, there: Places, memory: int
 ) -> tuple[Output, EventTable, Workspace]:
-    """Give room for a single run: no outputs, events that are not kept, a step."""
+    """Give scratch for a single run: no outputs, events that are not kept, a step."""
     width = there.first - there.state
     output = Output(np.empty((0, width)), np.empty(0, dtype=np.int64), np.empty((0, 2)), NO_STEPS)
     events = EventTable(
@@ -243,7 +249,7 @@ def _scratch(
 
 
 def _stacked(pieces: Sequence[Matrix], motion_of: Whole) -> tuple[Matrix, Whole, Whole]:
-    """Put polynomials of motions one below the other; give first row and count of each case."""
+    """Join polynomials of motions, one below the other; give first row and count of each case."""
     terms = max(one.shape[1] for one in pieces)
     counts = np.array([len(one) for one in pieces], dtype=np.int64)
     # -0 + x is x, whatever the sign of x

@@ -2,8 +2,8 @@
 
 The loops over lanes hold nothing but arithmetic on one array, so that they are compiled to
 instructions for several lanes at once. A lane does what :func:`rockframe.solve.march.march`
-does in a quiet step, in the same order, to the last bit. A step that is not quiet is not
-taken: the lane asks for the driver of single runs.
+does in a quiet step (one without event, reversal beyond the peaks or sliding), in the same order,
+to the last bit. A step that is not quiet is not accepted: the driver of single runs makes it.
 """
 
 import math
@@ -65,7 +65,7 @@ def slides(system: Equations, room: Vector, lane: int) -> bool:
 
 @inlined
 def is_quiet(system: Equations, room: Vector, lane: int) -> bool:
-    """Whether nothing happens in a lane's step but motion; its guards are written."""
+    """Whether a lane's step is quiet; writes the guards at its end."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
     clock, counters = lane_of(room, fields.CLOCK, lane), lane_of(whole, fields.COUNTERS, lane)
@@ -84,14 +84,14 @@ def is_quiet(system: Equations, room: Vector, lane: int) -> bool:
 
 @inlined
 def is_spent(room: Vector, lane: int) -> bool:
-    """Whether a lane has made all the steps that it may make."""
+    """Whether a lane has made all the steps that its run may make."""
     counters = lane_of(as_integers(room), fields.COUNTERS, lane)
     return counters[at.STEPS] + counters[at.REJECTED] >= counters[at.MAX_STEPS]
 
 
 @inlined
 def account_for(system: Equations, room: Vector, lane: int) -> None:
-    """Write what a step that is taken changes in the account of its run, but the next step."""
+    """Write the clock of a lane's run after its step, but for the length of the next step."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
     clock = lane_of(room, fields.CLOCK, lane)
@@ -127,10 +127,10 @@ def take_steps(lanes: int, room: Vector, there: Places) -> None:
 
 @inlined
 def take_step_if_quiet(system: Equations, room: Vector, lane: int) -> None:
-    """Make the end of a step the start of the next one where it is taken.
+    """Make the end of a step the start of the next one in a lane where it is accepted.
 
-    Bit by bit: numbers that are written under a condition take their time on processors
-    without registers for conditions.
+    By bitwise operations: writing under a condition is slow on processors without mask
+    registers.
     """
     there, whole = places_of(system), as_integers(room)
     taken = lane_of(whole, fields.OWN_WHOLE, lane)[fields.TAKEN]
@@ -156,7 +156,7 @@ def choose_step(room: Vector, lane: int) -> None:
 
 @inlined
 def make_step(scheme: FixedSteps, system: Equations, room: Vector, lane: int) -> bool:
-    """Take one lane to the end of its step; give whether that ended in numbers."""
+    """Make the step of one lane; give whether its end is finite."""
     there = places_of(system)
     own, whole = lane_of(room, fields.OWN, lane), as_integers(room)
     mode = system.without_sliding(lane_of(whole, fields.COUNTERS, lane)[at.MODE])
@@ -173,7 +173,7 @@ def make_step(scheme: FixedSteps, system: Equations, room: Vector, lane: int) ->
 
 @inlined
 def account_for_rest(system: Equations, room: Vector, lane: int) -> None:
-    """Write what a step changes in the account of its run, with what is left of the sub-step."""
+    """Write the clock of a lane's run after its step of fixed length."""
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
     h = lane_of(room, fields.OWN, lane)[fields.STEP]
     new = lane_of(room, places_of(system).clock, lane)
@@ -186,7 +186,7 @@ def step_lanes(
     system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
-    """Take all lanes that are at the end of an interval to the next, and make a step in all."""
+    """Move lanes at the end of an interval to the next, then make a step of fixed length in all."""
     return step_lanes_in(FixedSteps(math.inf), system_of, lanes, room, pieces_x, pieces_y)
 
 
@@ -195,7 +195,7 @@ def step_lanes_by_rates(
     system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
-    """Do so with equations that give powers at any rates."""
+    """Do what :func:`step_lanes` does, for equations that give powers apart."""
     return step_lanes_in(FixedStepsByRates(math.inf), system_of, lanes, room, pieces_x, pieces_y)
 
 
@@ -204,7 +204,7 @@ def step_lanes_in(
     scheme: FixedSteps, system_of: Callable[[Vector], Equations], lanes: int, room: Vector,
     pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
-    """Take lanes so by a scheme; their longest steps stand in their rows."""
+    """Do what :func:`step_lanes` does, by a scheme; lanes hold their longest steps themselves."""
     widest_registers()
     if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
         return fields.SOME_WAIT
@@ -291,7 +291,7 @@ def evaluate_stages(
     system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix, s: int,
 ) -> None:  # fmt: skip
-    """Write the slopes of a stage in all lanes: the equations, which are compiled once."""
+    """Write the slopes of stage `s` in all lanes; not inlined, so that equations compile once."""
     there = places_of(system_of(lane_of(room, 0, 0)))
     system = system_of(lane_of(room, there.numbers, 0))
     slope = system.coordinates() + system.variables() + POWERS
@@ -308,7 +308,7 @@ def make_stage(
     system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix, weights: tuple[float, ...],
 ) -> None:  # fmt: skip
-    """Make the stage of some weights in all lanes."""
+    """Make the stage that follows from some weights in all lanes."""
     there = places_of(system_of(lane_of(room, 0, 0)))
     for lane in range(lanes):
         write_places(system_of(lane_of(room, there.numbers, lane)), room, lane, weights)
@@ -352,9 +352,9 @@ def end_step(system: Equations, room: Vector, lane: int) -> None:
 
 @inlined
 def judge(room: Vector, lane: int) -> int:
-    """Tell whether a lane's step is taken, refused or for the driver; give 0 if it is taken.
+    """Accept a lane's step, refuse it, or leave it to the driver; give 0 if it is accepted.
 
-    What slides is for the driver, whatever the error: lanes have not moved it as it moves.
+    Sliding is left to the driver, whatever the error: lanes compute their steps without it.
     """
     own = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
     accepted = lane_of(room, fields.CLOCK, lane)[at.EXCESS] <= 1.0
@@ -369,7 +369,7 @@ def judge(room: Vector, lane: int) -> int:
 
 @inlined
 def keep_sizes(system: Equations, room: Vector, lane: int) -> None:
-    """Raise the largest size so far of each variable, where the step is taken."""
+    """Raise the largest size so far of each element of the state, where the step is accepted."""
     there = places_of(system)
     taken = lane_of(as_integers(room), fields.OWN_WHOLE, lane)[fields.TAKEN] != 0
     new, reference = lane_of(room, there.new, lane), lane_of(room, there.reference, lane)
@@ -380,7 +380,7 @@ def keep_sizes(system: Equations, room: Vector, lane: int) -> None:
 
 @inlined
 def choose_next(room: Vector, lane: int, there: Places) -> int:
-    """Choose a lane's next step after one that is taken or refused; give whether it asks."""
+    """Choose a lane's next step after one accepted or refused; give 1 if the driver is needed."""
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
     whole = lane_of(as_integers(room), fields.OWN_WHOLE, lane)
     h, excess = lane_of(room, fields.OWN, lane)[fields.STEP], clock[at.EXCESS]
@@ -402,7 +402,7 @@ def step_lanes_by_tolerance(
     system_of: Callable[[Vector], Equations], lanes: int, room: Vector, pieces_x: ReadOnlyMatrix,
     pieces_y: ReadOnlyMatrix,
 ) -> int:  # fmt: skip
-    """Try a step in all lanes, see :func:`rockframe.solve.lanes.steps.step_lanes`."""
+    """Move lanes at the end of an interval to the next, then try a step by tolerance in all."""
     widest_registers()
     if enter_intervals(lanes, room, pieces_x, pieces_y) == 1:
         return fields.SOME_WAIT
@@ -445,7 +445,7 @@ def step_lanes_by_tolerance(
 
 
 def steps_in_lanes(system: Equations, *, fixed_steps: bool) -> Callable[..., int]:
-    """Give the function that steps lanes of a system."""
+    """Give the function that makes a step in all lanes, for a system and a kind of steps."""
     if not fixed_steps:
         return step_lanes_by_tolerance
     return step_lanes_by_rates if gives_powers(system) else step_lanes
