@@ -43,7 +43,7 @@ from rockframe.solve.equations import (
     runs_as_python,
     steps_as_machine_code,
 )
-from rockframe.solve.histories import Histories
+from rockframe.solve.outputs import OutputRows
 from rockframe.solve.schemes import STAGES
 from rockframe.solve.trajectory import Events, Steps, Trajectory, run_counts, steps_of
 from rockframe.solve.workspace import (
@@ -356,12 +356,12 @@ def integrate(
     memory, clock, counters = run.memory, run.clock, run.counters
     interval, exact = float(run.controls[at.TIME_STEP]), accuracy.rtol is not None
     pieces = pieces_of(motion)
-    histories = Histories(
+    rows = OutputRows(
         run.mode, run.state, counters,
         duration=duration, output_step=output_step, with_work=with_work,
     )  # fmt: skip
     if keep_steps and not with_work:
-        histories.expect_in_steps(pieces, interval)
+        rows.expect_in_steps(pieces, interval)
     tables = Tables(run, model, duration / interval if keep_steps else None, exact=exact)
     equations = equations_of(model.system, fixed_steps=not exact, with_work=with_work)
     workspace = make_workspace(equations, run.state, run.reference, run.limits)
@@ -373,24 +373,24 @@ def integrate(
         with waiting.counted(equations, clock):
             result = advance(
                 equations, run.tolerance, memory, pieces, progress,
-                histories.output(tables.steps), tables.events, workspace,
+                rows.output(tables.steps), tables.events, workspace,
             )  # fmt: skip
         if result not in (at.MORE_ROOM, at.PAUSED):
             break
         if not tables.make_room(counters):
-            histories.read_from_steps(tables.close(counters, complete=False))
+            rows.read_from_steps(tables.close(counters, complete=False))
     if not COMPILED or not runs_as_python(equations):  # else a warning has been given already
         say_slow(waiting.taken)
     steps = tables.close(counters) if keep_steps else None
     if steps is not None:
-        histories.read_from_steps(steps)
+        rows.read_from_steps(steps)
     events = tables.events_so_far(counters)
-    time = histories.end(events, clock, workspace.state, finished=result == at.COMPLETED)
+    time = rows.end(events, clock, workspace.state, finished=result == at.COMPLETED)
     return Trajectory(
         time=time,
-        other_state=histories.state,
-        mode=histories.mode,
-        work=histories.work,
+        other_state=rows.state,
+        mode=rows.mode,
+        work=rows.work,
         start_mode=run.mode,
         start_memory=run.start_memory,
         events=events,
@@ -401,7 +401,7 @@ def integrate(
         start_energy=float(clock[at.START_ENERGY]),
         as_python=runs_as_python(equations),
         steps=steps,
-        outputs_in_steps=histories.in_steps,
+        outputs_in_steps=rows.in_steps,
     )
 
 

@@ -96,6 +96,8 @@ def test_the_motion_beside_the_kinematics():
     assert 0.0 < min(moved) < max(moved) == 0.25
     assert check.passed["dynamic, no run beyond d_0"] is False
     assert check.passed["dynamic, SLV"] is False
+    for words in ("1 of 2 overturned: 0.6 m/s", "40 % of d_0", "60 % of d_0"):
+        assert words in str(check)
     gentle = rf.codes.circolare_2019(rf.System(WALL), PULSES["0.3 m/s"].scaled(0.5))
     assert gentle.passed["dynamic, SLV"]
     displacement = rf.response_spectrum(

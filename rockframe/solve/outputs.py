@@ -11,7 +11,7 @@ from rockframe.solve.trajectory import Events, Steps
 from rockframe.solve.workspace import Output, Pieces, StepTable
 
 
-class Histories:
+class OutputRows:
     """Rows of state, mode and work, one for each output time; none without an output step [s]."""
 
     def __init__(
