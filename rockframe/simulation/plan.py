@@ -338,7 +338,7 @@ def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> RunReque
         duration=duration,
         free_vibration=free_vibration,
         initial=initial,
-        accuracy=accuracy_of(accuracy, owner="simulate"),
+        accuracy=accuracy_of(accuracy),
         accuracy_name=str(accuracy) if isinstance(accuracy, str) else "own",
         output_step=output_step,
         histories=outputs is not None,

@@ -112,7 +112,7 @@ LEVELS = {
 }
 
 
-def accuracy_of(choice: "str | float | Accuracy", *, owner: str) -> Accuracy:
+def accuracy_of(choice: "str | float | Accuracy", *, owner: str = "simulate") -> Accuracy:
     """Give the settings that a user means by a named level, a tolerance or an `Accuracy`."""
     if isinstance(choice, Accuracy):
         return choice
