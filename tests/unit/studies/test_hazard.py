@@ -119,8 +119,9 @@ def test_bounds_are_the_rates_of_both_curves_of_the_band():
     assert found.annual_rate_lower_bound < found.annual_rate < found.annual_rate_upper_bound
 
 
-def test_points_integrate_a_lognormal_curve_as_its_closed_form():
-    x = np.geomspace(0.5, 60.0, 101)
+@pytest.mark.parametrize("known", [(0.5, 60.0), (4.0, 9.0)], ids=["whole", "its middle"])
+def test_points_integrate_a_lognormal_curve_as_its_closed_form(known):
+    x = np.geomspace(*known, 101)
     median, spread = 6.0, 0.45
     values = xr.DataArray(ndtr(np.log(x / median) / spread), dims="x", coords={"x": x})
     finely = hazard._finely(hazard.HazardCurve(VALUES * G, RATES))
@@ -212,6 +213,14 @@ def test_what_lies_beyond_the_table_is_told(curve):
         ({"intensity": (VALUES, "g_0")}, ComponentError, "a table of hazard has"),
         ({"intensity": (VALUES, "g_0"), "probability": RATES + 1, "years": 50}, ComponentError,
          "above 0 and below 1"),
+        ({"intensity": ([0.1], "g_0"), "rate": [1e-3]}, ComponentError, "two intensities or more"),
+        *(
+            ({"intensity": (values, "g_0"), "rate": rates}, ComponentError, "above zero rise")
+            for values, rates in (
+                ([0.0, 0.1], [1e-2, 1e-3]), ([0.2, 0.1], [1e-2, 1e-3]), ([0.1, 0.2], [1e-2, 0.0]),
+                ([0.1, 0.2], [np.inf, 1e-3]), ([0.1, 0.2], [1e-2, 1e-2]),
+            )
+        ),
         (np.exp, ComponentError, "needs between"),
         (3.0, ComponentError, "must be a table"),
     ],
@@ -219,6 +228,18 @@ def test_what_lies_beyond_the_table_is_told(curve):
 def test_what_is_no_hazard_is_refused(curve, given, error, words):
     with pytest.raises(error, match=words):
         rf.annual_rate(curve, given)
+
+
+@pytest.mark.parametrize("between", [["2 g_0", "1 g_0"], ["0 g_0", "1 g_0"], ["1 g_0"]])
+def test_the_ends_of_a_hazard_that_is_a_function_rise(curve, between):
+    with pytest.raises(ComponentError, match="two intensities that rise"):
+        rf.annual_rate(curve, lambda a: a**-2.0, between=between)
+
+
+def test_a_curve_of_two_intensities_will_do_and_its_return_period_is_told(curve):
+    table = {"intensity": ([0.02, 5.0], "g_0"), "rate": [8e-2, 1e-9]}
+    found = rf.annual_rate(curve, table)
+    assert f"a return period of {1.0 / found.annual_rate.item():.4g} years" in found.verdict
 
 
 def test_what_is_no_fragility_over_one_measure_is_refused(curve):
