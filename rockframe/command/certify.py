@@ -1,11 +1,13 @@
 """``rockframe certify``: how sure a verdict is."""
 
 import argparse
+from dataclasses import replace
 from textwrap import fill
 
 from rockframe.command.answer import Answer
 from rockframe.command.run import finished
 from rockframe.command.shared import RUN, Outputs, given_of, scene_from, simulated
+from rockframe.errors import ComponentError
 from rockframe.simulation.run_arguments import PROVED, Certification
 
 
@@ -13,15 +15,13 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Simulate, with all runs beside it, and say what they showed."""
     found = scene_from(arguments)
     outputs = Outputs(arguments, found.files, answer, output=RUN)
-    wanted = PROVED
-    if not arguments.proved:
-        wanted = Certification(**given_of(arguments, "nudge", "reach", "runs"))
+    wanted = _wanted(found.run.get("certify"), arguments)
     response = simulated(found, certify=wanted)
     answer.says("Verdict", response.attrs["verdict"])
-    kind = "proof" if arguments.proved else "certificate"
+    kind = "proof" if wanted == PROVED else "certificate"
     told = response.attrs[kind]
     answer.text(fill(f"{kind.capitalize()}: {told}", 100), **{kind: told})
-    if not arguments.proved:
+    if wanted != PROVED:
         sure = {"verdict_converged": "by finer means", "verdict_robust": "with nudged parameters"}
         for name, words in sure.items():
             answer.text(f"  the same {words}: {'yes' if bool(response[name]) else 'no'}")
@@ -30,3 +30,15 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.numbers(response)
     outputs.result(response)
     return 0 if finished(response) else 1
+
+
+def _wanted(of_file: object, arguments: argparse.Namespace) -> Certification | str:
+    """Give what is asked for: by the file, and by the options that go before it."""
+    typed = given_of(arguments, "nudge", "reach", "runs")
+    if arguments.proved and typed:
+        name, value = next(iter(typed.items()))
+        msg = f"--{name} {value:g} is of a certificate by further runs, which --proved replaces"
+        raise ComponentError(msg)
+    if arguments.proved or (of_file == PROVED and not typed):
+        return PROVED
+    return replace(of_file if isinstance(of_file, Certification) else Certification(), **typed)

@@ -14,7 +14,7 @@ from rockframe.command.shared import (
     table_kind,
 )
 from rockframe.command.streams import STREAM
-from rockframe.errors import FileError
+from rockframe.errors import FileError, RockframeWarning, warn
 from rockframe.motion import GroundMotion
 from rockframe.results.table import table
 from rockframe.suites import MotionSuite
@@ -124,6 +124,9 @@ def _write(
         values = table(motion.to_dataset(), "histories")
         outputs.write(path, _TABLE, "Motion", lambda part: values.to_csv(part))
     else:
+        if motion.si.vertical is not None:
+            words = "the vertical component is left out; a file ending in .nc or .csv has it"
+            warn(f"{path}: {words}", RockframeWarning)
         outputs.written_by(
             path, _ENDINGS[form], "Motion",
             lambda place: motion.to_at2(place, overwrite=arguments.overwrite),

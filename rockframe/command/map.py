@@ -14,6 +14,7 @@ from rockframe.command.shared import (
     analysed,
     analysis_kind,
     run_from,
+    store_from,
     system_words,
     taken_by,
     values_of,
@@ -28,6 +29,7 @@ from rockframe.studies import overturning_map
 _RESULT: Final = analysis_kind("a map of overturning", "impacts_before_overturning")
 _USUAL: Final = "sine_pulse"
 _AXES: Final = ("amplitude", "frequency")
+_KIND: Final = ("type", "constructor")
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
@@ -35,7 +37,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     found = read_scene(arguments.scene)
     outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {
-        "store": arguments.store,
+        "store": store_from(arguments),
         **taken_by(overturning_map, run_from(found.run, arguments)),
         "amplitude": values_of(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
         "frequency": values_of(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
@@ -63,7 +65,9 @@ def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
     motion = found.motion
     described = {} if motion is None else motion.to_dict()
     if name is None and set(_AXES) <= set(described):
-        return motion, str(described["constructor"]).replace("_", " ")
+        others = {key: value for key, value in described.items() if key not in (*_AXES, *_KIND)}
+        words = str(described["constructor"]).replace("_", " ")
+        return motion, ", ".join([words, *(f"{key}: {value:g}" for key, value in others.items())])
     name = name or _USUAL
     return getattr(GroundMotion, name), name.replace("_", " ")
 

@@ -12,6 +12,7 @@ from rockframe.command.shared import (
     given_of,
     refuse_of_record,
     run_from,
+    store_from,
     suite_from,
     taken_by,
     values_of,
@@ -42,8 +43,7 @@ def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
     if arguments.scales is not None:
         scales, _ = values_of(arguments.scales, "--scales", "0.25:4:0.25")
         given[AXES] = {**given.get(AXES, {}), SCALE: scales}
-    store = found.store if arguments.store is None else Path(arguments.store).expanduser()
-    return replace(found, arguments=given, store=store)
+    return replace(found, arguments=given, store=store_from(arguments) or found.store)
 
 
 def typed_intensity(arguments: argparse.Namespace, function: Callable[..., Any]) -> dict[str, Any]:

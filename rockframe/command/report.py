@@ -9,6 +9,7 @@ from typing import Any, Final
 import xarray as xr
 
 from rockframe.command.answer import Answer
+from rockframe.command.files.tables import arguments_of
 from rockframe.command.shared import Outputs, read_result
 from rockframe.command.streams import INPUT, STREAM
 from rockframe.command.typed_calls import CODES, called, check_of, target_from, values_by_name
@@ -38,7 +39,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     records = arguments.motions
     motions = None if records is None else read_suite(records[0] if len(records) == 1 else records)
     if arguments.case is not None:
-        dataset = _case_of(dataset, arguments, motions)
+        dataset, motions = _case_of(dataset, arguments, motions), None  # it has its own
     outputs = Outputs(arguments, [arguments.dataset], answer)
     outputs.written_by(
         path, ".html", "Report", lambda place: _write(dataset, place, arguments, motions)
@@ -54,15 +55,18 @@ def _write(
 ) -> None:
     motion = None if arguments.motion is None else GroundMotion.read(arguments.motion)
     target = None if arguments.target is None else target_from(arguments.target, "--target")
+    checks = _checks(dataset, arguments.check or (), motion or motions, target)
+    if checks and "motions_json" not in dataset.attrs:  # a run, which they check under others
+        motions = None
     report(
         dataset,
         place,
         title=arguments.title,
         units=values_by_name(arguments.units or (), "--units", "force=kN") or None,
         motion=motion,
-        motions=motions if "motions_json" in dataset.attrs else None,
+        motions=motions,
         target=target,
-        checks=_checks(dataset, arguments.check or (), motion or motions, target),
+        checks=checks,
         certify=not arguments.no_certificate,
         overwrite=arguments.overwrite,
     )
@@ -108,11 +112,15 @@ def _checks(
 
 def _case_of(dataset: xr.Dataset, arguments: argparse.Namespace, motions: object) -> xr.Dataset:
     """Simulate the case of a study that is asked for."""
-    pairs = [word.partition("=") for word in arguments.case or ()]
-    if "axes_json" not in dataset.attrs or not all(name and value for name, _, value in pairs):
-        words = f"found --case {' '.join(arguments.case)}; expected NAME=VALUE, of a study's axes"
+    if "axes_json" not in dataset.attrs:
+        words = f"found --case {' '.join(arguments.case)}; expected a study, which has axes"
         raise FileError(arguments.dataset, [(None, words)])
-    found = case(dataset, motions=motions, **{name: value for name, _, value in pairs})
+    values = values_by_name(arguments.case, "--case", "scale=2")
+    strange = [name for name in values if name in arguments_of(case)]
+    if strange:
+        words = f"--case: there is no axis {strange[0]!r}; records are given by --motions"
+        raise FileError(arguments.dataset, [(None, words)])
+    found = case(dataset, motions=motions, **values)
     again = found.simulate()
     again.encoding["source"] = str(Path(arguments.dataset).expanduser())
     return again

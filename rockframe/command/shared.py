@@ -2,6 +2,7 @@
 
 import argparse
 import csv
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -82,7 +83,10 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
         files += (Path(arguments.motion),)
     if moved and motion is None:
         raise FileError(arguments.scene, [(None, _NO_MOTION)])
-    if arguments.scale is not None and motion is not None:
+    if arguments.scale is not None:
+        if motion is None:
+            words = f"--scale {arguments.scale:g} multiplies a motion, and {_NO_MOTION}"
+            raise FileError(arguments.scene, [(None, words)])
         motion = motion.scaled(arguments.scale)
     return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
 
@@ -129,6 +133,14 @@ def given_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
     """Give the options that were typed, by their names."""
     given = {name: getattr(arguments, name) for name in names}
     return {name: value for name, value in given.items() if value is not None}
+
+
+def store_from(arguments: argparse.Namespace) -> Path | None:
+    """Give the folder of a store that was typed; an empty name would be the folder one is in."""
+    if arguments.store == "":
+        msg = "found no name of a folder after --store; expected one, such as --store kept"
+        raise ComponentError(msg)
+    return None if arguments.store is None else Path(arguments.store).expanduser()
 
 
 def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
@@ -354,9 +366,8 @@ def _accuracy(text: str) -> str | float:
     except ValueError:
         given = text
     try:
-        accuracy_of(given)
+        accuracy_of(given, owner="--accuracy")
     except SolverError as problem:
-        words = str(problem).replace(" or an Accuracy(...)", "").removeprefix("Accuracy: ")
-        msg = f"--accuracy: {words}"
-        raise ComponentError(msg) from problem
+        words = str(problem).replace(" or an Accuracy(...)", "")
+        raise ComponentError(re.sub("^Accuracy: ", "--accuracy: ", words)) from problem
     return given

@@ -11,9 +11,17 @@ from rockframe.command.answer import Answer
 from rockframe.command.files.studies import read_study
 from rockframe.command.main import INTERRUPTED
 from rockframe.command.run import FINISHED
-from rockframe.command.shared import STUDY, Outputs, analysed, printed, system_words, table_kind
+from rockframe.command.shared import (
+    STUDY,
+    Outputs,
+    analysed,
+    printed,
+    store_from,
+    system_words,
+    table_kind,
+)
 from rockframe.command.streams import tell
-from rockframe.errors import FileError, StudyError
+from rockframe.errors import StudyError
 from rockframe.results.table import table
 from rockframe.results.variables.runs import RunStatus
 from rockframe.studies import sweep
@@ -31,10 +39,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if arguments.output is None and found.output is not None:
         arguments.output = str(found.output)
     outputs = Outputs(arguments, found.files, answer, output=STUDY, csv=_TABLE)
-    if arguments.store == "":
-        words = "found no name of a folder after --store; expected one, such as --store kept"
-        raise FileError(arguments.study, [(None, words)])
-    store = found.store if arguments.store is None else Path(arguments.store).expanduser()
+    store = store_from(arguments) or found.store
     answer.subject("Scene", system_words(found.system))
     try:
         given = {"store": store, **found.arguments}

@@ -177,7 +177,7 @@ def tradeoff(
     if not given:
         msg = f"{_OWNER}: accuracies must be one or more, got {shown(accuracies)}"
         raise ComponentError(msg)
-    settings = {_label(accuracy): accuracy_of(accuracy) for accuracy in given}
+    settings = {_label(accuracy): accuracy_of(accuracy, owner=_OWNER) for accuracy in given}
     record = system.motion if motion is None else motion
 
     def plan(scene: System, accuracy: Accuracy) -> Plan:

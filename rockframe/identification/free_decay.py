@@ -126,7 +126,7 @@ def fit_free_decay(
     probability = to_ratio(
         confidence, owner=_OWNER, name="confidence", condition=_CONFIDENCE, example="0.95"
     )
-    settings = accuracy_of(accuracy)
+    settings = accuracy_of(accuracy, owner=_OWNER)
     trials = TrialSystems(system, names, _OWNER)
     data = read_history(measured, _OWNER) if peaks is None else read_peaks(peaks, _OWNER)
     check_below_overturning(data, system.setting.overturning_angles, _OWNER)

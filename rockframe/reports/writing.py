@@ -138,7 +138,14 @@ def report(
     read = [source] if source else []
     # before the certificate, which takes a while
     checked_path(path, page.KIND, overwrite=overwrite, read=read)
-    if _is_run(dataset) and "axes_json" in dataset.attrs:  # picked out of a sweep
+    run, picked = _is_run(dataset), "axes_json" in dataset.attrs  # out of a sweep
+    if motion is not None and not run:
+        msg = f"{_OWNER}: found motion=, which is that of a run; those of a study are motions="
+        raise ComponentError(msg)
+    if motions is not None and run and not picked and not aim_of(None, motions, _OWNER):
+        msg = f"{_OWNER}: found motions=, which are those of a study; that of a run is motion="
+        raise ComponentError(msg)
+    if run and picked:
         dataset = studies.run_of_case(dataset, motions if motion is None else motion)
         motion = None  # the run has its own, which is scaled
     if _is_run(dataset):

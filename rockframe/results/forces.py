@@ -134,7 +134,7 @@ def residuals(last: Values, load: BaseLoad) -> dict[str, float]:
     }
     if "slip" in last:
         left["residual_displacement"] = float(last["horizontal_displacement"][0])
-    return left
+    return {name: value + 0.0 for name, value in left.items()}  # no negative zero
 
 
 def _settlement(values: Values, load: BaseLoad) -> Array:

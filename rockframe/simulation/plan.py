@@ -40,7 +40,7 @@ def listed(outputs: object) -> list[object]:
     """Give what the argument ``outputs`` names, one by one."""
     if outputs is None:
         return []
-    if isinstance(outputs, Iterable) and not isinstance(outputs, str):
+    if isinstance(outputs, Iterable) and not isinstance(outputs, str | Mapping):
         return list(cast("Iterable[object]", outputs))
     return [outputs]
 

@@ -113,7 +113,7 @@ LEVELS = {
 }
 
 
-def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
+def accuracy_of(choice: "str | float | Accuracy", *, owner: str = "simulate") -> Accuracy:
     """Give the settings of a named level or of a tolerance, or those given."""
     if isinstance(choice, Accuracy):
         return choice
@@ -125,7 +125,7 @@ def accuracy_of(choice: "str | float | Accuracy") -> Accuracy:
         names = ", ".join(repr(str(level)) for level in AccuracyLevel)
         known = f"one of {names}, a tolerance such as 1e-6 or an Accuracy(...)"
         near = nearest(choice, map(str, AccuracyLevel))
-        msg = f"accuracy must be {known}, got {shown(choice)}{near}"
+        msg = f"{owner}: accuracy must be {known}, got {shown(choice)}{near}"
         if isinstance(choice, str) and choice == "screen":
             msg += (
                 "; sweeps, and analyses made of them, screen, such as "

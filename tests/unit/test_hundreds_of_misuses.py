@@ -187,6 +187,9 @@ NAMES = {
 }
 
 VALUES = {
+    "simulate(outputs={'acceleration': False})": "outputs has no {'acceleration': False}",
+    "simulate(accuracy='faast')": "simulate: accuracy must be one of",
+    "sweep(store='')": "store must be the path of a folder, got ''",
     # parts
     "block(width=0.8)": "width needs a length with a unit, got 0.8",
     "block(width='0.8 s')": "width needs a length in a unit such as m, got '0.8 s'",

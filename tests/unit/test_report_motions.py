@@ -111,6 +111,11 @@ def test_a_target_is_given_in_three_ways(runs, suite, tmp_path):
         rf.report(runs, path, motions=3.5)
     with pytest.raises(ComponentError, match="no motion with the samples of 'record 9'"):
         rf.report(runs, path, motions=[record(9)])
+    with pytest.raises(ComponentError, match="those of a study are motions="):
+        rf.report(runs, path, motion=record(9))
+    run = BLOCK.simulate(record(9))
+    with pytest.raises(ComponentError, match="that of a run is motion="):
+        rf.report(run, path, motions=[record(9)])
 
 
 def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypatch):

@@ -396,7 +396,7 @@ def stored_dataset(kept: Store, *, lazy: bool) -> xr.Dataset:
 
 def folder_of(path: object, *, owner: str = "") -> Path:
     """Read the argument ``store``, of a function that is named in messages, if there is one."""
-    if isinstance(path, str | PathLike):
+    if isinstance(path, PathLike) or (isinstance(path, str) and path):
         return Path(path)  # pyright: ignore[reportUnknownArgumentType]
     words = f"store must be the path of a folder, got {shown(path)}"
     raise StudyError(f"{owner}: {words}" if owner else words)

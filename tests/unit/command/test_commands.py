@@ -1,6 +1,7 @@
 """The commands: what they print and write, and their exit codes."""
 
 import itertools
+import json
 import re
 import shlex
 import shutil
@@ -444,3 +445,42 @@ def test_it_runs_as_a_module():
         capture_output=True, text=True, check=True, timeout=60,
     )  # fmt: skip
     assert done.stdout.strip() == f"rockframe {rf.__version__}"
+
+
+def test_a_certificate_is_what_the_file_asks_for(typed, folder):
+    wanted = "\n[run.certify]\nnudge = 0.02\nruns = 60\n"
+    (folder / "far.toml").write_text(TEMPLATES["block"] + wanted)
+    code, told, _ = typed("certify", "far.toml")
+    assert (code, "up to 2 %" in " ".join(told.split())) == (0, True)
+    code, told, _ = typed("certify", "far.toml", "--nudge", "0.005", "--json")
+    answer = json.loads(told)
+    assert "up to 0.5 %" in answer["certificate"]
+    assert answer["certificate_runs"] <= 60
+
+
+def test_a_report_of_a_case_names_each_axis_once(typed, folder):
+    (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1, 2]\n')
+    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    given = ("report", "runs.nc", "--no-certificate", "--case")
+    code, _, problem = typed(*given, "scale=1", "scale=2")
+    assert (code, "--case: found scale twice" in problem) == (2, True)
+    code, _, problem = typed(*given, "scale=1", "motions=2")
+    assert (code, "there is no axis 'motions'" in problem) == (2, True)
+    code, _, problem = typed("report", "runs.nc", "--motion", "record.AT2")
+    assert (code, "those of a study are motions=" in problem) == (2, True)
+
+
+def test_answers_in_json_have_no_negative_zero(typed):
+    code, told, _ = typed("run", "scene.toml", "--scale", "0", "--json")
+    assert code == 0
+    assert "-0.0," not in told
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_vertical_component_that_a_file_has_no_place_for_is_told(typed):
+    pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "2 Hz")
+    pulse.with_vertical(pulse.scaled(0.5)).to_dataset().to_netcdf("both.nc")
+    code, _, said = typed("convert", "both.nc", "-o", "both.AT2")
+    assert (code, "the vertical component is left out" in said) == (0, True)
+    code, _, said = typed("convert", "both.nc", "-o", "both.csv")
+    assert (code, said) == (0, "")

@@ -32,6 +32,13 @@ WORDS = {
 }
 VALUES = {
     # of options
+    "run still.toml --scale 2": "--scale 2 multiplies a motion, and there is no motion",
+    "animate still.toml --scale 2 -o x.html": "--scale 2 multiplies a motion",
+    "certify scene.toml --proved --nudge 0.01": "which --proved replaces",
+    "fragility scene.toml record.AT2 --store ''": "no name of a folder after --store",
+    "ida scene.toml record.AT2 --store ''": "no name of a folder after --store",
+    "map scene.toml --amplitude '1 g' --frequency '1 Hz' --store ''": "no name of a folder",
+    "plot run.nc -o x.png --units force=kN force=N": "--units: found force twice",
     "run scene.toml --scale half": "expected a number such as 1.5, got 'half'",
     "run scene.toml --accuracy standrad": "was 'standard' meant?",
     "run scene.toml --free-vibration 5": "--free-vibration '20 s'",
@@ -73,6 +80,8 @@ FILES = {
     "critical scene.toml -o run.nc": "not the result of a critical scale that rockframe wrote",
     "critical scene.toml --picture x.txt": "ends in .png or .svg or .pdf",
     "run scene.toml -o x.nc -m scene.toml": "no format recognises",
+    "report run.nc --motions record.AT2": "found motions=, which are those of a study",
+    "report run.nc --case scale=1": "expected a study, which has axes",
     "plot run.nc -o scene.toml": "ends in .png or .svg or .pdf",
     "run scene.toml -o shut/x.nc": "shut",
 }

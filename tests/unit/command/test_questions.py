@@ -131,6 +131,7 @@ def test_a_map_tells_the_boundaries_at_each_frequency(typed):
     )  # fmt: skip
     first = float(expected.amplitude_above.isel(frequency=0, boundary=0))
     assert f"{first:.4g} overturns after" in told
+    assert "Pulse:   sine pulse, cycles: 1\n" in told
     assert "none: stands throughout" in told
     with xr.open_dataset("m.nc") as kept:
         assert kept.amplitude_above.equals(expected.amplitude_above)
