@@ -12,7 +12,7 @@ from rockframe.components.block_numbers import BlockSI
 from rockframe.components.parameters import SIValues
 from rockframe.components.registry import component_from_dict
 from rockframe.errors import ComponentError, shown, unexpected_argument
-from rockframe.units import LENGTH, QuantityLike, to_si
+from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, to_si
 
 MOST_BODIES: Final = 12
 """Bodies of a stack: of more, contacts have more combinations than can be numbered."""
@@ -77,8 +77,10 @@ class Stack(Component):
     def _keep(self, bodies: Sequence[Any], interfaces: object, offsets: object) -> None:
         """Check what is given, and keep it."""
         interfaces = several(interfaces, owner="Stack", name="interfaces", of="bases")
-        if offsets is not None:
-            offsets = several(offsets, owner="Stack", name="offsets", of="lengths")
+        beside = None if offsets is None else [
+            to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in
+            enumerate(several(offsets, owner="Stack", name="offsets", of="lengths"))
+        ]  # fmt: skip
         faults = [
             f"a body of a stack is a Block, got {shown(one)}"
             for one in bodies
@@ -96,17 +98,15 @@ class Stack(Component):
                 f"{len(bodies)} bodies have {max(len(bodies) - 1, 0)} interfaces between them, got "
                 f"{len(interfaces)}; what the lowest body stands on is a part of the system"
             )
-        if offsets is not None and len(offsets) != len(bodies) - 1:
+        if beside is not None and len(beside) != len(bodies) - 1:
             faults.append(
                 f"offsets are those of all bodies but the lowest: {max(len(bodies) - 1, 0)}, got "
-                f"{len(offsets)}"
+                f"{len(beside)}"
             )
         if faults:
             msg = f"Stack: {'; '.join(faults)}"
             raise ComponentError(msg)
-        beside = [0.0] * (len(bodies) - 1) if offsets is None else [
-            to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in enumerate(offsets)
-        ]  # fmt: skip
+        beside = [0.0] * (len(bodies) - 1) if beside is None else beside
         _refuse_overhang([one.si for one in bodies], beside)
         given = SIValues(bodies=tuple(bodies), interfaces=tuple(interfaces), offsets=tuple(beside))
         object.__setattr__(self, "given", given)
@@ -125,10 +125,9 @@ class Stack(Component):
         return found
 
     @property
-    def offsets(self) -> tuple[float, ...]:
+    def offsets(self) -> tuple[Quantity, ...]:
         """How far each body but the lowest stands to the right of the body below [m]."""
-        found: tuple[float, ...] = self.given.offsets
-        return found
+        return tuple(quantity(one, LENGTH) for one in self.given.offsets)
 
     def cautions(self) -> list[str]:
         """Say what is unusual about bodies and interfaces.
@@ -215,15 +214,15 @@ class Stack(Component):
         return {
             "bodies": [one.to_dict() for one in self.bodies],
             "interfaces": [one.to_dict() for one in self.interfaces],
-            "offsets": [f"{one!r} m" for one in self.offsets],
+            "offsets": [f"{one!r} m" for one in self.given.offsets],
         }
 
     def __hash__(self) -> int:
-        return hash((type(self), self.bodies, self.interfaces, self.offsets))
+        return hash((type(self), self.bodies, self.interfaces, self.given.offsets))
 
     def __repr__(self) -> str:
         bodies = ", ".join(map(repr, self.bodies))
-        offsets = f", offsets={self._arguments()['offsets']}" if any(self.offsets) else ""
+        offsets = f", offsets={self._arguments()['offsets']}" if any(self.given.offsets) else ""
         return f"Stack({bodies}, interfaces={list(self.interfaces)!r}{offsets})"
 
     def _repr_html_(self) -> str:

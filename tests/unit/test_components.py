@@ -1,6 +1,7 @@
 """Components as values: what they hold, what they refuse, the way to text and back."""
 
 import copy
+import inspect
 import itertools
 import json
 import math
@@ -14,7 +15,8 @@ from hypothesis import strategies as st
 from overdamping import overdamped
 
 import rockframe as rf
-from rockframe.components import component_from_dict
+from rockframe.components import Link, PointLink, component_from_dict
+from rockframe.components.registry import kinds
 from rockframe.errors import AssemblyError, ComponentError, ModelWarning, RockframeError, UnitsError
 
 pytestmark = pytest.mark.unit
@@ -124,6 +126,43 @@ class TestEveryComponent:
     def test_it_says_what_it_is_for(self, component):
         assert component.noun
         assert type(component).__doc__
+
+
+POINTS = {"on": ("-1 m", "3 m"), "to": ("-2 m", "3 m")}
+GIVEN = (
+    *EXAMPLES.values(),
+    rf.Block(**SIZE, centre_of_mass=("3 m", "5 cm")),
+    rf.FrameEquivalent(**SIZE, shape_factor=2.5),
+    rf.CushionCap(height="1 m", mass="5 t"),
+    rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.1, friction=0.5),
+    rf.RearWall(side="right", stiffness="2 MN/m", damping="1 kN*s/m", gap="5 mm", height="3 m"),
+    rf.Restrainer(**POINTS, stiffness="2 MN/m", slack="5 mm", strength="20 kN", name="upper"),
+    rf.Tendon(stiffness="5 MN/m", preload="200 kN", at="0.1 m", depth="1 m"),
+    rf.Load(at=("0 m", "3 m"), vertical="1 kN", horizontal="2 kN"),
+    rf.Member(name="x", mass="1 t", x="0 m", y="2 m", width="1 m", height="1 m"),
+    rf.RegularFrame(
+        storeys=3, width="4 m", height="9 m", column_width="0.4 m", beam_height="0.4 m",
+        beam_width="0.3 m", density="2500 kg/m^3",
+    ),
+    rf.RockingFrame(rf.Block(**SIZE), columns=3, beam_mass="9 t", spacing="6 m"),
+    rf.Stack(rf.Block(**SIZE), rf.Block(**SIZE).replace(width="3 m"),
+             interfaces=[rf.RigidGround()], offsets=["2 cm"]),
+)  # fmt: skip
+
+
+def test_every_kind_of_component_is_among_those_that_are_looked_at():
+    own = {kind for kind in kinds().values() if kind.__module__.startswith("rockframe.components")}
+    assert own - {Link, PointLink} == {type(one) for one in GIVEN}
+
+
+@pytest.mark.filterwarnings("ignore:.*left as it was:rockframe.errors.ModelWarning")
+@pytest.mark.parametrize("given", GIVEN, ids=lambda one: type(one).__name__)
+def test_a_component_takes_back_what_it_gives(given):
+    for name in inspect.signature(type(given)).parameters:
+        value = getattr(given, name)
+        if value is not None:
+            again = given.replace(**{name: value})
+            assert repr(getattr(again, name)) == repr(value)
 
 
 # the way to text and back ----------------------------------------------------------------

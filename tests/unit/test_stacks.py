@@ -11,7 +11,7 @@ from rockframe.components import stack
 from rockframe.dynamics.chain import rows
 from rockframe.dynamics.events import ContactState
 from rockframe.dynamics.protocol import MOST_MODES
-from rockframe.errors import AssemblyError, ComponentError
+from rockframe.errors import AssemblyError, ComponentError, UnitsError
 from rockframe.simulation.certify.perturbations import parameters
 from rockframe.system.assembly import assemble
 
@@ -37,7 +37,9 @@ def test_a_stack_gives_back_what_it_was_made_of():
     made = rf.Stack(STATUE, PLINTH, interfaces=[JOINT], offsets=["2 cm"])
     assert made.bodies == (STATUE, PLINTH)
     assert made.interfaces == (JOINT,)
-    assert made.offsets == (0.02,)
+    assert [one.to("cm").magnitude for one in made.offsets] == [2.0]
+    with pytest.raises(UnitsError, match=r"offsets\[0\] needs a length with a unit"):
+        made.replace(offsets=([0.1], "m"))
     assert rf.Stack.from_dict(made.to_dict()) == made
     assert pickle.loads(pickle.dumps(made)) == made  # noqa: S301
     assert made != STACK
