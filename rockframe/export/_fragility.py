@@ -16,6 +16,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.proposals import hinted
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
+from rockframe.studies.fragility.words import in_own_units
 from rockframe.studies.intensities import PERIOD_OF, SHORT
 from rockframe.units import POSITIVE, to_ratio
 from rockframe.version import __version__
@@ -243,7 +244,8 @@ def to_openquake(
         function = Tree.SubElement(
             model, "fragilityFunction", id=taxonomy, format="continuous", shape="logncdf"
         )
-        levels = fragilities[taxonomy][measure].to_numpy() / size
+        levels = in_own_units(fragilities[taxonomy], measure, owner=_OPENQUAKE)[measure] / size
+        levels = levels.to_numpy()
         limit = float(levels[0]) if limit_given is None else limit_given
         # what lies below minIML counts as minIML, so that the limit must lie above
         least = min(float(levels[0]), 0.5 * limit)
@@ -277,6 +279,7 @@ def _fits(
             "rf.fragility"
         )
         raise SchemaError(msg)
+    dataset = in_own_units(dataset, known[0], owner=owner)
     several = dataset if LIMIT_STATE[0] in dataset.dims else dataset.expand_dims(*LIMIT_STATE)
     structures = [str(dim) for dim in several["fragility_status"].dims if dim not in LIMIT_STATE]
     wide = [dim for dim in structures if several.sizes[dim] > 1]

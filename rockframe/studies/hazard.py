@@ -16,7 +16,7 @@ from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
-from rockframe.studies.fragility.words import measures_of
+from rockframe.studies.fragility.words import in_own_units, measures_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.studies.sweeps.axes import free_values
 from rockframe.units import POSITIVE, Unit, check_own_unit, to_ratio
@@ -127,6 +127,7 @@ def annual_rate(
     """
     given = checked_dataset(fragility, owner=_OWNER)
     measure = _measure(given)
+    given = in_own_units(given, measure, owner=_OWNER)
     curve = read_hazard(hazard, given[measure], between)
     status = given["fragility_status"]
     dims = tuple(map(str, status.dims))

@@ -8,11 +8,13 @@ import numpy as np
 import xarray as xr
 
 from rockframe.results.outcome import Generic
+from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.analyses import LIMIT_STATE, FragilityStatus
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.fragility.likelihood import Bands
 from rockframe.studies.intensities import PERIOD_OF, measure_words
+from rockframe.studies.sweeps.axes import in_unit
 
 POOLED: Final = "pooled"
 """Attribute that tells which structures were taken for one."""
@@ -107,6 +109,22 @@ def measures_of(fragility: xr.Dataset) -> list[str]:
     """Give the intensity measures of a fragility."""
     status = fragility["fragility_status"].dims
     return [str(dim) for dim in fragility["exceedance_probability"].dims if dim not in status]
+
+
+def in_own_units(fragility: xr.Dataset, measure: str, *, owner: str) -> xr.Dataset:
+    """Give intensities in the unit of their measure, where a user has put them into another."""
+    if measure not in SCHEMA:  # one of the user's own
+        return fragility
+    unit = str(SCHEMA[measure].unit)
+    names = [
+        name for name in map(str, fragility.variables)
+        if name in (measure, "stripe_intensity") or name.startswith("median_intensity")
+    ]  # fmt: skip
+    found = {name: in_unit(fragility[name], unit, owner=owner) for name in names}
+    labels = {name: one for name, one in found.items() if name in fragility.coords}
+    return fragility.assign_coords(labels).assign({
+        name: one for name, one in found.items() if name not in labels
+    })  # fmt: skip
 
 
 def _fit(last: xr.Dataset, status: Generic, fitted: Generic) -> str:

@@ -72,6 +72,36 @@ def test_a_table_is_integrated_as_quadrature_does(curve):
     assert found.outside_trials_share.item() == pytest.approx(outside, abs=2e-3)
 
 
+def in_g(curve):
+    """Put a fragility over accelerations in g."""
+    names = [
+        str(name) for name, one in curve.variables.items() if one.attrs.get("units") == "m s^-2"
+    ]
+    found = curve.copy(deep=True)
+    for name in names:
+        found[name] = (curve[name] / G).assign_attrs(curve[name].attrs, units="g_0")
+    return found
+
+
+def test_a_fragility_in_other_units_has_the_same_rate(curve):
+    rate = rf.annual_rate(curve, TABLE).annual_rate.item()
+    other = in_g(curve)
+    name = "peak_ground_acceleration"
+    for one in (other, curve.assign_coords({name: other[name]})):  # or what is told along it alone
+        assert rf.annual_rate(one, TABLE).annual_rate.item() == pytest.approx(rate)
+
+
+def test_a_fragility_in_other_units_is_the_same_to_other_programs(curve, tmp_path):
+    other = in_g(curve)
+    told = rf.export.to_pelicun(other, "x")["LS1-Theta_0"].item()
+    assert told == pytest.approx(curve.median_intensity.item() / G, rel=1e-12)
+    files = [
+        rf.export.to_openquake({"x": one}, tmp_path / f"{k}.xml").read_text()
+        for k, one in enumerate((curve, other))
+    ]
+    assert files[0] == files[1]
+
+
 def test_bounds_are_the_rates_of_both_curves_of_the_band():
     levels = np.geomspace(0.03, 4.0, 12)
     exceeded = [0, 0, 0, 0, 1, 5, 17, 28, 37, 39, 40, 40]
