@@ -102,10 +102,6 @@ def prove(
     >>> rf.prove(system, pulse).verdict, rf.prove(system, pulse, scale=1.2).verdict
     ('safe for ever', 'overturns')
     """
-    assembly = getattr(system, "assembly", None)
-    if not isinstance(assembly, Assembly):
-        msg = f"{_OWNER}: system must be a System, got {shown(system)}"
-        raise ComponentError(msg)
     factor = to_ratio(scale, owner=_OWNER, name="scale", condition=POSITIVE, example="1.5")
     ratios = {"restitution_tolerance": restitution_tolerance, "scale_tolerance": scale_tolerance}
     restitution, factors = (
@@ -117,10 +113,7 @@ def prove(
     )
     most = whole_number(parts, owner=_OWNER, name="parts", lowest=1)
     within = Tolerances(restitution, factors, angle, most)
-    still = motion is None and assembly.parts.motion is None
-    plan = plan_run(
-        assembly, motion, initial=initial, outputs=None, duration="1 s" if still else None
-    )
+    assembly, plan = _planned(system, motion, initial, _OWNER)
     return proof_of(assembly, plan, scale=factor, within=within)
 
 
@@ -200,11 +193,12 @@ def prove_critical_scale(
     """
     share = to_ratio(width, owner=_CRITICAL, name="width", condition=_WIDTH)
     scale = to_ratio(start, owner=_CRITICAL, name="start", condition=POSITIVE)
+    assembly, plan = _planned(system, motion, initial, _CRITICAL)
     undecided = 0
 
     def overturns(at: float) -> bool | None:
         nonlocal undecided
-        found = prove(system, motion, scale=at, initial=initial).overturns
+        found = proof_of(assembly, plan, scale=at, owner=_CRITICAL).overturns
         undecided += found is None
         return found
 
@@ -229,6 +223,19 @@ def prove_critical_scale(
         else:
             break
     return ProvedBracket(ends[False], ends[True], undecided)
+
+
+def _planned(
+    system: object, motion: GroundMotion | None, initial: InitialState | None, owner: str
+) -> tuple[Assembly, Plan]:
+    """Plan the run of which something is to be proved."""
+    assembly = getattr(system, "assembly", None)
+    if not isinstance(assembly, Assembly):
+        msg = f"{owner}: system must be a System, got {shown(system)}"
+        raise ComponentError(msg)
+    still = motion is None and assembly.parts.motion is None
+    length = "1 s" if still else None
+    return assembly, plan_run(assembly, motion, initial=initial, outputs=None, duration=length)
 
 
 def proof_of(

@@ -308,7 +308,8 @@ def cloud_of(
     known = ~np.isnan(fell) & (along > 0.0) & np.isfinite(along) & ~np.isnan(response)
     if known.sum() < _FEWEST:
         count = int(known.sum())
-        msg = f"{owner}: {count} runs have a verdict and an intensity; {_FEWEST} are needed"
+        msg = f"{owner}: {count} run{'s have' if count != 1 else ' has'} a verdict and an "
+        msg += f"intensity; {_FEWEST} are needed"
         raise StudyError(msg)
     used = motion_numbers(overturns(runs))[known]
     made = Cloud.of(np.log(along[known]), response[known])

@@ -143,7 +143,7 @@ def fractile_curves(
     return found.assign_attrs(
         {**told_of_system(runs), "intensity": name, **told,
          "response": response if label is None else f"{response} {label}",
-         "verdict": _sentence(lines, low, high, measure)}
+         "verdict": _sentence(lines, low, high, measure) + _left_out(lines, runs)}
     )  # fmt: skip
 
 
@@ -320,3 +320,13 @@ def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataA
             of_them = "half of them" if len(lines) > 1 else "first"
             return f"{text}, {of_them} at {begin:.4g}{unit}."
     return f"{text}."
+
+
+def _left_out(lines: Sequence[_Line], runs: xr.Dataset) -> str:
+    """Tell how many runs no line has."""
+    every = overturns(runs).size
+    lacking = every - sum(len(one.along) for one in lines)
+    if not lacking:
+        return ""
+    are = "is" if lacking == 1 else "are"
+    return f" {lacking} of {every} runs {are} left out, without a verdict, intensity or response."

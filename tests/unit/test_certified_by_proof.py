@@ -97,6 +97,12 @@ def test_what_cannot_be_proved_is_refused_before_the_run(system):
     )
     with pytest.raises(ComponentError, match="simulate: proofs are of a Block that rocks"):
         wall.simulate(pulse(3.0), certify="proved")
+    with pytest.raises(ComponentError, match=r"^prove: proofs are of a Block that rocks"):
+        rf.prove(wall, pulse(3.0))
+    with pytest.raises(ComponentError, match=r"^prove_critical_scale: proofs are of a Block that"):
+        rf.prove_critical_scale(wall, pulse(3.0))
+    with pytest.raises(ComponentError, match=r"^prove_critical_scale: system must be a System"):
+        rf.prove_critical_scale(pulse(3.0))
 
 
 def test_the_report_and_the_command_say_it(system, tmp_path, capsys):

@@ -211,6 +211,8 @@ def test_what_cannot_be_is_refused(base, options, error, words):
         rf.cloud_analysis(made(base), **{"intensity": "strength", **options})
     with pytest.raises(StudyError, match="3 runs have a verdict"):
         rf.cloud_analysis(made(base).isel(motion=slice(3)), "strength")
+    with pytest.raises(StudyError, match="1 run has a verdict"):
+        rf.cloud_analysis(made(base).isel(motion=slice(1)), "strength")
 
 
 def test_runs_that_slide_without_rocking_are_not_said_to_stay():

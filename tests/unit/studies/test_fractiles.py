@@ -142,3 +142,12 @@ def test_a_range_of_overturning_between_two_points_of_the_curve_counts():
     )  # fmt: skip
     capacity = float(runs.capacity_scale.sel(limit_state="overturning").squeeze())
     assert f"first at {capacity:.4g}" in rf.fractile_curves(runs).attrs["verdict"]
+
+
+def test_runs_that_are_left_out_are_told():
+    runs = made([[0.1, 0.2, 0.3, 0.4, 0.5]] * 2, np.zeros((2, 5), dtype=bool))
+    whole = rf.fractile_curves(runs).attrs["verdict"]
+    status = runs["status"].copy()
+    status[0, 2] = RunStatus.NOT_RUN
+    told = rf.fractile_curves(runs.assign(status=status)).attrs["verdict"]
+    assert told == f"{whole} 1 of 10 runs is left out, without a verdict, intensity or response."
