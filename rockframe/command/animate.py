@@ -7,6 +7,7 @@ from typing import Final
 import xarray as xr
 
 from rockframe.command.answer import Answer
+from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     check_format,
@@ -55,7 +56,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     finally:
         if isinstance(moving, Animation):
             close(moving.figure)
-    return 0
+    return 0 if is_result(arguments.dataset) or finished(run) else 1
 
 
 def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:

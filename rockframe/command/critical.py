@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from rockframe.command.answer import Answer
 from rockframe.command.plot import PICTURE, save
+from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     analysed,
@@ -47,4 +48,4 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
-    return 0
+    return 0 if finished(dataset) else 1

@@ -10,6 +10,7 @@ from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES
 from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE, save
+from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     amount,
@@ -60,7 +61,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
-    return 0
+    return 0 if finished(runs) else 1
 
 
 def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:

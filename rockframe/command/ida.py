@@ -7,6 +7,7 @@ from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES
 from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE, save
+from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     analysed,
@@ -62,4 +63,4 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
-    return 0
+    return 0 if finished(dataset) else 1

@@ -3,12 +3,14 @@
 import argparse
 from typing import Any, Final
 
+import numpy as np
 import xarray as xr
 
 from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
 from rockframe.command.plot import PICTURE, save
+from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     analysed,
@@ -25,6 +27,7 @@ from rockframe.motion.description import CONSTRUCTORS
 from rockframe.plot import overturning_map as draw
 from rockframe.shared_arguments import suggestion
 from rockframe.studies import overturning_map
+from rockframe.studies.limit_states import overturns
 
 _RESULT: Final = analysis_kind("a map of overturning", "impacts_before_overturning")
 _USUAL: Final = "sine_pulse"
@@ -52,7 +55,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs.result(dataset)
     if arguments.picture is not None:
         save(draw(dataset), arguments.picture, outputs)
-    return 0
+    return 0 if finished(dataset) else 1
 
 
 def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
@@ -88,9 +91,12 @@ def _lines(dataset: xr.Dataset) -> list[str]:
         one = dataset.isel(frequency=number)
         ends = zip(one["amplitude_above"].to_numpy(), one["impacts_above"].to_numpy(), strict=True)
         told = [f"{at:.4g} {_way(impacts)}" for at, impacts in ends if at == at]
-        ways = one["impacts_before_overturning"].to_numpy()
-        none = "stands" if (ways != ways).all() else "overturns"
-        lines.append(f"  {frequency:<16.4g} {', '.join(told) or f'none: {none} throughout'}")
+        falls = overturns(one).to_numpy()
+        lacking = int(np.isnan(falls).sum())
+        ways = "overturns" if (falls == 1.0).any() else "stands"
+        told = told or [f"none: {ways} throughout" if lacking < falls.size else "none"]
+        told += [f"{lacking} of {falls.size} without a verdict"] if lacking else []
+        lines.append(f"  {frequency:<16.4g} {', '.join(told)}")
     return lines
 
 

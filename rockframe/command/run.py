@@ -1,7 +1,9 @@
 """``rockframe run``: a scene under a motion."""
 
 import argparse
+from typing import Final
 
+import numpy as np
 import xarray as xr
 
 from rockframe.command.answer import Answer
@@ -9,7 +11,7 @@ from rockframe.command.shared import RUN, Outputs, scene_from, simulated, system
 from rockframe.results.variables.runs import RunStatus
 from rockframe.simulation.provenance import motion_words
 
-FINISHED = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
+_FINISHED: Final = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED)
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
@@ -29,5 +31,5 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def finished(response: xr.Dataset) -> bool:
-    """Whether a run came to its end."""
-    return int(response["status"]) in FINISHED
+    """Whether a run, or each of a study, came to its end."""
+    return bool(np.isin(response["status"], _FINISHED).all())

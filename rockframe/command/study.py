@@ -5,12 +5,10 @@ import shlex
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
 from rockframe.command.answer import Answer
 from rockframe.command.files.studies import read_study
 from rockframe.command.main import INTERRUPTED
-from rockframe.command.run import FINISHED
+from rockframe.command.run import finished
 from rockframe.command.shared import (
     STUDY,
     Outputs,
@@ -57,11 +55,10 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     except KeyboardInterrupt:
         _say_how_to_go_on(store, arguments.typed)
         raise
-    status = runs["status"].to_numpy()
-    if (status == RunStatus.NOT_RUN).any():
+    if (runs["status"] == RunStatus.NOT_RUN).any():
         _say_how_to_go_on(store, arguments.typed)
         return INTERRUPTED
-    return 0 if np.isin(status, FINISHED).all() else 1
+    return 0 if finished(runs) else 1
 
 
 def _say_how_to_go_on(store: Path | None, typed: list[str]) -> None:

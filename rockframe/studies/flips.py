@@ -202,8 +202,11 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     scales = list(found.shown)
     largest, flips = scales[-1], found.flips()
     critical = least_overturning(found.shown)
-    if math.isnan(critical):
-        text = f"Did not overturn up to {number(largest)} times the motion"
+    decided = [scale for scale, run in found.shown.items() if run.overturned is not None]
+    if not decided:
+        text = "No run could be finished"
+    elif math.isnan(critical):
+        text = f"Did not overturn up to {number(decided[-1])} times the motion"
     elif critical == 0.0:
         text = "Overturns without the motion"
     else:

@@ -484,3 +484,24 @@ def test_a_vertical_component_that_a_file_has_no_place_for_is_told(typed):
     assert (code, "the vertical component is left out" in said) == (0, True)
     code, _, said = typed("convert", "both.nc", "-o", "both.csv")
     assert (code, said) == (0, "")
+
+
+@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("run short.toml", "Not finished"),
+        ("certify short.toml", "No certificate: the run was not finished"),
+        ("critical short.toml --runs 5", "Verdict: No run could be finished; looked at 5 scales"),
+        ("fragility short.toml record.AT2 --scales 1,2", "no fit, no trials"),
+        ("ida short.toml record.AT2 --scales 1,2", "2 of 2 runs of the scan have no verdict"),
+        ("map short.toml --amplitude '4,5 m/s^2' --frequency '1 Hz'", "2 of 2 without a verdict"),
+        ("animate short.toml -o x.html", "Not finished"),
+    ],
+)
+def test_runs_that_cannot_be_finished_have_an_exit_code(words, told, typed):
+    text = TEMPLATES["block"].replace('"standard"', "{ rtol = 1e-8, max_steps = 20 }")
+    Path("short.toml").write_text(text)
+    code, said, _ = typed(*shlex.split(words))
+    assert (code, told in " ".join(said.split())) == (1, True)
+    assert "stands throughout" not in said
