@@ -104,7 +104,10 @@ READING: Final = (
     *FROM_FILES,
 )
 ACCURACY: Final = word(
-    "--accuracy", metavar="LEVEL", help="fast, standard, reference, or a tolerance such as 1e-6"
+    "--accuracy",
+    metavar="LEVEL",
+    help="fast, standard, reference, or a tolerance such as 1e-6; of fragility, ida and map also "
+    "screen",
 )
 LENGTH: Final = (
     word("--free-vibration", metavar="TIME", help="still ground after the motion, such as '20 s'"),

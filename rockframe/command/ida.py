@@ -4,7 +4,7 @@ import argparse
 from typing import Any, Final
 
 from rockframe.command.answer import Answer
-from rockframe.command.files.studies import AXES, CASES
+from rockframe.command.files.studies import AXES, CASES, KNOWN
 from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
 from rockframe.command.plot import PICTURE, save
 from rockframe.command.run import finished
@@ -41,6 +41,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if CASES in found.arguments:
         words = "a dynamic analysis has axes, and no table of cases"
         raise FileError(arguments.scene, [(None, f"{words}; 'fragility' fits each structure")])
+    if KNOWN in found.arguments:
+        raise FileError(arguments.scene, [(None, f"a dynamic analysis takes no {KNOWN!r} stores")])
     given: dict[str, Any] = {
         "intensity": _USUAL,
         "store": found.store,

@@ -26,6 +26,7 @@ from rockframe.results.variables.variable import unit_behind
 from rockframe.simulation.system import System
 from rockframe.solve.accuracy import accuracy_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
+from rockframe.studies.sweeps.chunk import SCREEN
 from rockframe.suites import MotionSuite, read_suite
 from rockframe.units import Unit
 from rockframe.writing import Content, FileKind, check_not_read, checked_path, write_file
@@ -37,6 +38,8 @@ _OF_RESULTS: Final = "give what 'rockframe run' or 'study' has written with -o"
 _NO_MOTION: Final = (
     "there is no motion; name a record with --motion, or describe one in the file, in [motion]"
 )
+_SCREENING: Final = ("fragility", "ida", "map")
+"""Commands whose runs are those of sweeps, which screen."""
 _MOST_VALUES: Final = 100_000
 _LONGEST_HEAD: Final = 65536
 """Most of the first line of a table that is read [bytes]."""
@@ -115,7 +118,7 @@ def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[
     """Give the arguments of a run: those of a file, and what options give instead."""
     run = {**of_file, **given_of(arguments, "duration", "free_vibration")}
     if arguments.accuracy is not None:
-        run["accuracy"] = _accuracy(arguments.accuracy)
+        run["accuracy"] = _accuracy(arguments.accuracy, arguments.command)
     if arguments.duration is not None and arguments.free_vibration is None:
         run.pop("free_vibration", None)
     if arguments.free_vibration is not None and arguments.duration is None:
@@ -360,7 +363,9 @@ def system_words(system: System) -> str:
     return ", ".join(type(part).__name__ for part in system.parts.structural())
 
 
-def _accuracy(text: str) -> str | float:
+def _accuracy(text: str, command: str) -> str | float:
+    if text == SCREEN and command in _SCREENING:
+        return text
     try:
         given: str | float = float(text)
     except ValueError:

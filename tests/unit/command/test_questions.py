@@ -116,6 +116,10 @@ def test_a_dynamic_analysis_tells_the_capacity_under_each_record(typed, records)
     assert (code, "analysis.isel(width=0)" in problem) == (2, True)
     Path("rows.csv").write_text("width [m]\n0.7\n0.9\n")
     Path("rows.toml").write_text('scene = "scene.toml"\ncases = "rows.csv"\n')
+    known = '[axes]\nscale = [1, 2]\n[sweep]\nknown = ["a"]\n'
+    Path("more.toml").write_text(f'scene = "scene.toml"\n{known}')
+    code, _, problem = typed("ida", "more.toml", "records")
+    assert (code, "takes no 'known' stores" in problem) == (2, True)
     code, _, problem = typed("ida", "rows.toml", "records")
     assert (code, "no table of cases" in problem) == (2, True)
 
@@ -135,6 +139,7 @@ def test_a_map_tells_the_boundaries_at_each_frequency(typed):
     assert "none: stands throughout" in told
     with xr.open_dataset("m.nc") as kept:
         assert kept.amplitude_above.equals(expected.amplitude_above)
+    assert typed("map", "scene.toml", *given[:4], "--accuracy", "screen")[0] == 0
     code, told, _ = typed("map", "scene.toml", *given, "--pulse", "cosine_pulse")
     assert (code, "Pulse:   cosine pulse" in told) == (0, True)
 
