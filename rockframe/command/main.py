@@ -12,7 +12,7 @@ from importlib import import_module
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.command.parser import as_typed, build_parser, misspelt
+from rockframe.command.parser import TellingParser, as_typed, build_parser, misspelt
 from rockframe.command.streams import StandardInput, tell
 from rockframe.errors import RockframeError, RockframeWarning, SolverError
 
@@ -34,12 +34,12 @@ def main(given: Sequence[str] | None = None) -> int:
     if problem is not None:
         who, _, words = problem.partition(": ")
         tell(who, words)
-        return WRONG_INPUT
+        return _wrong(typed, words)
     parser = build_parser()
     try:
         arguments = parser.parse_args(typed)
     except SystemExit as left:  # help, version, or a wrong command line
-        return left.code if isinstance(left.code, int) else WRONG_INPUT
+        return _wrong(typed, TellingParser.told) if left.code else 0
     if arguments.command is None:
         parser.print_help()
         return WRONG_INPUT
@@ -53,6 +53,17 @@ def main(given: Sequence[str] | None = None) -> int:
         except KeyboardInterrupt:  # also while libraries are loaded
             tell(who, "interrupted")
             return INTERRUPTED
+
+
+def _wrong(typed: Sequence[str], words: str) -> int:
+    """Tell programs what is wrong with a command line, too."""
+    if "--json" in typed:
+        from rockframe.command.answer import Answer
+
+        name = next((word for word in typed if not word.startswith("-")), "")
+        answer = Answer(name, quiet=True, verbose=False, as_json=True)
+        _print(answer, WRONG_INPUT, words, "rockframe")
+    return WRONG_INPUT
 
 
 def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:

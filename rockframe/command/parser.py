@@ -3,7 +3,7 @@
 import argparse
 import re
 from collections.abc import Sequence
-from typing import Any, Final, NoReturn
+from typing import Any, ClassVar, Final, NoReturn
 
 from rockframe.command.arguments import EVERYWHERE, Command
 from rockframe.command.commands import COMMANDS
@@ -16,8 +16,8 @@ _VALUE: Final = re.compile(r"-[\d.]|-.* ")
 """What begins with a hyphen and is a value: a number, or a quantity with its unit."""
 _EXAMPLE: Final = re.compile(r"\b(\w+)='([^']*)'")
 _OWNER: Final = re.compile(
-    r"^(critical_scale|fragility|incremental_dynamic_analysis|overturning_map|sweep|simulate|"
-    r"rf\.plot\.\w+): "
+    r"^(case|critical_scale|fragility|incremental_dynamic_analysis|overturning_map|report|sweep|"
+    r"simulate|rf\.plot\.\w+): "
 )
 """Names of functions, which whoever types commands did not call."""
 _CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
@@ -53,7 +53,7 @@ def build_parser() -> argparse.ArgumentParser:
     everywhere = argparse.ArgumentParser(add_help=False)
     for one in EVERYWHERE:
         everywhere.add_argument(*one.names, **one.settings, default=argparse.SUPPRESS)
-    parser = argparse.ArgumentParser(
+    parser = TellingParser(
         prog="rockframe",
         description=_STORY,
         epilog=f"'rockframe COMMAND --help' tells more, with examples.\n\n{EXIT_CODES}",
@@ -139,7 +139,18 @@ def _no_option(word: str, command: Command | None, options: Sequence[str]) -> st
     return f"{who}: there is no option {word}{near} '{who} --help' lists all"
 
 
-class _CommandParser(argparse.ArgumentParser):
+class TellingParser(argparse.ArgumentParser):
+    """Keeps what is wrong with a command line, for those who ask for JSON."""
+
+    told: ClassVar[str] = ""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong."""
+        TellingParser.told = message
+        super().error(message)
+
+
+class _CommandParser(TellingParser):
     """Takes files before and behind options, and proposes what was meant."""
 
     _within = False

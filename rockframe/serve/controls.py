@@ -27,7 +27,7 @@ class Control:
 
     def quantity(self, value: float) -> str | float:
         """Write a value as components and files take it."""
-        return f"{value:g} {self.unit}" if self.unit else value
+        return f"{value:.15g} {self.unit}" if self.unit else value
 
 
 CONTROLS: Final = (

@@ -85,6 +85,11 @@ def test_the_file_makes_the_scene_that_was_run(ask, record, tmp_path, base, moti
     assert found.run == {"free_vibration": "5 s"}
 
 
+def test_a_number_is_that_which_was_typed():
+    choice, _ = read_choice({"width": "0.71234567"}, None)
+    assert choice.system().parts.block.width.magnitude == 0.71234567
+
+
 @pytest.mark.parametrize("headers", [
     {"Host": "evil.example"}, {"Host": "evil.example:80"}, {"Host": ""},
     {"Origin": "http://evil.example"}, {"Origin": "null"},

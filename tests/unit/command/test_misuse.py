@@ -141,6 +141,15 @@ def test_an_error_is_told_to_programs_too(typed):
     assert err == "rockframe run: none.toml: there is no such file\n"
 
 
+@pytest.mark.parametrize("words", WORDS)
+def test_a_wrong_command_line_is_told_to_programs_too(words, typed):
+    code, out, err = typed(*split(words), "--json")
+    answer = json.loads(out)
+    assert answer["exit_code"] == code == 2
+    assert WORDS[words] in answer["error"]
+    assert answer["error"] in err
+
+
 SCENES = {
     # a file: the line and what is said of it
     '[block]\nwidth = "1 m"\nheight = 3\nmass = "1 t"\n': (3, 'write for example height = "4 m"'),
