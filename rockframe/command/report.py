@@ -32,10 +32,14 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if path is None and arguments.dataset == STREAM:
         words = "a result from the standard input has no name; name the report with -o report.html"
         raise FileError(INPUT, [(None, words)])
-    folder = Path(arguments.dataset).expanduser().is_dir()
+    place = Path(arguments.dataset)
+    folder = place.expanduser().is_dir()
     dataset = open_study(arguments.dataset) if folder else read_result(arguments.dataset)
     if path is None:
-        path = str(Path(arguments.dataset).with_suffix(".html"))
+        if folder:  # whose name may have points, or be that of the folder one is in
+            place = place if place.name.strip(".") else place.resolve()
+            place = place.with_name(f"{place.name}.nc")
+        path = str(place.with_suffix(".html"))
     records = arguments.motions
     motions = None if records is None else read_suite(records[0] if len(records) == 1 else records)
     if arguments.case is not None:

@@ -10,7 +10,14 @@ from typing import Final, cast
 import xarray as xr
 
 from rockframe.arguments import checked_dataset, text, truth
-from rockframe.errors import ComponentError, RecordWarning, SchemaError, shown
+from rockframe.errors import (
+    ComponentError,
+    RecordWarning,
+    RockframeWarning,
+    SchemaError,
+    shown,
+    warn,
+)
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
 from rockframe.reports import page, sections, studies
@@ -106,6 +113,11 @@ def report(
         The file cannot be written, its name has another ending, it is there already and no
         report, or it is the one that the result was read from.
 
+    Warns
+    -----
+    RockframeWarning
+        There is a target, and no motion at hand whose spectrum could stand beside it.
+
     Examples
     --------
     >>> import tempfile
@@ -152,6 +164,7 @@ def report(
         model = str(dataset.attrs["model"])
         heading = given or f"Rocking response, {model} model"
         system = _system_of(dataset, motion)
+        _tell_of_target(target, None if system is None else system.motion, "motion")
         dataset, reason = certified(dataset, system) if certify else (dataset, "")
         verdict = sections.verdict_section(dataset, reason, chosen)
         body = [page.section("Verdict", [*about.conclusions(), *verdict, *by_codes])]
@@ -160,6 +173,7 @@ def report(
         heading = given or str(dataset.attrs.get("title", "Study"))
         body = [*studies.verdict_sections(dataset, about, chosen, by_codes)]
         found = motions_of(dataset, motions, _OWNER)
+        _tell_of_target(target, found, "motions")
         if found:
             spectra = spectra_section(found, aim, chosen)
             body.append(page.section("Ground motions", spectra))
@@ -188,6 +202,13 @@ def report(
     ]
     written = page.page(heading, content).encode()
     return write_file(path, page.KIND, written, overwrite=overwrite, read=read)
+
+
+def _tell_of_target(target: object, found: object, name: str) -> None:
+    """Warn of a target beside which there is no spectrum, for no motion is at hand."""
+    if target is not None and not found:
+        msg = f"{_OWNER}: no motion is at hand to be drawn beside the target; give it, by {name}="
+        warn(msg, RockframeWarning)
 
 
 def _of_run(

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import ComponentError, RecordWarning
+from rockframe.errors import ComponentError, RecordWarning, RockframeWarning
 from rockframe.reports import motions as in_reports
 from rockframe.results.schema import SCHEMA
 from rockframe.units.shown import reader_units
@@ -107,6 +107,9 @@ def test_a_target_is_given_in_three_ways(runs, suite, tmp_path):
     for wrong in ("Eurocode 8", raw.response_spectrum(["1 s"])):
         with pytest.raises(ComponentError, match="target must be a TargetSpectrum, or what"):
             rf.report(runs, path, target=wrong)
+    scale = rf.critical_scale(BLOCK, record(9), largest=1.0, runs=2, scales=2)
+    with pytest.warns(RockframeWarning, match="no motion is at hand to be drawn beside the target"):
+        rf.report(scale, path, target=TARGET)
     with pytest.raises(ComponentError, match="motions must be a GroundMotion, or several"):
         rf.report(runs, path, motions=3.5)
     with pytest.raises(ComponentError, match="no motion with the samples of 'record 9'"):

@@ -109,7 +109,7 @@ def motion_number(wanted: object, names: Sequence[str], *, owner: str) -> int:
     """Give the number of the motion that a name, or a number, also typed, stands for."""
     if isinstance(wanted, str) and wanted in names:
         return names.index(wanted)
-    typed = wanted in [str(place) for place in range(len(names))]
+    typed = isinstance(wanted, str) and wanted in {str(place) for place in range(len(names))}
     if typed or (isinstance(wanted, int | np.integer) and not isinstance(wanted, bool)):
         number = int(cast("int | str", wanted))
         alike = [name for name in names if name.isdecimal() and int(name) == number]

@@ -470,6 +470,16 @@ def test_a_report_of_a_case_names_each_axis_once(typed, folder):
     assert (code, "those of a study are motions=" in problem) == (2, True)
 
 
+@pytest.mark.usefixtures("no_pictures")
+def test_a_report_on_a_store_has_the_whole_of_its_name(typed, folder, monkeypatch):
+    (folder / "study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1, 2]\n')
+    assert typed("study", "study.toml", "--store", "kept.1")[0] == 0
+    given = ("report", "--no-certificate")
+    assert typed(*given, "kept.1")[:2] == (0, "Report: kept.1.html\n")
+    monkeypatch.chdir(folder / "kept.1")
+    assert typed(*given, ".")[:2] == (0, f"Report: {folder / 'kept.1.html'}\n")
+
+
 def test_answers_in_json_have_no_negative_zero(typed):
     code, told, _ = typed("run", "scene.toml", "--scale", "0", "--json")
     assert code == 0
