@@ -157,7 +157,8 @@ def correct_crossing(
     the guard is positive and negative: of a step that is long beside a damped vibration the dense
     solution tells little of the other. So is the guard that rises from zero and falls again from
     its first root, the start. A dip that the Runge-Kutta solution does not have is an event where
-    it comes closest.
+    it comes closest. Of a guard that falls to zero and stays there, as friction does where nothing
+    presses, no value tells how far its root is: halves do.
     """
     crossed, place, negative = crossing
     now = time_of(progress)
@@ -170,6 +171,7 @@ def correct_crossing(
         equations.make_steps(known, high, pieces, progress, steps, w)
         below = w.after[crossed]
         has_root = below < 0.0
+    stays = has_root and below >= -noise
     for correction in range(1 + MOST_POLISHING):
         if h > 0.0:
             equations.make_steps(known, h, pieces, progress, steps, w)
@@ -177,9 +179,9 @@ def correct_crossing(
             stand_still(w)
         guard, fall = w.after[crossed], w.after[rates + crossed]
         ends = fall >= 0.0 and not has_root
-        if ends or abs(guard) <= noise or correction == MOST_POLISHING:
+        if ends or (abs(guard) <= noise and not stays) or correction == MOST_POLISHING:
             break
-        if guard > 0.0:
+        if guard > (noise if stays else 0.0):
             low, above, below = h, guard, 0.5 * below if last > 0.0 else below
         else:
             high, above, below = h, 0.5 * above if last < 0.0 else above, guard
@@ -187,7 +189,7 @@ def correct_crossing(
         moved = h - guard / fall if fall < 0.0 else low
         if fall == 0.0 and above > 0.0 > below:  # of forces no rate is known
             moved = low + (high - low) * (above / (above - below))
-        if has_root and not low < moved < high:
+        if has_root and (stays or not low < moved < high):
             moved = 0.5 * (low + high)
         moved = min(max(moved, 0.0), whole)
         change = abs(moved - h)
