@@ -157,7 +157,9 @@ def correct_crossing(
     guard is positive and negative: in a step that is long compared with a damped vibration the
     dense solution is far from it. The bracket also keeps a guard that rises from zero and falls
     again from its first root, the start. Where the dense solution has a dip below zero that
-    repeated steps do not have, the event is where the guard is smallest.
+    repeated steps do not have, the event is where the guard is smallest. The value of a guard that
+    falls to zero and stays there, as friction does where nothing presses, does not tell how far its
+    root is: the step is halved then.
     """
     crossed, place, negative = crossing
     now = time_of(progress)
@@ -170,6 +172,7 @@ def correct_crossing(
         equations.make_steps(known, high, pieces, progress, steps, w)
         below = w.after[crossed]
         has_root = below < 0.0
+    stays = has_root and below >= -noise
     for correction in range(1 + MOST_POLISHING):
         if h > 0.0:
             equations.make_steps(known, h, pieces, progress, steps, w)
@@ -177,9 +180,9 @@ def correct_crossing(
             stand_still(w)
         guard, fall = w.after[crossed], w.after[rates + crossed]
         ends = fall >= 0.0 and not has_root
-        if ends or abs(guard) <= noise or correction == MOST_POLISHING:
+        if ends or (abs(guard) <= noise and not stays) or correction == MOST_POLISHING:
             break
-        if guard > 0.0:
+        if guard > (noise if stays else 0.0):
             low, above, below = h, guard, 0.5 * below if last > 0.0 else below
         else:
             high, above, below = h, 0.5 * above if last < 0.0 else above, guard
@@ -187,7 +190,7 @@ def correct_crossing(
         moved = h - guard / fall if fall < 0.0 else low
         if fall == 0.0 and above > 0.0 > below:  # guards that are forces come without a rate
             moved = low + (high - low) * (above / (above - below))
-        if has_root and not low < moved < high:
+        if has_root and (stays or not low < moved < high):
             moved = 0.5 * (low + high)
         moved = min(max(moved, 0.0), whole)
         change = abs(moved - h)

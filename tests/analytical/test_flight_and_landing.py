@@ -306,3 +306,59 @@ def test_a_start_in_flight_is_beside_that_in_contact(rule, side):
     assert places[1] == pytest.approx(place_at(angle, rule), abs=1e-14)
     if rule != "contact-state":  # which holds the corner that bears
         assert places[0] == pytest.approx(places[1], abs=1e-14)
+
+
+# bodies upon one another ------------------------------------------------------------------------
+
+
+UPPER = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
+LOWER = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
+
+
+def dropped(accuracy, restitution, **friction):
+    """Run two bodies that the ground throws up and falls away from, and their landings."""
+    pads = rf.TwoSpringSupport(
+        frequency_ratio=40, damping_ratio=0.0, restitution=restitution, **friction
+    )
+    upwards = np.array([0.0, -13.0, -21.0, -9.0, 5.0, *np.zeros(8)])
+    motion = rf.GroundMotion.from_arrays(
+        (0.0 * upwards, "m/s^2"), "0.05 s", vertical=(upwards, "m/s^2")
+    )
+    stack = rf.Stack(UPPER, LOWER, interfaces=[rf.RigidGround(**friction)])
+    return rf.System(stack, pads).simulate(
+        motion, duration="0.4 s", accuracy=accuracy, second_look=False
+    )
+
+
+@pytest.mark.filterwarnings("ignore:.*one of several motions:rockframe.errors.ModelWarning")
+@pytest.mark.parametrize("restitution", [0.1, 0.6])
+@pytest.mark.parametrize("friction", [{}, {"friction": 0.5}], ids=["held", "friction"])
+def test_bodies_that_fall_together_land_together(restitution, friction):
+    """Without a force between them one bears on any of the corners that touch; all take the blow.
+
+    As one body that lands flat they leave again at their own time, and do not turn.
+    """
+    runs = [dropped(one, restitution, **friction) for one in ("standard", "reference")]
+    for run in runs:
+        assert run.impact_count >= 1
+        assert np.abs(run.body_rotation).max() < 1e-12
+    times = [np.unique(run.event_time.to_numpy().round(7)) for run in runs]
+    np.testing.assert_allclose(times[0], times[1], atol=2e-7)
+
+
+@pytest.mark.filterwarnings("ignore:.*one of several motions:rockframe.errors.ModelWarning")
+@pytest.mark.parametrize("accuracy", ["fast", "standard"])
+@pytest.mark.parametrize("peak", [-13.0, -21.0])
+def test_bodies_with_friction_leave_where_they_do_without(accuracy, peak):
+    """Where nothing presses friction is zero, and stays so: that tells not when it came to it."""
+    falls = rf.GroundMotion.from_arrays(
+        (np.zeros(4), "m/s^2"), "0.1 s", vertical=(np.array([0.0, peak, peak, peak]), "m/s^2")
+    )
+    left = []
+    for friction in ({}, {"friction": 0.5}):
+        pads = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.0, **friction)
+        stack = rf.Stack(UPPER, LOWER, interfaces=[rf.RigidGround(**friction)])
+        run = rf.System(stack, pads).simulate(falls, accuracy=accuracy, second_look=False)
+        assert run.energy_residual < 1e-5
+        left.append(float(run.event_time[0]))
+    assert left[1] == pytest.approx(left[0], abs=1e-9)

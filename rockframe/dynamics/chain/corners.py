@@ -429,6 +429,11 @@ class RigidCorners(Chain):
                 found |= self.level_corners(k, body) << 2 * k
         return found
 
+    @inlined
+    def closed_corners(self, mode: int, state: Vector) -> int:
+        """Give the corners that bear, and those that do not but are still where they were."""
+        return self.bearing(mode) | self.resting_corners(mode, state)
+
     @kernel
     def level_corners(self, k: int, body: BodyState) -> int:
         """Give the corners of a body that are at its base, and at rest."""

@@ -106,9 +106,9 @@ class RigidImpulses(RigidCorners):
         self.scale_impulses(share)
 
     @inlined
-    def must_meet_anew(self) -> bool:
-        """Whether what rigid bases did in an event beside them is more than they can."""
-        return self.some_pull()
+    def must_meet_anew(self, closed: int, mode: int) -> bool:
+        """Whether rigid bases did more in an event beside them than they can, or some did less."""
+        return self.some_pull() or closed != self.bearing(mode)
 
     @kernel
     def some_pull(self) -> bool:

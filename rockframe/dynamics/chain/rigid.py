@@ -88,17 +88,17 @@ class RigidChain(RigidImpulses):
         elif self.is_rigid(k):
             new = self.switch_corner(k, left, mode, state, ground, memory)
         else:
-            pinned = memory[REPINNING_LOSS]
+            pinned, closed = memory[REPINNING_LOSS], self.closed_corners(mode, state)
             self.scale_impulses(0.0)
             if which in (REENGAGE, CORNER_GUARDS + REENGAGE):
                 new = self.catch_up(mode, guard, state, ground, memory)
             else:
                 new = self.switch_on_base(mode, guard, state, ground, memory)
             # a change of a held point is the rule's, and no blow: contacts stay as they are
-            if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew():
+            if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew(closed, new):
                 return new
             ends = self.landed(k, left, mode, new)
-            new = self.meet_anew(k, ends, new, state, ground, memory)
+            new = self.meet_anew(k, ends, closed, new, state, ground, memory)
             stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
             # the hold is a part of the blow then, of which bodies have taken back some
             memory[IMPACT_LOSS] += memory[REPINNING_LOSS] - pinned
@@ -271,21 +271,22 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def meet_anew(
-        self, k: int, ends: int, mode: int, state: Vector, ground: Ground, memory: Vector
-    ) -> int:
+        self, k: int, ends: int, closed: int, mode: int, state: Vector, ground: Ground,
+        memory: Vector,
+    ) -> int:  # fmt: skip
         """Take back what rigid bases did in an event beside them, and let them press only.
 
-        And what of the blow of a body's ends that have landed would throw these up then.
+        At corners that were closed. And what of the blow of a body's ends that have landed would
+        throw these up then.
         """
         free = self.let_all_go(mode, state, memory)
         self.write_contacts(free, state, memory)
-        had, before = self.energies(free, state).kinetic, self.bearing(free)
-        flying = self.with_bearing(free, 0, 0)
-        self.take_back(k, self.shares_of_blow(k, ends, flying, before, state), flying, state)
+        had, flying = self.energies(free, state).kinetic, self.with_bearing(free, 0, 0)
+        self.take_back(k, self.shares_of_blow(k, ends, flying, closed, state), flying, state)
         memory[IMPACT_LOSS] += had - self.energies(flying, state).kinetic
         event = memory[LAST_EVENT]
-        new = self.let_bear(free, before, before, 0, state, ground, memory)
-        new = self.hold_where_small(before, new, state, ground, memory)
+        new = self.let_bear(free, closed, closed, 0, state, ground, memory)
+        new = self.hold_where_small(closed, new, state, ground, memory)
         new = self.rest_where_small(new, state, ground, memory)
         memory[LAST_EVENT] = event
         return new

@@ -140,17 +140,17 @@ class SlippingRigidChain(TriedSlips):
     ) -> int:
         """Carry out a switch of a body on a base that gives way, and let it slip or be held."""
         k = guard // GUARDS
-        which = guard - k * GUARDS
+        which, closed = guard - k * GUARDS, self.closed_corners(mode, state)
         self.scale_impulses(0.0)
         memory[HELD_PLACE + self.body_count] = k + 1.0
         new = self.switch_slippery(k, which, mode, state, ground, memory)
         if which < 2 * CORNER_GUARDS and memory[LAST_EVENT] == SILENT:
             return new
         if memory[LAST_EVENT] == IMPACT:
-            if self.must_meet_anew():
+            if self.must_meet_anew(closed, new):
                 part, left = self.on_base(k), which < CORNER_GUARDS
                 ends = self.landed(k, left, mode, new)
-                new = self.meet_anew(k, ends, new, state, ground, memory)
+                new = self.meet_anew(k, ends, closed, new, state, ground, memory)
                 stay_if_small(self, part, k, left, new, state, ground, memory)
             for other in range(self.body_count):
                 if not self.is_slippery(other):

@@ -192,15 +192,18 @@ class TriedSlips(SlipperyBases, RigidChain):
         return float(-rows[first + at.FORCE] * (ratio * slip + 0.5 * leaned))
 
     @kernel
-    def must_meet_anew(self) -> bool:
-        """Whether rigid bases that have friction, or would have to pull, did something."""
+    def must_meet_anew(self, closed: int, mode: int) -> bool:
+        """Whether rigid bases that have friction, or would have to pull, did something.
+
+        Or one that is closed did nothing, since it had not borne.
+        """
         room = self.places()
         for k in range(self.body_count):
             i = k * PLACES
             acts = room[i + at.LEFT_IMPULSE] != 0.0 or room[i + at.RIGHT_IMPULSE] != 0.0
             if acts and self.friction_of(k, IMPULSIVE) < math.inf:
                 return True
-        return self.some_pull()
+        return self.some_pull() or closed != self.bearing(mode)
 
     @kernel
     def try_corners(
