@@ -1,4 +1,4 @@
-"""Proofs of verdicts: the functions that users call, over `rockframe.proof`."""
+"""Functions by which users prove verdicts, over the package proof."""
 
 from dataclasses import dataclass, replace
 from importlib.util import find_spec

@@ -1,4 +1,4 @@
-"""The parts of a scene by their slots, such as `block`, `pads`, `soil` and `ground`."""
+"""The parts of a scene by their slots, such as block, pads, soil and ground."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
