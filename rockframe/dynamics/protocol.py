@@ -120,8 +120,8 @@ class Equations(Protocol):
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
         """Give accelerations, rates of the variables of first order, and two powers.
 
-        The powers are the one dissipated and the one put in by the ground. Accelerations of
-        coordinates that do not move in the mode have no meaning.
+        The powers are the one dissipated and the one put in by the ground. Values in the state of
+        coordinates that do not move in the mode must not be used.
         """
         ...
 

@@ -1,5 +1,5 @@
-"""Verdicts of a block on rigid ground or on pads that are proved, by ball arithmetic.
+"""Proofs of the verdicts of a block on rigid ground or on pads, by ball arithmetic.
 
-Section "Proved verdicts" of the theory manual. The modules below need python-flint; whoever asks
-for a proof imports them then.
+Section "Proved verdicts" of the theory manual. The modules need python-flint, and are imported when
+a proof is requested (`simulation/proving.py`).
 """

@@ -1,8 +1,8 @@
 """Balls of real numbers, by python-flint: the arithmetic of proofs.
 
-A ball holds a middle and a radius; what is computed of balls holds every number that could have
-been computed of numbers inside them. A comparison of balls is true only where it is so for all of
-them.
+A ball is an interval given by its middle and its radius. The result of an operation on balls
+contains every result of the operation on numbers inside them. A comparison of balls is true only
+if it is true for all numbers inside them.
 """
 
 from collections.abc import Sequence
@@ -12,12 +12,12 @@ from typing import Any, Final, TypeAlias
 from flint import arb, ctx
 
 Ball: TypeAlias = Any
-"""A number known within a radius, ``flint.arb``."""
+"""A real number within an interval, ``flint.arb``."""
 Row: TypeAlias = list[Ball]
 Matrix: TypeAlias = list[Row]
 
 ball: Final[Any] = arb
-"""Give the ball of a number, exactly that of a float; with a second number for its radius."""
+"""Makes the ball of a number, of a float exactly; a second number is its radius, else 0."""
 ZERO: Final[Ball] = arb(0)
 ONE: Final[Ball] = arb(1)
 UNIT: Final[Ball] = ZERO.union(ONE)
@@ -26,27 +26,27 @@ WITHIN_ONE: Final[Ball] = arb(0, 1)
 
 
 def working_precision(bits: int) -> Any:
-    """Give the context in which the middles of balls have so many bits."""
+    """Give a context in which the middles of balls have a number of bits."""
     return ctx.workprec(bits)
 
 
 def bits() -> int:
-    """Give the bits of the middles."""
+    """Give the present number of bits of the middles."""
     return ctx.prec
 
 
 def upper(one: Ball) -> Ball:
-    """Give the least number that no absolute value in a ball exceeds, as a ball."""
+    """Give the largest absolute value in a ball, rounded up, as an exact ball."""
     return arb(one.abs_upper())
 
 
 def total(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
-    """Sum the products of two rows, as far as the shorter one goes."""
+    """Give the sum of products of two rows, up to the end of the shorter one."""
     return sum(map(mul, one, other), ZERO)
 
 
 def product(one: Row, other: Row, order: int) -> Ball:
-    """Give the coefficient of an order of the product of two power series."""
+    """Give the coefficient of some order in the product of two power series."""
     return sum(map(mul, one, other[order::-1]), ZERO)
 
 
@@ -75,7 +75,7 @@ def moved(coefficients: Row, by: Ball) -> Row:
 
 
 def hull(balls: Row) -> Ball:
-    """Give the least ball that holds others."""
+    """Give a ball that contains others."""
     result = balls[0]
     for each in balls[1:]:
         result = result.union(each)

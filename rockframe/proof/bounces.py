@@ -1,7 +1,7 @@
-"""Small bounces, whatever their order: bounds of all members of a set on either side.
+"""Small bounces at the end of rocking: bounds of all members of a set, whatever their order.
 
-Where excursions are smaller than a set of states, its members strike one after the other and none
-of their impacts can be enclosed alone. Their speeds and heights can: :eq:`eq-proof-bounces`.
+Where excursions are smaller than the width of a set of states, its members strike at different
+times and single impacts cannot be enclosed. Their speeds and heights can: :eq:`eq-proof-bounces`.
 """
 
 from dataclasses import dataclass, replace
@@ -19,20 +19,20 @@ from rockframe.proof.problem import (
 from rockframe.proof.standing import lifts_in
 
 _WINDOWS: Final = 200
-"""Windows, of the length of an interval at most, over which bounces are followed."""
+"""Largest number of windows, of at most an interval each, over which bounces are followed."""
 _GUESSES: Final = 12
 _LIFTING: Final = 1.5
-"""Time until which all have lifted, over that in which their last impacts are."""
+"""Time by which all members have lifted, over the time of their last impacts."""
 
 
 class Instant(NamedTuple):
-    """A time, by the number of its interval and the time since its start."""
+    """A time, by the number of its interval of the motion and the time since its start [s]."""
 
     number: int
     after: Ball
 
     def later(self, problem: Problem, span: Ball) -> "Instant":
-        """Give the instant that a span of time leads to."""
+        """Give the instant after a span of time [s]."""
         number, after = self.number, self.after + span
         while not after < problem.length(number):
             if not after >= problem.length(number):
@@ -43,24 +43,24 @@ class Instant(NamedTuple):
 
 
 class Lifted(NamedTuple):
-    """Where all members are once they have left the ground to one side, without further impact."""
+    """The state of all members after they have lifted to one side, without further impact."""
 
     instant: Instant
-    sign: int
-    box: Row
+    sign: int  # of the rotation
+    box: Row  # enclosure of rotation and rate
 
 
 @dataclass(frozen=True)
 class Pull:
-    """How a ground pulls a block back on a corner, or lifts it, over a window."""
+    """Bounds of the angular acceleration back to upright on one corner, over a window of time."""
 
-    least: Ball  # angular acceleration back to the ground
-    most: Ball
-    faster: Ball  # bound of the rate at which that grows
+    least: Ball  # its least value; negative where the ground lifts the block
+    most: Ball  # its largest absolute value
+    faster: Ball  # bound of the rate at which it grows
 
     @classmethod
     def of(cls, problem: Problem, sign: int, height: Ball, ground: GroundPiece) -> "Pull":
-        """Take all rotations up to a height, and all values of the ground."""
+        """Bound it for all rotations up to `height`, and for all values of the ground."""
         corner = problem.corner(sign)
         rotation = UNIT * height * sign
         pull = -sign * acceleration(rotation, corner, ground)
@@ -72,10 +72,10 @@ class Pull:
 def settle(
     problem: Problem, instant: Instant, height: Ball, speed: Ball
 ) -> "Instant | Lifted | None":
-    """Follow bounces from bounds of rotation and rate until all rest, or all have lifted.
+    """Follow bounces from bounds of rotation and rate until all members rest, or all have lifted.
 
-    Gives the instant from which on all are at rest, where and how they lifted, or None if nothing
-    is sure.
+    Gives the instant from which on all are at rest, or their state after lifting, or None if
+    neither is proved.
     """
     ground = problem.ground(instant.number).at(instant.after)
     pulls = [Pull.of(problem, sign, height, ground) for sign in (1, -1)]
@@ -116,20 +116,20 @@ def settle(
 
 @dataclass(frozen=True)
 class _Bounds:
-    """Bounds of all members: of the rotation, and of the speed that still has to be lost."""
+    """Bounds of all members: of the rotation, and of the speed that is still to be lost."""
 
     problem: Problem
-    height: Ball
-    left: Ball
+    height: Ball  # bound of the rotation [rad]
+    left: Ball  # bound of the angular velocity that is still to be lost [s^-1]
 
     @property
     def restitution(self) -> Ball:
-        """The greater one."""
+        """The greater coefficient of restitution of both corners."""
         return upper(self.problem.right.restitution.union(self.problem.left.restitution))
 
     @property
     def speed(self) -> Ball:
-        """Bound of the speed, and of that with which a member strikes next."""
+        """Bound of the speed now, and of the speed at the next impact."""
         return upper(self.left / self.restitution)
 
     def jumped(self, number: int) -> "_Bounds":
@@ -146,9 +146,10 @@ class _Bounds:
         return replace(self, left=upper(self.left + (2 * self.height * upper(most)).sqrt()))
 
     def over(self, ground: GroundPiece, window: Ball) -> "_Bounds | Ball | None":
-        """Go on over a window, :eq:`eq-proof-bounces`.
+        """Follow the members over a window, :eq:`eq-proof-bounces`.
 
-        Gives the bounds at its end, or when all are at rest, or None if it is too long.
+        Gives the bounds at its end, or the time after which all are at rest [s], or None if the
+        window is too long.
         """
         e = self.restitution
         reach = upper(self.height + 2 * self.speed * window)
@@ -162,7 +163,7 @@ class _Bounds:
                 growth = upper(growth.union(pull.faster / pull.least))
             elif pull.faster > 0:
                 return None
-            else:  # it ends as the ground begins to lift the block
+            else:  # the window ends as the ground begins to lift the block
                 push = upper(push.union(-pull.least))
         root = upper((growth * window / (2 * e)).exp())
         if not root < 2:
@@ -185,7 +186,7 @@ def _lifted(
 ) -> Lifted | None:
     """Follow all members from the first time at which the ground lifts any of them, to one side.
 
-    They have the bounds that hold then; the lemma is :eq:`eq-proof-swept`.
+    `bounds` hold at that time, `waited` is how much later the last one lifts; :eq:`eq-proof-swept`.
     """
     corner, speed = problem.corner(sign), bounds.speed
     span = 2 * waited + speed / problem.frequency

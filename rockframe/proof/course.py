@@ -1,4 +1,4 @@
-"""The course of a set of states from the first sample to what is sure for ever."""
+"""The course of a set of states on rigid ground, from the first sample to a proved verdict."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -20,21 +20,21 @@ from rockframe.signals.motion import Slope
 from rockframe.system.bodies import OverturningAngles
 
 SHORTEST: Final = 2.0**-30
-"""Step over an interval of the motion below which nothing is decided any more."""
+"""Step over an interval of the motion below which a proof is given up."""
 FINE: Final = 2.0**-6
-"""Share of an interval in steps of which the overturning angle is approached."""
+"""Step near the overturning angle, over an interval of the motion."""
 FINE_OF_SET: Final = 2.0**-3
-"""The same of a set, whose instants of overturning differ by more than such a step."""
+"""Step near the overturning angle for a set of inputs, whose times of overturning differ anyway."""
 WIDEST: Final = 0.3
-"""Width of a set, over theta, beyond which nothing is told of it any more."""
+"""Radius of a set, over theta, beyond which a proof is given up."""
 AT_KNOT: Final = 1e-10
 """Share of an interval within which an impact is taken to be at its end."""
 SLOW: Final = 0.02
-"""Speed after an impact, over p, below which coming to rest is tried."""
+"""Rate after an impact, over p, below which it is tried to prove that bounces end in rest."""
 LONGEST_TAIL: Final = 60.0
-"""Time after the motion, times p, after which a block near its crest is given up."""
+"""Time after the motion, times p, after which a proof is given up: the block is near its crest."""
 STILL_STEP: Final = 0.1
-"""Length of the intervals after a motion, times p."""
+"""Length of the intervals of still ground after a motion, times p."""
 _LAW: Final = "Housner's law"
 _UNSURE: Final = "an uplift of which it is not sure to which side it goes"
 _SAMPLES: Final = 24
@@ -42,25 +42,25 @@ _HALVINGS: Final = 40
 _NARROWINGS: Final = 60
 
 Watch = Callable[[int, Ball, int, Row], None]
-"""Is told every enclosure: number of the interval, time in it, side (0 at rest), box."""
+"""A function called with each enclosure: interval, time in it, side (0 at rest), box."""
 
 
 @dataclass
 class Course:
-    """Where the set is; times are those since the start of an interval of the motion."""
+    """The set of states that is followed; times are since the start of an interval [s]."""
 
     problem: Problem
     watch: Watch | None = None
-    uncertain: Sequence[Ball] = ()
-    number: int = 0  # of the interval
-    after: Ball = ZERO  # its start
-    sign: int = 0  # of the rotation; 0 at rest
+    uncertain: Sequence[Ball] = ()  # uncertain inputs less their middles
+    number: int = 0  # number of the present interval of the motion
+    after: Ball = ZERO  # time since its start
+    sign: int = 0  # sign of the rotation; 0 at rest
     states: SetOfStates = field(default_factory=lambda: SetOfStates.about([ZERO, ZERO], []))
     fresh: bool = False  # whether it has just left the upright position
-    beyond: tuple[Ball, Ball] | None = None  # when it may first be beyond the overturning angle
-    impact: Struck | None = None  # that has just been
-    impacts: int = 0
-    widest: float = 0.0
+    beyond: tuple[Ball, Ball] | None = None  # from when to when it may pass the overturning angle
+    impact: Struck | None = None  # the impact that it has just had
+    impacts: int = 0  # number of impacts enclosed one by one
+    widest: float = 0.0  # largest radius of a rotation so far [rad]
 
     @property
     def corner(self) -> CornerNumbers:
@@ -73,7 +73,7 @@ class Course:
         return self.problem.time(self.number, self.after)
 
     def start(self, rotation: float, rate: float) -> None:
-        """Begin at rest, or in motion."""
+        """Set the state at the start: rotation [rad] and rate [rad s^-1]."""
         if rotation == 0.0 and rate == 0.0:
             return
         self.sign = 1 if (rotation or rate) > 0.0 else -1
@@ -81,7 +81,10 @@ class Course:
         self.states = SetOfStates.about([ball(rotation), ball(rate)], self.uncertain)
 
     def overturns(self) -> bool:
-        """Go on until it is sure whether it overturns; `beyond` is then when."""
+        """Follow the set until it is proved whether it overturns; `beyond` tells when.
+
+        Raises `Undecided` where that cannot be proved.
+        """
         while True:
             verdict = self._stands() if self.sign == 0 else self._rocks()
             if verdict is not None:
@@ -90,7 +93,10 @@ class Course:
     # ---- standing
 
     def _stands(self) -> bool | None:
-        """Stand to the end of an interval, or lift, :eq:`eq-proof-uplift`; tell if it stays."""
+        """Follow a block at rest to the end of an interval or to uplift, :eq:`eq-proof-uplift`.
+
+        Gives False if it stays at rest for ever, else None.
+        """
         problem = self.problem
         ground, left = problem.ground(self.number).at(self.after), self._left()
         lift = lifts_in(problem, self.number, ground, left)
@@ -103,7 +109,7 @@ class Course:
         latest = ball(at.upper())
         if at < left:
             during, ground = ground.at(at), ground.at(latest)
-        else:  # some lift before the sample, some after it
+        else:  # some members lift before the sample, some after it
             self.number, self.after, latest = self.number + 1, ZERO, latest - left
             following = problem.ground(self.number)
             before = ground.at(ball(at.lower()).union(left))
@@ -131,7 +137,7 @@ class Course:
         return self.problem.length(self.number) - self.after
 
     def _lifted(self, during: GroundPiece, waited: Ball) -> SetOfStates:
-        """Enclose all members when the last of them lifts, :eq:`eq-proof-lifted`."""
+        """Enclose all members at the time at which the last one lifts, :eq:`eq-proof-lifted`."""
         still = [ZERO, ZERO]
         if waited > 0:
             third = jerk(sweep(still, self.corner, during, UNIT * waited), self.corner, during)
@@ -144,7 +150,7 @@ class Course:
     # ---- rocking
 
     def _rocks(self) -> bool | None:
-        """Make one step, and the impact at its end if there is one."""
+        """Make one step and, if there is one, the impact at its end; give a verdict or None."""
         corner, length = self.corner, self.problem.length(self.number)
         fine = (FINE_OF_SET if self.uncertain else FINE) * float(length)
         ground = self.problem.ground(self.number).at(self.after)
@@ -168,7 +174,7 @@ class Course:
                     if self._bounce(lift=True):
                         return None
                     raise
-                if self.uncertain and not at_sample:  # some may strike before, some after it
+                if self.uncertain and not at_sample:  # members may strike before and after it
                     step, to_end, strikes, at_sample = left, True, True, True
                     continue
             shorter = (shorter / 2).mid()
@@ -201,7 +207,7 @@ class Course:
             raise Undecided(message)
 
     def _predicted(self, ground: GroundPiece, left: Ball) -> Ball | None:
-        """Guess when the middle of the set strikes, None if not; nothing is proved by it."""
+        """Estimate when the middle of the set strikes, None if it does not; proves nothing."""
         span, centre, corner = float(left.mid()), self.states.centre, self.corner
         place, rate = (float(each.mid()) * self.sign for each in centre)
         pull = float(abs(ground.weight[0]).upper() + abs(ground.along[0]).upper())
@@ -237,9 +243,9 @@ class Course:
         return (guess * left).mid() if guess < 1 else left
 
     def _step(self, ground: GroundPiece, step: Ball, *, strikes: bool) -> tuple[SetOfStates, Sweep]:
-        """Step, and prove that the rotation keeps its sign until an impact near the end."""
+        """Make a step, and prove that the rotation keeps its sign until an impact near its end."""
         new, swept = advance(self.states, self.corner, ground, step)
-        # a rotation that is positive at the start, :eq:`eq-proof-sign`
+        # the sign stays that of the start, :eq:`eq-proof-sign`
         s = self.sign
         stays = swept.rotation * s > 0 or swept.rate * s > 0
         falls = swept.rate * s < 0 or swept.acceleration * s < 0
@@ -251,7 +257,7 @@ class Course:
         return new, swept
 
     def _nears(self, new: SetOfStates, swept: Sweep) -> bool:
-        """Tell whether the overturning angle may be reached in a step."""
+        """Whether the overturning angle may be reached in a step."""
         s, limit = self.sign, self.corner.limit
         if swept.rotation * s < limit:
             return False
@@ -260,7 +266,7 @@ class Course:
         return not (steady and all(one * s < limit for one in ends))
 
     def _narrow(self, ground: GroundPiece, step: Ball, *, rises: bool) -> None:
-        """Narrow the interval in which the overturning angle is first reached."""
+        """Narrow down `beyond`, the time at which the overturning angle is first reached."""
         begin, low, high = self.time, ZERO, step
         assert self.beyond is not None  # noqa: S101
         if rises and self.states.box()[0] * self.sign < self.corner.limit:
@@ -279,7 +285,7 @@ class Course:
     def _struck(
         self, states: SetOfStates, ground: GroundPiece, step: Ball, left: Ball, *, to_end: bool
     ) -> Struck:
-        """Let the set strike the ground at the end of a step."""
+        """Enclose the set after its impacts near the end of a step."""
         following = self.problem.ground(self.number + 1) if to_end else ground
         new = self.problem.corner(-self.sign)
         impact = struck(states, self.corner, new, ground, following)
@@ -292,7 +298,10 @@ class Course:
         return impact
 
     def _bounce(self, *, lift: bool = False) -> bool:
-        """Let slow members come to rest or, on request, be lifted to one side; tell if they do."""
+        """Prove that slow bounces end in rest or, if `lift`, in uplift; give whether they do.
+
+        The set is at rest, or lifted, then.
+        """
         problem, (rotation, rate) = self.problem, self.states.box()
         height, speed = upper(rotation), upper(rate)
         if self.impact is not None:
@@ -301,7 +310,7 @@ class Course:
             return False
         try:
             found = settle(problem, Instant(self.number, self.after), height, speed)
-        except Undecided:  # of the ground; the course may go on without it
+        except Undecided:  # by the motion of the ground; the course may go on without this proof
             return False
         if found is None or (isinstance(found, Lifted) and not lift):
             return False
@@ -314,10 +323,10 @@ class Course:
         self.impact, self.fresh = None, False
         return True
 
-    # ---- what is sure
+    # ---- end of the motion
 
     def _settled(self) -> bool | None:
-        """Tell whether a block on still ground stands for ever, :eq:`eq-proof-energy`."""
+        """Give False if it stands for ever on still ground, else None, :eq:`eq-proof-energy`."""
         problem, near, far = self.problem, self.corner, self.problem.corner(-self.sign)
         still = problem.ground(self.number)
         rotation, rate = self.states.box()
@@ -338,7 +347,7 @@ class Course:
 
 
 def _potential(rotation: Ball, corner: CornerNumbers, still: GroundPiece) -> Ball:
-    """Give the energy at a rotation over that at none, for a block that turns on one corner."""
+    """Give the potential energy at a rotation on a corner less that upright, over the inertia."""
     lean = corner.angle * corner.sign
     rise = (lean - rotation).cos() - lean.cos()
     shift = (lean - rotation).sin() - lean.sin()
@@ -363,9 +372,9 @@ def prove_block(
     within: Tolerances = EXACT,
     watch: Watch | None = None,
 ) -> Proof:
-    """Prove the verdict of a block on rigid ground, from its rotation and angular velocity.
+    """Prove the verdict of a block on rigid ground, from a start: rotation and angular velocity.
 
-    All numbers within tolerances are meant; `watch` is told every enclosure.
+    The proof is for all inputs within the tolerances; `watch` is called with each enclosure.
     """
 
     def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:
@@ -378,7 +387,7 @@ def prove_block(
 
 
 def _concluded(course: Course, scale: float) -> Proof:
-    """Follow a course to its end, and tell what it proves."""
+    """Follow a course to its end, and give what it proves."""
     verdict, reason, earliest, latest = UNDECIDED, "", math.nan, math.nan
     try:
         verdict = OVERTURNS if course.overturns() else SAFE

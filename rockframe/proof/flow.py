@@ -33,15 +33,15 @@ from rockframe.proof.problem import (
 from rockframe.proof.states import SetOfStates, nearly_identity
 
 HIGHEST: Final = 60
-"""Order of the series beyond which a step is halved."""
+"""Largest order of the series; a step that needs more is halved."""
 OF_STIFFNESS: Final = 4
-"""Order of the stiffness in the equation of variation."""
+"""Order of the polynomial for the stiffness in the equation of variation."""
 _FINER: Final = 4
-"""Parts of a factor of two to which bounds are rounded up, so that few majorants are made."""
+"""Bounds are rounded up to powers of the 4th root of 2, so that few majorants are computed."""
 
 
 class Sweep(NamedTuple):
-    """Where all states of a set are during a span of time."""
+    """Enclosures of all states of a set over a span of time."""
 
     rotation: Ball
     rate: Ball
@@ -51,7 +51,7 @@ class Sweep(NamedTuple):
 def sweep(state: Row, corner: CornerNumbers, during: GroundPiece, span: Ball) -> Sweep:
     """Enclose the motion over a span of times about 0, :eq:`eq-proof-sweep`.
 
-    The ground is that of all times of the span.
+    `during` encloses the ground at all times of the span.
     """
     rate = state[1] + span * (WITHIN_ONE * strongest(corner, during))
     pull = acceleration(state[0] + span * rate, corner, during)
@@ -61,10 +61,10 @@ def sweep(state: Row, corner: CornerNumbers, during: GroundPiece, span: Ball) ->
 
 @cache
 def majorants(speed: int, forces: tuple[int, ...], precision: int) -> tuple[Row, Row, int]:
-    """Bound the coefficients of rotation and of sine, and give the order that a precision takes.
+    """Bound the coefficients of rotation and of sine; give the order needed for a precision.
 
-    The bounds are of h omega, and of the forces times h^2 and their coefficients; powers of
-    2^(1/4). The order is 0 where none does.
+    `speed` and `forces` bound h omega and the coefficients of the forces times h^2, as exponents of
+    2^(1/4). `precision` is in bits; the order is 0 where none suffices.
     """
     strong = [_raised(one) for one in forces]
     angle, wave = [ZERO, _raised(speed)], [ONE]
@@ -88,17 +88,17 @@ def _power(bound: Ball) -> int:
 
 
 class Flow(NamedTuple):
-    """Series of a rotation in the share x of a step, and what bounds it."""
+    """Series of a rotation in x, from 0 to 1 over a step, with bounds."""
 
     length: Ball  # h
     angle: Row  # of alpha
     sine: Row  # of theta s - alpha
     cosine: Row
-    remainder: Ball  # bound of the next coefficient
-    along: Row  # kappa h^2 times the acceleration, in powers of x
-    weight: Row
+    remainder: Ball  # bound of the remainder: the next coefficient
+    along: Row  # kappa h^2 times the acceleration along the base, in powers of x
+    weight: Row  # likewise normal to it, with gravity
     force: Ball  # bound of h^2 f and of its derivative by alpha
-    coarse: Ball  # bound of the stiffness that is left out of the equation of variation
+    coarse: Ball  # bound of the terms of the stiffness beyond those in the equation of variation
     by_scale: "ByScale | None" = None
 
     def end(self) -> Row:
@@ -110,17 +110,17 @@ class Flow(NamedTuple):
 
 
 class ByScale(NamedTuple):
-    """Series of what the scale of a motion adds to h^2 f, and what bounds it."""
+    """Series of the derivative of h^2 f by the scale of the motion, with bounds."""
 
     push: Row
-    force: Ball  # bound of it
-    coarse: Ball  # bound of what is left out of the series
+    force: Ball  # bound of the derivative
+    coarse: Ball  # bound of the terms beyond those of the series
 
 
 def _forces(
     corner: CornerNumbers, ground: GroundPiece, during: GroundPiece, h: Ball
 ) -> tuple[Row, Row, list[int]]:
-    """Give kappa h^2 times a ground in powers of x, and bounds over a step as powers."""
+    """Give kappa h^2 times the ground in powers of x, and exponents that bound it over a step."""
     along, weight, powers = list[Ball](), list[Ball](), list[int]()
     factor = h * h * corner.ratio
     for k in range(max(len(ground.along), len(ground.weight))):
@@ -139,9 +139,9 @@ def _forces(
 def flow(
     start: Row, box: Row, corner: CornerNumbers, ground: GroundPiece, during: GroundPiece, h: Ball
 ) -> Flow:
-    """Give the series of a rotation from a point, with bounds that hold of a box about it.
+    """Give the series of a rotation from a point, with bounds that hold for a box about it.
 
-    The point has the middle of all inputs, the bounds hold for all of them.
+    The series are for the middles of all inputs, the bounds for all inputs.
     """
     along, weight, powers = _forces(corner, ground.middle, during, h)
     force = _raised(powers[0])
@@ -168,7 +168,7 @@ def flow(
 def _series(
     start: Row, corner: CornerNumbers, along: Row, weight: Row, h: Ball, order: int
 ) -> tuple[Row, Row, Row]:
-    """Give the coefficients of sine, cosine and rotation, by comparing them."""
+    """Give the coefficients of sine, cosine and rotation, by recursion."""
     first, second = (corner.angle * corner.sign - start[0]).sin_cos()
     sine, cosine, angle, turns = [first], [second], [start[0], h * start[1]], list[Ball]()
     for k in range(order - 1):
@@ -182,10 +182,10 @@ def _series(
 
 
 def variation(found: Flow, away: Row, lean: Ball, scale: Ball) -> tuple[Matrix, Row]:
-    """Enclose the derivatives of the end by the start and by the scale.
+    """Enclose the derivatives of the end of a step by its start and by the scale.
 
-    They hold for all at some distance from the centre, with an angle theta and a scale that
-    differ from its own, :eq:`eq-proof-variation` and :eq:`eq-proof-inputs`.
+    They hold for all states up to `away` from the centre, and for angles theta and scales that
+    differ by up to `lean` and `scale`, :eq:`eq-proof-variation` and :eq:`eq-proof-inputs`.
     """
     h, weight, along = found.length, found.weight, found.along
     stiff = [
@@ -220,9 +220,9 @@ def variation(found: Flow, away: Row, lean: Ball, scale: Ball) -> tuple[Matrix, 
 def advance(
     states: SetOfStates, corner: CornerNumbers, ground: GroundPiece, h: Ball
 ) -> tuple[SetOfStates, Sweep]:
-    """Enclose a set after a step, and all its states during it.
+    """Enclose a set at the end of a step, and all its states during the step.
 
-    The ground is that from the start of the step. A step that is too long is undecided.
+    `ground` has the start of the step as its origin. A step that is too long raises `Undecided`.
     """
     span = UNIT * h
     during, box = ground.at(span), states.box()
@@ -233,7 +233,7 @@ def advance(
         return states.image(found.end(), matrix, [[], []]), sweep(box, corner, during, span)
     sign = corner.sign
     matrix, by_scale = variation(found, states.away(), inputs.angle(sign), inputs.scale)
-    # the rotation is s theta less an angle whose equation does not know theta
+    # the rotation is s theta less an angle whose equation does not contain theta
     by_angle = [sign * (1 - matrix[0][0]), -sign * matrix[1][0]]
     free = [
         list(Deviations.of(sign, scale=scale, angle=angle))
@@ -243,7 +243,7 @@ def advance(
 
 
 class ShortFlow(NamedTuple):
-    """Derivatives of a flow so short that they are near those of none."""
+    """Derivatives of a flow so short that they are near those of the identity."""
 
     matrix: Matrix  # by the state
     angle: Ball  # of either component by theta
@@ -265,7 +265,7 @@ def nearly_still(
 
 
 def jerk(course: Sweep, corner: CornerNumbers, during: GroundPiece) -> Ball:
-    """Give the third derivative of the rotation over a step, of the ground of all its times."""
+    """Enclose the third derivative of the rotation over a step; `during` is the ground in it."""
     return acceleration(course.rotation, corner, during.rates()) + course.rate * stiffness(
         course.rotation, corner, during
     )

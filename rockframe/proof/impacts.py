@@ -25,19 +25,19 @@ from rockframe.proof.states import SetOfStates
 
 
 class Struck(NamedTuple):
-    """A set after its impacts, as if all of it had struck now."""
+    """A set after its impacts, as if all members had struck now."""
 
     states: SetOfStates
-    at: Ball  # when its members strike, from now [s]
-    height: Ball  # bound of rotations now, of those that have not struck yet too
-    speed: Ball  # the same of rates
+    at: Ball  # times at which its members strike, from now [s]
+    height: Ball  # bound of the rotations now, of members that have not struck yet, too
+    speed: Ball  # likewise of the rates
 
 
 class _Reset(NamedTuple):
-    state: Row
-    matrix: Matrix
+    state: Row  # after impact
+    matrix: Matrix  # derivative by the state before
     free: Matrix  # derivative by the uncertain inputs
-    at: Ball
+    at: Ball  # times of impact, from now [s]
     coming: Ball  # rates before the impact
 
 
@@ -50,9 +50,10 @@ def struck(
 ) -> Struck:
     """Enclose a set after its impacts.
 
-    Every member has its impact at its own instant near now, enclosed by a step of Newton's method
-    :eq:`eq-proof-impact`; it flows there, is reset, and flows back by the equations of its new
-    side. The ground is that of the intervals on either side of now, which may be one.
+    Each member has its impact at its own time near now, which a step of Newton's method encloses,
+    :eq:`eq-proof-impact`. It follows the equations of the old side to that time, is reset, and then
+    follows the equations of the new side back to now. `before` and `after` are the ground of the
+    intervals on either side of now, or of the same one.
     """
     centre = _reset(states.centre, old.middle(), new.middle(), before.middle, after.middle)
     whole = _reset(states.box(), old, new, before, after)
@@ -66,7 +67,7 @@ def struck(
 def _reset(
     state: Row, old: CornerNumbers, new: CornerNumbers, before: GroundPiece, after: GroundPiece
 ) -> _Reset:
-    """Enclose states after impact, with derivatives."""
+    """Enclose the states after an impact, with their derivatives."""
     rotation, rate = state
     if not rate * old.sign < 0:
         message = "an impact that hardly touches the ground"

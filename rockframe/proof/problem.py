@@ -1,4 +1,4 @@
-"""What a proof is about: a block and its ground, in balls about the floats that a run takes."""
+"""The problem that a proof is about: a block and its ground, in balls about the floats of a run."""
 
 from dataclasses import dataclass, field
 from itertools import zip_longest
@@ -10,12 +10,12 @@ from rockframe.signals.motion import Motion, Slope
 from rockframe.system.bodies import OverturningAngles
 
 
-class Undecided(Exception):  # noqa: N818  (an answer, no error)
-    """Nothing is proved, for the reason that it gives."""
+class Undecided(Exception):  # noqa: N818  (a result, no error)
+    """Nothing is proved; the message is the reason."""
 
 
 class Deviations(NamedTuple):
-    """How far numbers of a block and its motion are from the given ones, as balls."""
+    """Deviations of inputs, of the block and its motion, from the given ones, as balls."""
 
     left_restitution: Ball = ZERO
     right_restitution: Ball = ZERO
@@ -25,7 +25,7 @@ class Deviations(NamedTuple):
 
     @classmethod
     def within(cls, restitution: float, scale: float, angle: float) -> "Deviations":
-        """Give all that are within tolerances."""
+        """Give the deviations within tolerances."""
         e, factor, lean = (ball(0, one) for one in (restitution, scale, angle))
         return cls(e, e, factor, lean, lean)
 
@@ -39,22 +39,22 @@ class Deviations(NamedTuple):
         other_angle: Ball = ZERO,
         scale: Ball = ZERO,
     ) -> "Deviations":
-        """Name them by the corner that bears at a sign of the rotation, and the other one."""
+        """Make deviations by the corner that bears at a sign of the rotation, and the other one."""
         if sign > 0:
             return cls(ZERO, restitution, scale, other_angle, angle)
         return cls(restitution, ZERO, scale, angle, other_angle)
 
     @property
     def exact(self) -> bool:
-        """Whether they are single numbers."""
+        """Whether all of them are single numbers."""
         return all(one.is_exact() for one in self)
 
     def spread(self) -> "Deviations":
-        """Give them less their middles."""
+        """Give the deviations less their middles."""
         return self._make(one - one.mid() for one in self)
 
     def halves(self, influences: list[float]) -> "tuple[Deviations, Deviations]":
-        """Halve them along the one of the greatest influence; along the widest if none has any."""
+        """Halve the set along the input of greatest influence, or the widest if none has any."""
         sizes = influences if any(influences) else [float(one.rad()) for one in self]
         j = sizes.index(max(sizes))
         half = self[j].rad() / 2
@@ -63,57 +63,57 @@ class Deviations(NamedTuple):
         return self._replace(**{name: low}), self._replace(**{name: high})
 
     def restitution(self, sign: int) -> Ball:
-        """Give that of an impact on the corner that bears at a sign of the rotation."""
+        """Give the deviation of the restitution of the corner that bears at a sign of rotation."""
         return self.right_restitution if sign > 0 else self.left_restitution
 
     def angle(self, sign: int) -> Ball:
-        """Give that of the corner that bears at a sign of the rotation."""
+        """Give the deviation of the angle of the corner that bears at a sign of rotation."""
         return self.right_angle if sign > 0 else self.left_angle
 
 
 class CornerNumbers(NamedTuple):
-    """A corner that a block rocks on, by numbers of the law :eq:`eq-rigid-rocking`."""
+    """A corner on which a block rocks, by the numbers of :eq:`eq-rigid-rocking`."""
 
     sign: int  # of the rotation
-    angle: Ball  # theta
+    angle: Ball  # theta [rad]
     ratio: Ball  # R0/(I_O/m + R0^2) [1/m]
-    restitution: Ball  # of an impact on this corner
-    limit: Ball  # rotation that is called overturning
+    restitution: Ball  # coefficient of restitution of an impact on this corner
+    limit: Ball  # rotation that counts as overturning [rad]
 
     @classmethod
     def of(
         cls, sign: int, corner: RockingCorner, limit: float, inputs: Deviations
     ) -> "CornerNumbers":
-        """Take the floats of a run, and how far from them the numbers are."""
+        """Make a corner from the floats of a run and the deviations from them."""
         ratio = ball(corner.radius) / ball(corner.inertia)
         restitution = ball(corner.restitution) + inputs.restitution(sign)
         lean = inputs.angle(sign)
         return cls(sign, ball(corner.angle) + lean, ratio, restitution, ball(limit) + lean)
 
     def middle(self) -> "CornerNumbers":
-        """Give the corner in the middle of a set of them."""
+        """Give the corner with the middles of its uncertain numbers."""
         return self._replace(angle=self.angle.mid(), restitution=self.restitution.mid())
 
 
 class GroundPiece(NamedTuple):
-    """Acceleration along the base, and gravity with that normal to it: polynomials of time."""
+    """Ground acceleration along the base, and normal to it plus gravity: polynomials of time."""
 
     along: Row
     weight: Row
-    spread: "GroundSpread | None" = None  # where the scale is no single number
+    spread: "GroundSpread | None" = None  # None where the scale is a single number
 
     def at(self, time: Ball) -> "GroundPiece":
-        """Give the polynomials about another time; about all times of a ball."""
+        """Give the polynomials about another time, or about all times of a ball [s]."""
         spread = None if self.spread is None else self.spread.at(time)
         return GroundPiece(moved(self.along, time), moved(self.weight, time), spread)
 
     def rates(self) -> "GroundPiece":
-        """Give the rates at which it changes, at the start of the polynomials."""
+        """Give the rates of both accelerations at the origin of the polynomials."""
         along, weight = ([*row[1:2], ZERO][:1] for row in (self.along, self.weight))
         return GroundPiece(along, weight)
 
     def united(self, other: "GroundPiece") -> "GroundPiece":
-        """Enclose the coefficients of this and of another one."""
+        """Enclose the coefficients of both this and another piece."""
         spread = None
         if self.spread is not None and other.spread is not None:
             middle = self.spread.middle.united(other.spread.middle)
@@ -126,15 +126,15 @@ class GroundPiece(NamedTuple):
 
     @property
     def middle(self) -> "GroundPiece":
-        """The ground at the middle of its scales."""
+        """The ground for the middle of the scales."""
         return self if self.spread is None else self.spread.middle
 
 
 class GroundSpread(NamedTuple):
-    """How the ground depends on the scale of the motion."""
+    """The dependence of the ground on the scale of the motion."""
 
-    middle: GroundPiece
-    by_scale: GroundPiece  # its derivative
+    middle: GroundPiece  # for the middle of the scales
+    by_scale: GroundPiece  # derivative by the scale
 
     def at(self, time: Ball) -> "GroundSpread":
         """Give the polynomials about another time."""
@@ -143,12 +143,12 @@ class GroundSpread(NamedTuple):
 
 @dataclass(frozen=True)
 class Shaking:
-    """A motion of the ground, which is exactly a polynomial between two samples."""
+    """A motion of the ground, a polynomial between two samples, and still ground after it."""
 
     motion: Motion
     scale: Ball
     slope: Slope
-    still_step: float  # length of the intervals after the motion, when the ground is still [s]
+    still_step: float  # length of the intervals of still ground after the motion [s]
     _known: dict[int, GroundPiece] = field(default_factory=dict[int, GroundPiece], kw_only=True)
 
     @property
@@ -166,7 +166,7 @@ class Shaking:
         return moving * ball(self.motion.time_step) + still * ball(self.still_step) + after
 
     def joins(self, number: int) -> bool:
-        """Whether it is sure that the ground does not jump at the end of an interval."""
+        """Whether the ground acceleration surely does not jump at the end of an interval."""
         components = [one for one in (self.motion.horizontal, self.motion.vertical) if one]
         lines = all(one.polynomials is None for one in components)
         ends = number == self.count - 1 and any(one.samples[-1] != 0.0 for one in components)
@@ -188,7 +188,7 @@ class Shaking:
         return ground._replace(spread=GroundSpread(middle, _ground(self, number, ONE, ZERO)))
 
     def ground_over(self, number: int, after: Ball, span: Ball) -> GroundPiece:
-        """Enclose the ground about all times of a span from an instant of an interval."""
+        """Enclose the ground at all times of a span that starts in an interval [s]."""
         found: GroundPiece | None = None
         while True:
             left = self.length(number) - after
@@ -219,9 +219,9 @@ class Problem(Shaking):
         inputs: Deviations,
         still_step: float,
     ) -> "Problem":
-        """Take the floats of a run, and how far from them the numbers are.
+        """Make a problem from the floats of a run and the deviations from them.
 
-        The intervals of rest are given times p.
+        `still_step` is times p here.
         """
         fastest = max(one.radius / one.inertia for one in (block.left, block.right))
         frequency = (slope.gravity * fastest) ** 0.5
@@ -266,7 +266,7 @@ def _component(problem: Shaking, number: int, scale: Ball, *, vertical: bool) ->
 
 
 def acceleration(rotation: Ball, corner: CornerNumbers, ground: GroundPiece) -> Ball:
-    """Give the angular acceleration, of the ground at the start of its polynomials."""
+    """Give the angular acceleration, with the ground at the origin of its polynomials."""
     sine, cosine = (corner.angle * corner.sign - rotation).sin_cos()
     return -corner.ratio * (ground.weight[0] * sine + ground.along[0] * cosine)
 

@@ -1,4 +1,4 @@
-"""Proofs of sets of numbers, in parts, and of exact ones with as many bits as they take."""
+"""Proofs for sets of inputs, divided into parts, and for exact inputs, with enough bits."""
 
 import math
 from collections.abc import Callable
@@ -11,17 +11,17 @@ from rockframe.proof.problem import Deviations
 from rockframe.proof.verdict import OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances
 
 PRECISIONS: Final = (106, 212, 424)
-"""Bits of the balls, one after the other while nothing is decided."""
+"""Bits of the balls: the next number is tried as long as nothing is decided."""
 
 Attempt: TypeAlias = Callable[[Deviations], tuple[Proof, list[float]]]
-"""Proves what it can of a set of inputs; tells how far each of them moves the states."""
+"""A function that tries a proof for a set of inputs; also gives the influence of each input."""
 
 
 def proved(attempt: Attempt, within: Tolerances) -> Proof:
-    """Prove a verdict: of exact numbers with more and more bits, of a set in more and more parts.
+    """Prove a verdict: for exact inputs with more and more bits, for a set in more and more parts.
 
-    A part of which nothing is decided is halved along the input that moves its states most, the
-    largest first.
+    A part without a proof is halved along the input that changes its states most; the largest part
+    comes first.
     """
     inputs = Deviations.within(within.restitution, within.scale, within.angle)
     known, waiting = list[_Part](), list[_Part]()
@@ -51,17 +51,17 @@ def proved(attempt: Attempt, within: Tolerances) -> Proof:
 
 
 class _Part(NamedTuple):
-    """A part of a set, in the order of what is halved next."""
+    """A part of a set of inputs; the smallest in the order of tuples is halved next."""
 
-    share: float  # of the set, less than zero: the largest comes first
-    order: int
+    share: float  # share of the set, negative so that the largest part comes first
+    order: int  # orders parts of the same share
     inputs: Deviations
     proof: Proof
     influences: list[float]
 
 
 def _of_parts(known: list[_Part], rest: list[_Part]) -> Proof:
-    """Say of a set what is proved of its parts."""
+    """Give the proof for a set from the proofs of its parts."""
     every = [part.proof for part in (*known, *rest)]
     shares = {
         verdict: float(abs(sum(part.share for part in known if part.proof.verdict == verdict)))

@@ -1,4 +1,4 @@
-"""A block that stands: whether it goes on standing under a motion, or when a corner lifts."""
+"""A block at rest on rigid ground: whether a corner lifts under a motion, and when."""
 
 from itertools import zip_longest
 
@@ -13,9 +13,10 @@ _VERGE = "a ground that comes to the verge of uplift"
 def lifts_in(
     problem: Problem, number: int, ground: GroundPiece, left: Ball
 ) -> tuple[Ball, int] | None:
-    """Give when it lifts in the rest of an interval, and the sign of its rotation; None if not.
+    """Give when it lifts in the rest of an interval [s], and the sign of its rotation; or None.
 
-    Of a set some may lift before the sample at the end and some after it: the time goes beyond.
+    If some members of a set lift before the sample at its end and some after it, the time encloses
+    both.
     """
     try:
         return _lifts(problem, ground, left)
@@ -48,14 +49,14 @@ def _lifts_about_sample(
 
 
 def guard_of(problem: Problem, ground: GroundPiece, side: int) -> Row:
-    """Give what is positive while the block does not lift to a side."""
+    """Give the guard of uplift to a side, a polynomial that is positive while it does not lift."""
     tangent = problem.corner(side).angle.tan()
     pairs = zip_longest(ground.weight, ground.along, fillvalue=ZERO)
     return [weight * tangent + side * along for weight, along in pairs]
 
 
 def _zero_about(here: Row, left: Ball, there: Row, length: Ball) -> Ball:
-    """Enclose where guards fall through zero, which change their course at a time."""
+    """Enclose the zero of a guard near a sample; polynomials before and after it are given."""
     low, high = left, length
     for _ in range(_HALVINGS):
         low = (low / 2).mid()
@@ -99,7 +100,7 @@ def first_zero(guard: list[Ball], left: Ball) -> Ball | None:
 def _first_zero(
     guard: list[Ball], rate: list[Ball], low: Ball, high: Ball, halvings: int
 ) -> Ball | None:
-    """Look between two times, at the first of which the polynomial is positive."""
+    """Enclose the first zero between two times; the polynomial is positive at the first."""
     span = low.union(high)
     if value(guard, span) > 0:
         return None

@@ -1,4 +1,4 @@
-"""A set of states, carried without its growing by being boxed at every step (Lohner)."""
+"""Sets of states in a representation that avoids the wrapping effect (Lohner)."""
 
 import math
 from collections.abc import Sequence
@@ -11,17 +11,17 @@ from rockframe.proof.balls import ONE, ZERO, Ball, Matrix, Row, ball, times, tot
 
 
 class SetOfStates(NamedTuple):
-    """The set c + P q + Q r of :eq:`eq-proof-set`, of any number of coordinates and rates."""
+    """The set c + P q + Q r of :eq:`eq-proof-set`, for any number of coordinates and rates."""
 
-    centre: Row
-    inputs: Matrix  # P, how states depend on the uncertain inputs
+    centre: Row  # c
+    inputs: Matrix  # P, derivative of the states by the uncertain inputs
     uncertain: Sequence[Ball]  # q, the uncertain inputs less their middles
     axes: Matrix  # Q
     rest: Row  # r
 
     @classmethod
     def about(cls, state: Row, uncertain: Sequence[Ball]) -> "SetOfStates":
-        """Give a small set that does not yet depend on the uncertain inputs."""
+        """Give the box of a state as a set that does not depend on the uncertain inputs."""
         centre = [each.mid() for each in state]
         free = [[ZERO] * len(uncertain) for _ in centre]
         rest = [each - middle for each, middle in zip(state, centre, strict=True)]
@@ -35,7 +35,7 @@ class SetOfStates(NamedTuple):
         ]
 
     def influences(self) -> list[float]:
-        """Give how far each uncertain input moves the first component."""
+        """Give how much each uncertain input changes the first component at most."""
         pairs = zip(self.inputs[0], self.uncertain, strict=True)
         return [float((row * one).abs_upper()) for row, one in pairs]
 
@@ -46,8 +46,8 @@ class SetOfStates(NamedTuple):
     def image(self, centre: Row, matrix: Matrix, free: Matrix) -> "SetOfStates":
         """Enclose the image of a map, by the mean value theorem :eq:`eq-proof-set`.
 
-        Of the map are given an enclosure at the centre, and enclosures over the whole set of
-        its derivatives with respect to the state and to the uncertain inputs.
+        `centre` encloses the image of the centre, `matrix` and `free` the derivatives over the
+        whole set with respect to the state and to the uncertain inputs.
         """
         start = [each.mid() for each in centre]
         left = [each - middle for each, middle in zip(centre, start, strict=True)]
@@ -75,7 +75,7 @@ def identity(size: int) -> Matrix:
 
 
 def _axes(turned: Matrix, rest: Row) -> tuple[Matrix, Matrix]:
-    """Give axes about at right angles, the first along the longest edge, and their inverse."""
+    """Give nearly orthogonal axes, the first along the longest edge, and their inverse."""
     sizes = [float(each.abs_upper()) + 1e-300 for each in rest]
     edges = [[float(each.mid()) * sizes[j] for j, each in enumerate(row)] for row in turned]
     lengths = [math.hypot(*column) for column in zip(*edges, strict=True)]
@@ -94,5 +94,5 @@ def _axes(turned: Matrix, rest: Row) -> tuple[Matrix, Matrix]:
 
 
 def nearly_identity(size: int, off: Ball) -> Matrix:
-    """Give the unit matrix, each element of which is off by a ball."""
+    """Give the unit matrix with a ball added to each element."""
     return [[each + off for each in row] for row in identity(size)]

@@ -1,4 +1,4 @@
-"""What has been proved of a run, in numbers and words."""
+"""The result of a proof, in numbers and words."""
 
 import math
 from dataclasses import dataclass
@@ -9,18 +9,19 @@ SAFE: Final = "safe for ever"
 OVERTURNS: Final = "overturns"
 UNDECIDED: Final = "undecided"
 _DIGITS: Final = 12
-"""Of times in sentences, which are rounded outwards."""
+"""Digits of times in sentences, which are rounded outwards."""
 _APART: Final = 0.01
-"""Of the time in which a rotation near overturning grows e-fold, up to which an instant is told."""
+"""Difference of the times of overturning of run and proof from which on it is an objection, over
+the time in which a rotation near overturning grows e-fold."""
 
 
 class Tolerances(NamedTuple):
-    """Within which numbers of a block and its motion are proved of."""
+    """Largest deviations of the inputs for which a proof holds."""
 
     restitution: float = 0.0
     scale: float = 0.0
     angle: float = 0.0  # theta of either corner [rad]
-    parts: int = 1  # into which the set is divided at most
+    parts: int = 1  # largest number of parts into which the set is divided
 
 
 EXACT: Final = Tolerances()
@@ -33,32 +34,32 @@ class Proof:
     Parameters
     ----------
     verdict : {"safe for ever", "overturns", "undecided"}
-        What is proved.
+        The proved verdict.
     reason : str
-        Why nothing is; empty of a proof.
+        Why nothing is proved; empty for a proof.
     earliest, latest : float
-        Between which the rotation reaches the overturning angle; where the way ended of what is
-        undecided; NaN of a block that is safe [s].
+        Times between which the rotation reaches the overturning angle; where nothing is proved,
+        the time at which the proof ended; NaN for a block that is safe [s].
     width : float
         Greatest radius of the rotations enclosed at the samples [rad].
     impacts : int
-        Number of impacts enclosed one by one; the greatest of all parts.
+        Number of impacts enclosed one by one; the greatest number in any part.
     bits : int
         Precision of the balls.
     scale : float
-        Of the motion [1].
+        Scale of the motion [1].
     law : str
-        That was taken, in words.
+        Law of impacts or pads that the proof is about, in words.
     restitution_tolerance, scale_tolerance : float
-        Of the set that it was proved of [1].
+        Largest deviations of restitutions and scale in the set that the proof is about [1].
     angle_tolerance : float
-        Of the same [rad].
+        Largest deviation of theta in that set [rad].
     parts : int
-        Into which the set was divided.
+        Number of parts into which the set was divided.
     safe_share, overturning_share : float
-        Of the set, of which that verdict is proved [1].
+        Shares of the set for which either verdict is proved [1].
     analytic : bool
-        Whether the motion is polynomials between its samples, and not straight lines.
+        Whether the motion is given by polynomials between its samples, not by straight lines.
     """
 
     verdict: str
@@ -89,7 +90,7 @@ class Proof:
         return self.verdict == OVERTURNS if self.decided else None
 
     def agrees(self, overturned: bool | None, end: float) -> bool:
-        """Whether what is proved is what a run up to a time has shown."""
+        """Whether the proved verdict is that of a run up to a time [s]."""
         if overturned is None or not self.decided:
             return False
         if overturned:
@@ -97,7 +98,10 @@ class Proof:
         return self.verdict == SAFE or self.earliest > end
 
     def objections(self, overturned: bool | None, end: float, frequency: float) -> list[str]:
-        """Say where a run up to a time ends otherwise, too early, or overturns at another one."""
+        """Say where a run has another verdict, ends too early, or overturns at another time.
+
+        `end` is the end of the run [s], `frequency` the rate of growth near overturning [s^-1].
+        """
         if overturned is None or not self.decided:
             return []
         if not self.agrees(overturned, end) and not self.earliest <= end <= self.latest:
@@ -112,7 +116,7 @@ class Proof:
         return []
 
     def values(self, overturned: bool | None, end: float) -> dict[str, float | bool]:
-        """Give the scalars by their names in the schema, beside a run up to a time."""
+        """Give the scalars for the dataset of a run up to a time, by their names in the schema."""
         falls = self.verdict == OVERTURNS
         return {
             "verdict_proved": self.agrees(overturned, end),
@@ -122,11 +126,11 @@ class Proof:
         }
 
     def attributes(self) -> dict[str, str | int]:
-        """Give what a dataset says of the proof."""
+        """Give the attributes of a dataset that describe the proof."""
         return {"proof": str(self), "proof_verdict": self.verdict, "proof_bits": self.bits}
 
     def __str__(self) -> str:
-        """Say what has been proved, and of what."""
+        """Say what has been proved, and for which inputs."""
         between = "this record, joined by straight lines,"
         if self.analytic:
             between = "this motion, the polynomials that runs take,"
@@ -161,10 +165,10 @@ class Proof:
 
 
 def _rounded(time: float, rounding: str) -> str:
-    """Write a time so that it is on the far side."""
+    """Write a time with `_DIGITS` digits, rounded in a direction."""
     return f"{float(Context(_DIGITS, rounding).create_decimal(time)):.{_DIGITS}g}"
 
 
 def outwards(value: object, direction: float) -> float:
-    """Round to a double on the far side."""
+    """Give the next double in a direction, so that a rounded bound stays one."""
     return math.nextafter(float(value), direction)  # type: ignore[arg-type]

@@ -290,13 +290,13 @@ class Motion:
 
 @dataclass(frozen=True)
 class Slope:
-    """The inclination of a base line, which rises to the right, and the components of gravity."""
+    """The inclination of a base line, which rises to the right, and the gravity on it."""
 
     inclination: float  # i [rad]
     gravity: float  # g [m s^-2]
 
     level: bool = field(init=False, repr=False, compare=False)  # whether the base does not rise
-    # components of gravity along the base, g sin i, and normal to it, g cos i
+    # ground accelerations that are equivalent to gravity: along the base g sin i, normal g cos i
     along_gravity: float = field(init=False, repr=False, compare=False)  # [m s^-2]
     normal_gravity: float = field(init=False, repr=False, compare=False)
 

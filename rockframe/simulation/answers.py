@@ -1,4 +1,4 @@
-"""Histories, forces and points of a run, as far as they are asked for."""
+"""Histories, peaks of forces and motions of points of a run, as far as they are requested."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -48,27 +48,27 @@ from rockframe.system.own_base import OwnAnswers
 Found = TypeVar("Found")
 
 OF_SLIPS: Final = (SLIP, REVERSAL, STICK)
-"""Events by which a base that could not be held any longer slips, and holds again."""
+"""Events at which a base begins to slip, reverses its slip, or is held again."""
 STOPPED_WITHIN: Final = 1e-6
-"""Share of the width of its base that a body slips at most where friction stops it at once."""
+"""Longest slip, over the width of the base, of a body that friction stops at once."""
 
 
 @dataclass(frozen=True)
 class Answers:
-    """What samples tell; nothing of a run without."""
+    """What follows from the samples of a run; empty for a run without samples."""
 
-    # by their names in the schema
+    # histories, and values at events, by their names in the schema
     values: dict[str, Generic] = field(default_factory=dict[str, Generic])
-    # peaks of forces, what is left at the end, and peaks at points, shape (points,)
+    # peaks of forces, residuals at the end of the run, and peaks at points, shape (points,)
     scalars: dict[str, Generic | float] = field(default_factory=dict[str, Generic | float])
-    # names and places of points
+    # names and places of points, names of restrainers
     points: dict[str, Generic] = field(default_factory=dict[str, Generic])
-    # whether bases have friction enough, of those to which it was given
+    # checks of the bases with a given friction that the model holds
     slidings: list[SlidingCheck] = field(default_factory=list[SlidingCheck])
 
 
 def ground_at(motion: GroundMotion | None, time: Array) -> Array:
-    """Evaluate a motion: horizontal and vertical accelerations, shape (times, 2) [m s^-2]."""
+    """Give the horizontal and vertical ground accelerations, shape (times, 2) [m s^-2]."""
     still = np.zeros_like(time)
     components = () if motion is None else (motion.si.horizontal, motion.si.vertical)
     found = [still if signal is None else signal.at(time) for signal in components]
@@ -76,11 +76,14 @@ def ground_at(motion: GroundMotion | None, time: Array) -> Array:
 
 
 def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]) -> Answers:
-    """Give what the samples of a run tell: histories, if they are kept, peaks and points."""
+    """Give what follows from the samples of a run: histories, if they are kept, peaks and points.
+
+    What cannot be computed is named in `missing`.
+    """
     setting, load, model = system.setting, system.setting.load, system.model
-    whole = bool(plan.points or plan.diagnostics)  # all that is shown along the steps is needed
+    whole = bool(plan.points or plan.diagnostics)  # whether all columns are needed along the steps
     columns, values, events, ground, moved = _observed(system, plan, run, whole)
-    # energies are worked out apart; what else is no column may follow from columns
+    # energies are computed apart; other requested values that are no columns follow from columns
     if whole or set(plan.requested).difference(values, ENERGIES):
         values |= force_histories(values, moved, load)
     values |= {
@@ -102,7 +105,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
             f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
             "made more steps than are kept"
         )
-    if fell:  # how a block falls is another matter
+    if fell:  # the fall after overturning does not count
         upright = events.those(events.time <= run.overturning_time)
     found = slidings(system, along)
     of_forces, of_settlement = peaks_along(along, upright, load)
@@ -111,7 +114,7 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
         **of_settlement,
     }  # fmt: skip
     if model.shows_bodies:
-        # as the peak rotation of the highest one, those of the whole run
+        # peaks of the whole run, as for the peak rotation of the highest body
         every = _along(system, plan, run, columns, events, whole, math.inf) if fell else along
         scalars["peak_body_rotation"] = _peaks_of(rotations_of(model.system.bodies()), every)
     places: dict[str, Generic] = {}
@@ -158,7 +161,7 @@ def _own_answers(
     events: EventStates,
     missing: list[str],
 ) -> dict[str, Generic]:
-    """Give what bases and scenes of users' own tell beside what their equations show."""
+    """Give what the methods `answers` of users' own bases and scenes return."""
     sides = [{**side, "time": events.time} for side in (events.before, events.after)]
     sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
     found: dict[str, Generic] = {}
@@ -178,16 +181,17 @@ def _peak_of(one: Diagnostic, along: AlongSteps) -> float:
 def _observed(
     system: Assembly, plan: Plan, run: Trajectory, whole: bool
 ) -> tuple[dict[str, Generic], dict[str, Generic], EventStates, Array, Array]:
-    """Give what the model shows along the steps, at samples, and on both sides of events.
+    """Give the model's columns along the steps, at samples, and before and after events.
 
-    With it, the ground's acceleration at the samples as it was given, and along and normal to the
-    base.
+    Also the ground acceleration at the samples, in horizontal and vertical components and in those
+    along and normal to the base. Unless `whole`, only columns whose peaks are results are given
+    along the steps.
     """
     events, slope, count = run.events, system.options.slope, len(run.time)
     ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
     moved, resolved = ground_on_slope(ground, slope)
     names: tuple[str, ...] | None = None
-    if not whole:  # those whose peaks are told
+    if not whole:  # columns whose peaks are results
         names = BODY_FORCES + OF_SETTLEMENT
         names += forces_of_links(system.model.links) if system.model.links else ()
         names += OF_SOIL_FRICTION if system.setting.stacked else ()
@@ -205,7 +209,7 @@ def _observed(
 
 
 def _at_the_end(system: Assembly, plan: Plan, run: Trajectory) -> dict[str, Generic]:
-    """Give what the model shows at the end of a run, which need not be a sample."""
+    """Give the model's columns at the end of a run, which need not be a sample."""
     ending, ground = run.ending, ground_at(plan.motion, np.array([run.end_time]))
     return observe_states(
         system.model, np.array([ending.mode]), ending.state[None], ending.memory[None],
@@ -222,10 +226,10 @@ def _along(
     whole: bool,
     until: float,
 ) -> AlongSteps:
-    """Give what is shown along the steps up to a time, by what is shown along all.
+    """Give the quantities along the steps up to a time, from the columns along all steps.
 
-    Without those in which friction stops what an impact or a new held point has left: bases that
-    hold need an impulse there, which is no force either.
+    Steps are left out in which friction stops the small slip that an impact or a change of the held
+    point has left: a base that holds takes an impulse there instead, which is no force.
     """
     slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
     steps = run.kept_steps.until(until)
@@ -278,7 +282,7 @@ def _peaks_of(names: tuple[str, ...], along: AlongSteps) -> Array:
 
 
 def _stops(run: Trajectory, events: EventStates, within: float) -> Integers:
-    """Give the numbers, from one, of events whose small velocity friction stops `within` a way."""
+    """Give the numbers, from 1, of events whose small slip velocity friction stops `within` [m]."""
     kind = run.events.kind
     changes = ~np.isin(kind[:-1], OF_SLIPS) & (kind[1:] == STICK)
     of_caps = ("slip", "cap_slip")
@@ -288,7 +292,7 @@ def _stops(run: Trajectory, events: EventStates, within: float) -> Integers:
 
 
 def _state_of(values: dict[str, Generic], time: Array, ground: Array) -> dict[str, Generic]:
-    """Give what diagnostics may follow from: what is known at some times, and the ground there."""
+    """Give the state that diagnostics take: values at some times, and the ground there."""
     known = {name: each for name, each in values.items() if name in SCHEMA}
     return {
         **{name: each for name, each in known.items() if SCHEMA[name].dims == TIME},
@@ -304,10 +308,10 @@ def _level(moved: Array, slope: Slope) -> Array:
 
 
 def or_missing(work: Callable[[], Found], instead: Found, what: str, missing: list[str]) -> Found:
-    """Compute what goes with a finished run, without a risk to the run."""
+    """Compute something that goes with a finished run; if it fails, note it and give `instead`."""
     try:
         return work()
-    except Warning:  # asked for as an error
+    except Warning:  # the user has made warnings errors
         raise
     except Exception as problem:
         kind = "" if isinstance(problem, RockframeError) else f"{type(problem).__name__}: "

@@ -1,7 +1,7 @@
-"""The arguments of a run, checked against the system and one another.
+"""The plan of a run: its arguments, checked against the system and one another.
 
-Also what is asked of it beside the usual, and where it starts: at rest, released, or where another
-run ended.
+Also the outputs that it gives on request, and its start: at rest, from an initial state, or from
+the end of another run.
 """
 
 import json
@@ -37,7 +37,7 @@ EXAMPLE: Final = 'points={"roof": ("0 m", "18 m")}'
 
 
 def listed(outputs: object) -> list[object]:
-    """Give what the argument ``outputs`` names, one by one."""
+    """Give the argument ``outputs`` as a list."""
     if outputs is None:
         return []
     if isinstance(outputs, Iterable) and not isinstance(outputs, str | Mapping):
@@ -48,9 +48,9 @@ def listed(outputs: object) -> list[object]:
 def outputs_of(
     outputs: object, points: object, faults: list[str]
 ) -> tuple[tuple[str, ...], tuple[Diagnostic, ...]]:
-    """Read the argument ``outputs``: names of variables and of groups, and diagnostics.
+    """Read the argument ``outputs``: names of variables, groups and diagnostics.
 
-    Both in the order in which they are known; what is unknown is noted.
+    Gives variables and diagnostics, each in the order of their tables; unknown names become faults.
     """
     wanted: set[str] = set()
     diagnostics: set[str] = set()
@@ -88,11 +88,11 @@ NEEDED: Final = {
     "toe_pressure": (("toe_pressure",), "a WinklerSoil"),
     "soil_friction_demand": (OF_SOIL_FRICTION, "a CushionCap between block and WinklerSoil"),
 }
-"""Columns of a model without which it has no such output, and what gives them."""
+"""For outputs that not all scenes have, the columns and the parts that they need."""
 
 
 def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
-    """Give the faults of asking for outputs that the scene does not have."""
+    """Give a fault for each requested output that the scene does not have."""
     depend = [name for name in names if name in NEEDED]
     if not depend:
         return []
@@ -108,7 +108,7 @@ def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
 def points_of(
     given: object, faults: list[str], *, owner: str = "simulate"
 ) -> tuple[BodyPoint, ...]:
-    """Read the argument ``points``: names and places on the body; note what is wrong."""
+    """Read the argument ``points``: names and places on the body; add what is wrong to faults."""
     if given is None:
         return ()
     if not isinstance(given, Mapping):
@@ -152,7 +152,7 @@ def start_of(beginning: Beginning) -> Start | Ending:
 
 
 def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) -> Beginning:
-    """Read where a run ended, or note why none can go on from there."""
+    """Read the end of a run from its dataset, or add to faults why no run can go on from it."""
     attributes: Mapping[str, Any] = cast("Mapping[str, Any]", dataset.attrs)
     if END_STATE not in attributes or "system_json" not in attributes:
         faults.append("initial is a dataset that holds no end of a run; expected one of simulate()")
@@ -177,7 +177,7 @@ def continuation_of(dataset: xr.Dataset, system: Assembly, faults: list[str]) ->
 
 
 def _with_new_peaks(ending: Ending, system: Assembly) -> Ending:
-    """Let the greatest slips begin anew, as all other peaks do; what has slipped so far stays."""
+    """Reset the peak slips in the memory, as all peaks are at a start; the slip itself stays."""
     if not system.setting.slides:
         return ending
     memory = ending.memory.copy()
@@ -190,7 +190,7 @@ def _with_new_peaks(ending: Ending, system: Assembly) -> Ending:
 
 
 def _came_back(dataset: xr.Dataset, system: Assembly, ending: Ending) -> bool:
-    """Whether a run that passed the overturning angle stands, and ends within it."""
+    """Whether a run that passed the overturning angle has not overturned, and ends within it."""
     rotation = system.model.rotation_in(ending.state)
     within = abs(rotation) < system.setting.overturning_angles.on_side_of(rotation)
     return within and "status" in dataset and verdict_of(dataset) is False
@@ -214,7 +214,7 @@ _REST: Final = InitialState()
 
 @dataclass(frozen=True, kw_only=True)
 class _Requested:
-    """What is asked of a run beside its length and its start; numbers in SI units."""
+    """The arguments of a run other than its length and its start; numbers in SI units."""
 
     accuracy: Accuracy
     accuracy_name: str
@@ -226,7 +226,7 @@ class _Requested:
     stop_at_overturning: bool
 
     def _described(self) -> dict[str, Any]:
-        """Give it as :meth:`rockframe.System.simulate` takes it, fit for JSON."""
+        """Give these arguments as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
         return {
             "accuracy": vars(self.accuracy),
             "output_step": _time(self.output_step),
@@ -245,14 +245,14 @@ class _Requested:
 
 @dataclass(frozen=True, kw_only=True)
 class RunRequest(_Requested):
-    """What a run is asked for, whatever its system and motion; numbers in SI units."""
+    """The arguments of a run before they meet a system and a motion; numbers in SI units."""
 
     duration: float | None
     free_vibration: float | None
     initial: "InitialState | xr.Dataset"
 
     def to_dict(self) -> dict[str, Any]:
-        """Give them as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
+        """Give all arguments as :meth:`rockframe.System.simulate` takes them, fit for JSON."""
         return {
             "duration": _time(self.duration),
             "free_vibration": _time(self.free_vibration),
@@ -265,8 +265,8 @@ class RunRequest(_Requested):
 class Plan(_Requested):
     """A run's arguments, checked and in SI units.
 
-    There are samples where `output_step` is given: for the histories, if they are kept, for
-    the peaks at points, and for the friction that a base is said to have.
+    The run has samples if `output_step` is not None: they are needed for histories, for peaks at
+    points, and to check the friction that a base was given.
     """
 
     motion: GroundMotion | None
@@ -275,17 +275,17 @@ class Plan(_Requested):
 
     @property
     def energies(self) -> tuple[str, ...]:
-        """Energies among what is requested."""
+        """Names of the energies among the requested outputs."""
         return tuple(name for name in self.requested if name in ENERGIES)
 
     @property
     def interval(self) -> float:
-        """Time between samples of the motion, or between steps of a still ground [s]."""
+        """Time between samples of the motion, or the interval used for still ground [s]."""
         return STILL_INTERVAL if self.motion is None else self.motion.si.time_step
 
     @property
     def has_vertical_motion(self) -> bool:
-        """Whether the ground moves vertically, too."""
+        """Whether the motion has a vertical component."""
         return self.motion is not None and self.motion.si.vertical is not None
 
     def bare(self) -> "Plan":
@@ -393,7 +393,7 @@ def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
 
 
 def _motion_hint(given: object) -> str:
-    """Say how a motion is had from what was given, if that is known."""
+    """Say how to make a motion from what was given, if that is known."""
     if isinstance(given, str | PathLike):
         return f"; read the file first: GroundMotion.read({str(given)!r})"  # pyright: ignore[reportUnknownArgumentType]
     if hasattr(given, "shape") or isinstance(given, list):
@@ -406,7 +406,7 @@ def _motion_hint(given: object) -> str:
 def _beginning(
     system: Assembly, given: "InitialState | xr.Dataset", faults: list[str]
 ) -> Beginning:
-    """Give where the run begins; note what does not fit the system."""
+    """Give the start of the run; add to faults what does not fit the system."""
     if isinstance(given, xr.Dataset):
         return continuation_of(given, system, faults)
     start = given.si
@@ -424,12 +424,12 @@ def _beginning(
 
 
 def usual_output_step(motion: GroundMotion | None) -> float:
-    """Give the spacing that histories have where none is asked for [s]."""
+    """Give the default spacing of histories [s]."""
     return _STILL_GROUND_OUTPUT_STEP if motion is None else motion.si.time_step
 
 
 def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:
-    """Give the length of a run under a motion; zero where neither tells it [s]."""
+    """Give the length of a run under a motion; 0 without a motion and a duration [s]."""
     if arguments.duration is not None:
         return arguments.duration
     return (0.0 if motion is None else motion.si.duration) + (arguments.free_vibration or 0.0)

@@ -1,4 +1,4 @@
-"""What a result says of its run, and the way back."""
+"""Attributes by which a result describes its motion and system, and the way back to these."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -17,15 +17,15 @@ from rockframe.solve.accuracy import Accuracy
 from rockframe.units import TIME, Unit
 
 _AFTER_END: Final = "_after_end"
-"""Of the names of samples that follow those of the histories."""
+"""Suffix of the names of samples of the motion that follow the histories."""
 _NEXT_STEP: Final = "; "
-"""Between the steps of the history of a motion."""
+"""Separator between the steps of the history of a motion."""
 _SAME_SYSTEM: Final = ("motion", "start")
-"""What axes of sweeps change that leave the system as it is."""
+"""Kinds of sweep axes that do not change the system."""
 
 
 def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | int]:
-    """Describe a motion so that it can be recognised, and rebuilt where possible."""
+    """Give attributes by which a motion can be recognised and, where possible, rebuilt."""
     if motion is None:
         return {"motion": "none"}
     return {
@@ -39,13 +39,13 @@ def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | in
 
 
 def motion_words(attributes: Mapping[str, Any]) -> str:
-    """Say of which motion a result is, and by how much that was scaled."""
+    """Give the name of a result's motion, and the factor by which it was scaled."""
     history = str(attributes.get("motion_history", "")).split(_NEXT_STEP)
     return shown_name(str(attributes["motion"]), history)
 
 
 def check_own_system(dataset: xr.Dataset) -> None:
-    """Refuse what was picked out of a sweep whose axes change the system that it describes."""
+    """Refuse a case picked out of a sweep whose axes change the system that attributes describe."""
     axes = json.loads(dataset.attrs.get("axes_json", "[]"))
     changed = [
         str(axis["name"])
@@ -65,9 +65,9 @@ def check_own_system(dataset: xr.Dataset) -> None:
 def motion_after_end(
     motion: GroundMotion | None, histories: Mapping[str, NDArray[Any]]
 ) -> dict[str, NDArray[Any]]:
-    """Give the samples that histories at the samples of a motion lack, where the run ended early.
+    """Give the samples of a motion that the histories lack since the run ended early.
 
-    With them the result holds its motion, if that is nothing but samples.
+    With them the result contains a motion that is given by samples alone.
     """
     if motion is None or motion.recipe is not None or "time" not in histories:
         return {}
@@ -83,13 +83,13 @@ def motion_after_end(
 
 
 def _on_samples(time: NDArray[Any], step: float) -> int:
-    """Count the times of histories that are samples of a motion, from the first one on."""
+    """Count the leading times of histories that coincide with samples of a motion."""
     same = time == np.arange(len(time)) * step
     return len(time) if bool(same.all()) else int(np.argmin(same))
 
 
 def motion_from_dataset(dataset: xr.Dataset) -> GroundMotion | None:
-    """Give the motion of a result: built anew, or read from its histories."""
+    """Give the motion of a result: rebuilt from its description, or read from the histories."""
     text = dataset.attrs.get("motion_json")
     if text is None:
         return None
@@ -146,14 +146,14 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
 
 
 def description_by_names(given: object) -> Mapping[str, Any]:
-    """Refuse what is no description of a system."""
+    """Give the description of a system as a mapping; refuse anything else."""
     return by_names(given, owner="System", name="description", example="that of to_dict()")
 
 
 def parts_and_options(
     description: Mapping[str, Any], arguments: Iterable[str]
 ) -> tuple[list[Component], dict[str, Any]]:
-    """Give parts and options of a description of a system, of whose arguments it may have any."""
+    """Give the parts and options in a description of a system, which takes these arguments."""
     if "parts" not in description_by_names(description):
         msg = "found no 'parts'; expected a list of them, as to_dict() gives it"
         raise SchemaError(msg)
@@ -170,7 +170,7 @@ def parts_and_options(
 
 
 def arguments_of_run(dataset: xr.Dataset) -> dict[str, Any]:
-    """Give the arguments of the run that a result came from, without its outputs."""
+    """Give the arguments of the run that made a result, without `outputs`."""
     try:
         described = json.loads(dataset.attrs["run_json"])
         initial, accuracy = described["initial"], Accuracy(**described["accuracy"])

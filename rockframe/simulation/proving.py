@@ -1,4 +1,4 @@
-"""Proofs of verdicts, as users ask for them."""
+"""Functions by which users prove verdicts, over the package proof."""
 
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
@@ -24,7 +24,7 @@ _OWNER: Final = "prove"
 _CRITICAL: Final = "prove_critical_scale"
 _WIDTH: Final = Condition("from 1e-14 to 0.1", lambda value: 1e-14 <= value <= 0.1)
 _PLACES: Final = (0.5, 0.25, 0.75, 0.4, 0.6, 0.1, 0.9)
-"""Shares of a bracket at which it is divided, one after the other where nothing is decided."""
+"""Places at which a bracket is divided, as shares of it; the next one where nothing is proved."""
 _GROWTH: Final = 1.1
 _FARTHEST: Final = 100
 _TOLERANCE: Final = Condition("from 0 to 0.1", lambda value: 0.0 <= value <= 0.1)
@@ -50,21 +50,22 @@ def prove(
         A block on rigid ground, with ``rotation="finite"``, inclined ground too; or on a
         :class:`TwoSpringSupport` on level ground, held at its centre or by contact state.
     motion : GroundMotion, optional
-        With or without vertical component; of a pulse in closed form the polynomials that runs
-        take too. The one among the parts unless given.
+        With or without vertical component; a pulse in closed form is proved for the polynomials
+        by which runs represent it. The motion among the parts unless given.
     scale : float, optional
         Factor of both components, taken as exact [1].
     restitution_tolerance : float, optional
-        What is proved is proved of all restitutions of either corner that differ by no more than
-        this [1].
+        The proof holds for all coefficients of restitution of either corner that differ from the
+        given ones by no more than this [1].
     scale_tolerance : float, optional
-        And of all scales; on rigid ground [1].
+        It holds also for all scales that differ by no more than this; on rigid ground [1].
     angle_tolerance : str or Quantity, optional
-        And of all angles theta of either corner, at the same distance from the centre of mass,
-        with the same inertia and restitutions, which overturn at that angle; on rigid ground [rad].
+        It holds also for all angles theta of either corner that differ by no more than this, with
+        the same distance of the corner from the centre of mass, inertia and restitutions, and with
+        theta the angle that overturns; on rigid ground [rad].
     parts : int, optional
-        Into so many the set of these numbers is divided at most, where nothing is decided of it as
-        a whole. Each takes a proof of its own.
+        Largest number of parts into which the set of all these numbers is divided, where nothing
+        can be decided for the whole set. Each part takes a proof of its own.
     initial : InitialState, optional
         Where the motion starts; at rest unless given.
 
@@ -73,15 +74,15 @@ def prove(
     Proof
         Its ``verdict`` is ``"safe for ever"``, on ground that stays still after the record,
         ``"overturns"``, between ``earliest`` and ``latest`` [s], or ``"undecided"``, with the
-        ``reason``; of a set of which parts are decided, with their shares. Its text says what
-        has been proved.
+        ``reason``; for a set that is decided in parts only, with the shares of these. Its text
+        says what has been proved.
 
     Raises
     ------
     UnitsError
         An argument is no ratio.
     ComponentError
-        Not a System, another scene than these, small rotation on rigid ground, or
+        Not a System, a scene of another kind, small rotation on rigid ground, or
         python-flint is not installed (``pip install rockframe[proof]``).
     AssemblyError
         As for :meth:`rockframe.System.simulate`.
@@ -89,8 +90,8 @@ def prove(
     Notes
     -----
     Every real number that occurs is enclosed in a ball, from the first sample to the end
-    (section "Proved verdicts" of the theory manual). The theorem is about the model with these
-    doubles; it does not say how well the model describes the block.
+    (section "Proved verdicts" of the theory manual). The theorem is about the model whose numbers
+    are the doubles of a run; it does not say how well the model describes the block.
 
     Examples
     --------
@@ -119,7 +120,7 @@ def prove(
 
 @dataclass(frozen=True)
 class ProvedBracket:
-    """Two scales, one of which is proved safe for ever, the other to overturn the block.
+    """Two scales of a motion: at one the block is proved safe for ever, at the other to overturn.
 
     Parameters
     ----------
@@ -148,7 +149,7 @@ def prove_critical_scale(
     start: RatioLike = 1.0,
     initial: InitialState | None = None,
 ) -> ProvedBracket:
-    """Enclose a scale of a record at which a block begins to overturn, proved on both sides.
+    """Enclose a scale of a record at which the verdict changes, proved on both sides.
 
     Parameters
     ----------
@@ -157,10 +158,10 @@ def prove_critical_scale(
     motion : GroundMotion, optional
         A record; the one among the parts unless given.
     width : float, optional
-        Distance of the scales at which the search ends, over the greater [1].
+        Distance of both scales, over the greater, at which the search ends [1].
     start : float, optional
-        Scale from which an overturning one is looked for, upwards in steps of a tenth, or a
-        safe one, downwards [1].
+        Scale from which the search begins, in steps of a tenth: upwards for a scale that
+        overturns, or downwards for a safe one [1].
     initial : InitialState, optional
         Where the motion starts; at rest unless given.
 
@@ -168,7 +169,7 @@ def prove_critical_scale(
     -------
     ProvedBracket
         ``safe``, ``overturns`` and ``width`` [1], and how many scales remained ``undecided``;
-        wider than asked where none between can be decided.
+        wider than `width` where no scale in between can be decided.
 
     Raises
     ------
@@ -177,8 +178,8 @@ def prove_critical_scale(
 
     Notes
     -----
-    Verdicts are not monotone in the scale: it is a bracket of a change of the verdict, and there
-    may be others below.
+    Verdicts are not monotone in the scale: this brackets one change of the verdict, and there
+    may be others at lower scales.
 
     Examples
     --------
@@ -246,7 +247,7 @@ def proof_of(
     within: Tolerances = EXACT,
     owner: str = _OWNER,
 ) -> Proof:
-    """Prove the verdict of a run as it was planned, by its motion and its start."""
+    """Prove the verdict of a planned run; raise ComponentError where that is not possible."""
     model, motion = system.model, plan.motion
     faults = _faults(system)
     if not plan.stop_at_overturning:
@@ -282,7 +283,7 @@ def proof_of(
 
 
 def _faults(system: Assembly) -> list[str]:
-    """Say why no proof is to be had of a scene."""
+    """Say why the verdicts of a scene cannot be proved; empty where they can."""
     law, options = system.model.system, system.options
     if isinstance(law, BlockOnRigidGround):
         faults = ["proofs on rigid ground are with rotation='finite'"] if options.small else []

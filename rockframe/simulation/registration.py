@@ -1,4 +1,4 @@
-"""Making known what users bring: bases, whole scenes, the columns that they show, diagnostics."""
+"""Registration of users' own bases, links, scenes, columns of results and diagnostics."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, cast
@@ -35,27 +35,29 @@ def register(
     unit: Unit | str | None = None,
     long_name: str | None = None,
 ) -> None:
-    """Make something of your own known: a base, a link, a scene, or a diagnostic.
+    """Register something of your own: a base, a link, a scene, or a diagnostic.
 
     Parameters
     ----------
     kind : type of OwnBase, type of OwnScene, type of OwnLink, Diagnostic or callable
-        The class of a link, with ``law``, which stands in scenes as a Restrainer does; that of a
-        base, with ``slot`` and ``support``, which stands in scenes as pads or soil do; that of a
-        scene, with the parts that make it and equations of its own; or a function of the state,
-        which gives a :class:`~rockframe.extension.Diagnostic`.
+        The class of a link, with ``law``, to be used in scenes as a Restrainer; the class of a
+        base, with ``slot`` and ``support``, to be used in scenes as pads or soil; the class of a
+        scene, with its parts and its own equations; or a function of the state, which becomes a
+        :class:`~rockframe.extension.Diagnostic`.
     columns : sequence of Variable, optional
-        What a base or a scene shows and no other does: over ``time``, over ``event``, over
-        dimensions of its own, for each of which there is a column of its name with labels, or
-        over none.
+        Variables of results that only this base or scene has: over ``time``, over ``event``, over
+        dimensions of its own, each of which needs a column of its name with labels, or over no
+        dimension.
     name, unit, long_name : str, optional
-        Of a function: its name in results unless it is that of the function; the unit of what
-        it gives; and what that is, unless the first line of its docstring says it.
+        For a function: the name of the diagnostic, that of the function unless given; the unit of
+        the numbers that it returns; and their meaning, the first line of its docstring unless
+        given.
 
     Raises
     ------
     ComponentError
-        What is not as it must be, every fault at once; nothing is registered then.
+        Something does not have the required form; all faults are listed, and nothing is
+        registered.
 
     Examples
     --------
@@ -184,11 +186,11 @@ _ASKED: Final = {
     "contact_model": "method contact_model(), which gives its equations",
     "words": "method words(), which describe() tells",
 }
-"""What a scene must have."""
+"""What the class of a scene must define."""
 
 
 def _faults_of_part(owner: str, slot: Any, part: Any) -> list[str]:
-    """Tell what is wrong with a part of a scene and its slot."""
+    """Say what is wrong with a part of a scene and its slot."""
     where = f"{owner}.made_of[{slot!r}]"
     if not (isinstance(slot, str) and slot.isidentifier()):
         return [f"{where}: a slot is called by a name such as 'floor'"]

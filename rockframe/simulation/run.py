@@ -1,4 +1,4 @@
-"""One run: the integration and the dataset."""
+"""One run: integration as planned, then the labelled dataset with its cautions."""
 
 import json
 import math
@@ -52,13 +52,13 @@ ADAPTIVE = "Dormand-Prince 5(4) from sample to sample, with event location"
 FIXED = "Nystrom method of order 3 in fixed sub-steps from sample to sample, with event location"
 _LEAVES: Final = "the block would leave the rigid ground, which this model cannot show"
 NONE: Final = "none"
-"""What is said where there is nothing to be cautious of."""
+"""Value of the attribute `cautions` where there are none."""
 _SAMPLES: Final = "histories, and the peaks of forces and at points,"
 _SECOND: Final = "a second run with more steps"
 _FRICTION: Final = "whether the base has the friction that is needed"
 _LEAVING: Final = "whether the block would leave the ground"
 TENSION: Final = 1e-9
-"""Share of the largest reaction below which a pull is rounding."""
+"""Share of the largest reaction below which a tensile reaction is rounding."""
 
 Caution: TypeAlias = tuple[type[RockframeWarning], str]
 """A warning's kind and text."""
@@ -66,9 +66,10 @@ Caution: TypeAlias = tuple[type[RockframeWarning], str]
 
 @dataclass(frozen=True)
 class Response:
-    """A run before it is labelled: what became of it, and what its samples tell.
+    """A run before it is labelled: its trajectory, and what follows from its samples.
 
-    What fails behind the integration is missing, and told; the run is not lost.
+    If something fails after the integration it is left out and named in `missing`, so that the run
+    is not lost.
     """
 
     system: Assembly
@@ -90,19 +91,19 @@ class Response:
 
     @cached_property
     def in_motion(self) -> bool:
-        """Whether the body stood with the energy to overturn later."""
+        """Whether the body has not overturned, but has the energy to do so later."""
         return in_motion(self.system, self.trajectory, self.missing)
 
     @cached_property
     def ambiguities(self) -> tuple[dict[str, int], list[str]]:
-        """How often motion was not unique, and the same in words; nothing where it always is."""
+        """Counts of events after which motion is not unique, and cautions about them."""
         model = self.system.model
         if not isinstance(model.system, RigidChain):
             return {}, []
         return ambiguities(model, model.system, self.trajectory)
 
     def summary(self) -> RunSummary:
-        """Tell what a certificate asks of the run."""
+        """Give the summary of the run that certificates are made from."""
         share = peak_share(self.trajectory, self.system.setting.overturning_angles)
         shown = run_summary(
             self.trajectory, self.events, share, self.plan.duration, in_motion=self.in_motion
@@ -114,7 +115,7 @@ class Response:
         return replace(shown, slides=slides, slip=slip)
 
     def cautions(self) -> list[Caution]:
-        """Give what is to be warned of."""
+        """Give the warnings about the run."""
         summary, plan, missing = self.trajectory, self.plan, self.missing
         setting = self.system.setting
         moving = [STILL_MOVING] if self.in_motion else []
@@ -130,7 +131,7 @@ class Response:
             lambda: list(_leaving(self.system, plan.motion, values, falls)), [], _LEAVING, missing
         )  # fmt: skip
         slipping = or_missing(lambda: list(slips(self.answers.slidings)), [], _FRICTION, missing)
-        _ = self.scalars  # what is missing of them is said, too
+        _ = self.scalars  # computed first: what fails is added to `missing`
         cut_off = [] if summary.status.finished else [verdict(summary, setting, self.system.model)]
         beyond = setting.beyond_edges(summary.ending)
         of_model = [*self.ambiguities[1], *beyond, *leaving, *slipping]
@@ -142,7 +143,7 @@ class Response:
 
 
 def in_motion(system: Assembly, summary: Summary, missing: list[str]) -> bool:
-    """Tell whether a body that stood may overturn later; False where it cannot be told."""
+    """Whether a body that has not overturned may do so later; False where that is unknown."""
     what = "whether the body still has the energy to overturn"
     return or_missing(lambda: may_overturn_later(system, summary), False, what, missing)
 
@@ -197,7 +198,7 @@ def run(
         frequency = system.setting.body.frequency_at(system.setting.gravity)
         objections = proof.objections(shown.overturned, summary.end_time, frequency)
         cautions += [(SolverWarning, text) for text in objections]
-    # said of every run: what only some datasets say, xarray.concat would take for all
+    # an attribute of every run: xarray.concat would give one of a few runs to all of them
     attributes["cautions"] = NONE
     for kind, text in cautions:
         warn(text, kind)
@@ -226,21 +227,21 @@ def run(
 
 
 def _looked_again(system: Assembly, plan: Plan, summary: Summary) -> tuple[float, list[Caution]]:
-    """Give the error of the peak that a second run with more steps shows, and its doubts."""
+    """Give the error of the peak by a second run with more steps, and the doubts it raises."""
     second = respond(system, second_look(system, plan)).trajectory
     found = doubts(system.setting, plan, summary, second)
     return peak_error(summary, second), [(SolverWarning, text) for text in found]
 
 
 def summary_of(system: Assembly, plan: Plan) -> RunSummary:
-    """Integrate as planned, and tell what a certificate asks of the run."""
+    """Integrate as planned, and give the summary of the run that certificates are made from."""
     return respond(system, plan).summary()
 
 
 def respond(system: Assembly, plan: Plan) -> Response:
-    """Integrate as planned."""
+    """Integrate as planned; give the run before it is labelled."""
     sampled = plan.output_step is not None
-    # of a run without histories only the start and the end are asked for
+    # a run without histories is sampled at its start and end only
     output_step = plan.duration if sampled and not plan.histories else plan.output_step
     missing: list[str] = []
     answers = Answers()
@@ -291,7 +292,7 @@ def _attributes(
 
 
 def has_no_cautions(system: Assembly, summary: Summary) -> bool:
-    """Whether a run with fixed steps has come to an end, with its energies in balance."""
+    """Whether a run with fixed steps is finished, with its energies in balance."""
     return summary.status.finished and summary.energy_residual <= doubtful_residual(system)
 
 
@@ -301,7 +302,7 @@ def _leaving(
     values: Mapping[str, Generic],
     overturning_time: float,
 ) -> Iterator[str]:
-    """Warn of a block that would leave ground which the equations do not let it leave."""
+    """Warn of a block that would lift off the ground, where the equations do not allow flight."""
     slope = system.options.slope
     if motion is not None and not (slope.level and motion.si.vertical is None):
         moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
@@ -312,7 +313,7 @@ def _leaving(
             yield f"{found}: {_LEAVES}{system.setting.to_fly}"
     if "left_reaction" not in values:
         return
-    stands = ~(values["time"] > overturning_time)  # how a block falls is another matter
+    stands = ~(values["time"] > overturning_time)  # the fall after overturning does not count
     reaction = (values["left_reaction"] + values["right_reaction"])[stands]
     lowest = float(np.min(reaction))
     if lowest < -TENSION * float(np.max(np.abs(reaction))):

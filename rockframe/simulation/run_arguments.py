@@ -1,4 +1,4 @@
-"""What a run is asked for, as users write it: each argument with its type, default and meaning."""
+"""The arguments of runs as users write them: each with its type, default and meaning."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ NO_ARGUMENTS: Final = {
     "gravity": "it is an option of System(..., gravity='9.81 m/s^2')",
     "scale": "write simulate(motion.scaled(1.5))",
 }
-"""What a run does not take, and what does."""
+"""Arguments that users may try and a run does not take, with what to write instead."""
 
 OutputStep: TypeAlias = Annotated[
     QuantityLike | None,
@@ -80,7 +80,7 @@ class LengthArguments(TypedDict, total=False):
 
 
 class RunArguments(LengthArguments, total=False):
-    """All that :meth:`rockframe.System.simulate` asks of a run, and passes on."""
+    """The arguments that :meth:`rockframe.System.simulate` passes on to the plan of a run."""
 
     initial: InitialState | xr.Dataset | None
     accuracy: AccuracyLike
@@ -91,7 +91,7 @@ class RunArguments(LengthArguments, total=False):
 
 
 class ScaleArguments(LengthArguments, total=False):
-    """Of runs one after the other that differ in the scale of their motion."""
+    """Arguments of runs that differ in the scale of their motion."""
 
     initial: Annotated[
         InitialState | xr.Dataset | None,
@@ -107,7 +107,7 @@ class ScaleArguments(LengthArguments, total=False):
 
 
 class ComparedArguments(LengthArguments, total=False):
-    """Of runs of which models and accuracies are compared."""
+    """Arguments of runs by which models and accuracies are compared."""
 
     initial: Annotated[InitialState | None, START]
     output_step: OutputStep
@@ -122,7 +122,7 @@ MOST_RUNS: Final = 100_000
 @proposing
 @dataclass(frozen=True, init=False)
 class Certification:
-    """What a certificate tries.
+    """The further runs that a certificate makes.
 
     Parameters
     ----------
@@ -131,12 +131,13 @@ class Certification:
     reach : float, optional
         Largest relative change of the motion's scale [1].
     runs : int, optional
-        Most further runs; more follow the verdict farther where it changes fast.
+        Largest number of further runs; with more of them the verdict can be followed to larger
+        changes of scale where it changes often.
 
     Raises
     ------
     UnitsError
-        Not a ratio.
+        An argument is no ratio.
     ComponentError
         A nudge outside 0 to 0.1, a reach outside 0.01 to 0.9, or a number of runs outside
         60 to 100 000.
@@ -164,4 +165,4 @@ class Certification:
 
 
 PROVED: Final = "proved"
-"""In the place of what a certificate tries: that the verdict is to be proved."""
+"""Value of `certify` in place of a `Certification`: the verdict is to be proved."""

@@ -1,7 +1,7 @@
-"""What is to be doubted of a run.
+"""Checks of a finished run that give reasons to doubt it.
 
-Bases without the friction that holds what stands on them, energies out of balance, a body that
-still moves at the end, and impacts on rigid bases after which motion is not unique.
+Friction that bases lack to hold what stands on them, energies out of balance, a body that still
+moves at the end, and impacts on rigid bases after which the motion is not unique.
 """
 
 import math
@@ -37,24 +37,25 @@ if TYPE_CHECKING:
     from rockframe.simulation.plan import Plan
 
 BY_TOLERANCE: Final = 1e-3
-"""Residual beyond which steps by tolerance give no solution; sound ones stay below 1e-5."""
+"""Energy residual beyond which steps by tolerance give no solution; sound runs are below 1e-5."""
 FIXED: Final = 0.5
-"""The same of fixed steps, whose works on springs are less exact than their motion."""
+"""Energy residual beyond which fixed steps give no solution; their works on springs are less exact
+than their motion."""
 DOUBTFUL: Final = 1e-2
-"""Residual of fixed steps beyond which it takes a run by tolerance to tell."""
+"""Energy residual of fixed steps beyond which the run is compared with one by tolerance."""
 DOUBTFUL_ON_SPRINGS: Final = 0.04
-"""The same on a base that gives way, where works are less exact: of 40 000 random runs none
-reached it, and those with half of it were wrong no more often than those with none."""
+"""This residual on a base that is not rigid, where works are less exact: of 40 000 random runs none
+reached it, and runs with half of it were wrong no more often than runs without residual."""
 PEAK: Final = 0.01
-"""Share by which the peak rotation of a sound run may differ from that."""
+"""Relative difference up to which the peak rotation agrees with that of a run by tolerance."""
 
 NEGLIGIBLE: Final = 1e-4
-"""Share of the overturning angle up to which a peak, or a difference of peaks, says nothing of the
-verdict: the energies of such motion are errors as small as any step is allowed to make."""
+"""Share of the overturning angle up to which a peak rotation is negligible for the verdict: the
+energies of such small motion are no larger than the errors that a step may have."""
 
 
 def doubtful_residual(system: Assembly) -> float:
-    """Give the residual of fixed steps beyond which it takes a run by tolerance to tell."""
+    """Give the energy residual beyond which fixed steps are compared with steps by tolerance."""
     return DOUBTFUL if system.setting.settlement is None else DOUBTFUL_ON_SPRINGS
 
 
@@ -65,7 +66,7 @@ def unbalanced(
     base: "Callable[[], RunSummary]",
     run: "Callable[[Plan], RunSummary]",
 ) -> str | None:
-    """Say that a run is no solution, where its energies show it."""
+    """Say that a run is no solution, if its energies show that; `run` makes another run."""
     residual, by_tolerance = summary.energy_residual, plan.accuracy.substeps is None
     if residual <= (BY_TOLERANCE if by_tolerance else doubtful_residual(system)):
         return None
@@ -98,8 +99,8 @@ def unbalanced(
 
 
 AT_REST: Final = 0.2
-"""Share of the overturning angle, and of the typical size of all velocities, up to which a body has
-less than the energy to overturn: held at that angle a third of it, 1 - (1 - 0.2)^2."""
+"""Share of the overturning angle, and of the typical size of each velocity, below which a body has
+too little energy to overturn: at that angle at rest, about a third of it, 1 - (1 - 0.2)^2."""
 
 STILL_MOVING: Final = (
     "the run ends while the body, which counts as standing, still has the energy to overturn: add "
@@ -108,11 +109,11 @@ STILL_MOVING: Final = (
 
 
 def may_overturn_later(system: Assembly, summary: Summary) -> bool:
-    """Tell whether a body that stood has as much energy as overturning takes.
+    """Whether a body that has not overturned has enough energy left to do so.
 
-    What shakes it is over: its energy is that of its motion and what it takes to hold it at its
-    rotation, :eq:`eq-overturning-energy`. Beyond the overturning angle it takes none, unless links
-    hold the body there.
+    The ground is still by then: its energy is the kinetic energy, and the work that slowly brings
+    it to its rotation, :eq:`eq-overturning-energy`. Beyond the overturning angle no energy is
+    needed, unless links hold the body there.
     """
     if summary.overturned is not False:
         return False
@@ -125,7 +126,7 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
     held = upright or (beyond and bool(setting.link_names))
     if held and bool(np.all(np.abs(rates) < AT_REST * sizes)):
         return False
-    # other bodies of a scene of one's own are no wholes
+    # scenes of users' own have no `wholes`
     if beyond or (setting.wholes and _whole_may_fall(system, ending)):
         return True
     kinetic, needed = _kinetic_energy(system, ending), setting.overturning_energy
@@ -135,10 +136,10 @@ def may_overturn_later(system: Assembly, summary: Summary) -> bool:
 
 
 def most_stored(system: Assembly, rotation: float) -> float:
-    """Bound what it takes to hold a body at a rotation, which is costly to work out [J].
+    """Give an upper bound of the energy stored at a rotation, which is costly to compute [J].
 
-    A level base holds it back by no more than its weight at a corner. Infinite where a slope,
-    links, a wall, a beam or what a user adds may do more.
+    The restoring moment on a level base is at most the weight times its distance from a corner.
+    Infinite where a slope, links, a wall, a beam or a user's own part may add to it.
     """
     parts, setting = system.parts, system.setting
     if parts.links or parts.wall or parts.frame or parts.own or not setting.slope.level:
@@ -148,7 +149,7 @@ def most_stored(system: Assembly, rotation: float) -> float:
 
 
 def _whole_may_fall(system: Assembly, ending: Ending) -> bool:
-    """Tell whether a lower body with all above it can fall, as if on rigid ground."""
+    """Whether a lower body, with all above it as one rigid body, has the energy to fall."""
     size = len(system.model.rotation_weights)
     weights = system.model.other_limits.reshape(-1, 2 + size)[:, 2:]
     rotations, rates = (weights @ ending.state[of : of + size] for of in (0, size))
@@ -180,7 +181,7 @@ _ONE_OF: Final = "what follows is one of several motions"
 def ambiguities(
     model: ContactModel, chain: RigidChain, run: Trajectory
 ) -> tuple[dict[str, int], list[str]]:
-    """Count changes of contact after which motion on rigid bases is not unique; also in words."""
+    """Count changes of contact after which motion on rigid bases is not unique, and say so."""
     events = run.events
     sets, taken, other = (events.memory[:, model.memory.index(name)] for name in KEPT)
     by_force = np.isin(events.kind, (UPLIFT, SEPARATION, SILENT))
@@ -194,7 +195,7 @@ def ambiguities(
     cautions = list[str]()
 
     def tell(which: NDArray[np.bool_], words: Callable[[int], str]) -> None:
-        """Tell of the first of some events."""
+        """Add a caution about the first of some events."""
         for i in np.flatnonzero(which)[:1].tolist():
             cautions.append(f"at {events.time[i]:.6g} s {words(i)}")
 
@@ -225,7 +226,7 @@ def ambiguities(
 
 
 def _named(corners: int, rigid: Sequence[int]) -> str:
-    """Tell which corners of bodies on rigid bases bear, from the top down."""
+    """Say which corners of bodies on rigid bases bear, from the top down."""
     return ", ".join(f"body {k + 1} {_STANDS[corners >> 2 * k & 3]}" for k in rigid)
 
 
@@ -233,28 +234,27 @@ _BLOCK: Final = "friction_demand"
 _CAP: Final = "soil_friction_demand"
 DIGITS: Final = 3
 MOST_DIGITS: Final = 15
-"""Digits in which coefficients are told, more where both would look alike."""
+"""Digits of coefficients in messages: DIGITS, or more where both would look equal."""
 
 
 @dataclass(frozen=True)
 class SlidingCheck:
-    """Whether a body would slide on a base to which friction was given."""
+    """Whether a body that the model holds would slide on a base with a given friction."""
 
-    body: str  # what stands on it
-    friction: float  # the coefficient that the base has, and the largest demand [1]
-    needed: float
-    # from when on and how long in all the demand is beyond it; NaN and 0 where it never is [s]
-    first: float
-    lasted: float
+    body: str  # name of what stands on the base
+    friction: float  # coefficient of friction that the base has [1]
+    needed: float  # largest friction demand [1]
+    first: float  # time from which on the demand exceeds the coefficient, NaN if never [s]
+    lasted: float  # total time for which it does [s]
 
     @property
     def slides(self) -> bool:
-        """Whether the demand is ever beyond the coefficient."""
+        """Whether the demand ever exceeds the coefficient."""
         return self.needed > self.friction
 
     @property
     def words(self) -> str:
-        """Say it, without the body."""
+        """The check in words, without the name of the body."""
         digits, both = DIGITS, (self.needed, self.friction)
         needed, friction = (f"{one:.{digits}g}" for one in both)
         while needed == friction and digits <= MOST_DIGITS:
@@ -272,12 +272,12 @@ class SlidingCheck:
 
 
 def has_limit(system: Assembly) -> bool:
-    """Whether a base of the scene has a coefficient of friction, to which its runs are held."""
+    """Whether a base has a coefficient of friction that its runs are checked against."""
     return any(True for _ in _frictions(system))
 
 
 def slidings(system: Assembly, along: AlongSteps) -> list[SlidingCheck]:
-    """Tell of each base with a coefficient of friction whether it holds what stands on it."""
+    """Check for each base with a coefficient of friction whether it holds what stands on it."""
     return [
         _sliding(along, name, friction, body)
         for name, friction, body in _frictions(system)
@@ -297,7 +297,7 @@ def _sliding(along: AlongSteps, name: str, friction: float, body: str) -> Slidin
 
 
 def sliding_scalars(found: Sequence[SlidingCheck]) -> dict[str, float | bool]:
-    """Give the same as numbers, by their names in the schema; of no base nothing."""
+    """Give the scalars of sliding checks, by their names in the schema; none without a check."""
     if not found:
         return {}
     slides = [each for each in found if each.slides]
@@ -309,7 +309,10 @@ def sliding_scalars(found: Sequence[SlidingCheck]) -> dict[str, float | bool]:
 
 
 def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[SlidingCheck]) -> str:
-    """Say in a sentence whether a run would slide, or what friction it needed; nothing without."""
+    """Say in a sentence whether bodies would slide or, without a check, what friction they needed.
+
+    Empty for a run without peaks of forces.
+    """
     if len(found) == 1:
         words = found[0].words
         return f" {words[0].upper()}{words[1:]}."
@@ -333,33 +336,33 @@ def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Slidi
 
 
 def slips(found: Sequence[SlidingCheck]) -> Iterator[str]:
-    """Tell where a run needs more friction than a base has."""
+    """Give a caution for each base that has less friction than a run needs."""
     for each in found:
         if each.slides:
             yield f"{each.body} {each.words}; the model holds it"
 
 
 def share_words(would_slide: Generic, *, runs: str = "runs") -> str:
-    """Say in how many of the runs that an analysis made its verdict supposes too much friction."""
+    """Say in how many runs of an analysis the block would slide, though its model holds it."""
     slide, hold = counts_of_slides(would_slide)
     some = f"in {slide or 'none'} of {slide + hold} {runs}"
     return f"{some} the block would slide first" if slide + hold else ""
 
 
 def slip_words(slips: Generic, *, runs: str = "runs") -> str:
-    """Say in how many of the runs that an analysis made a body slid, and how far at most."""
+    """Say in how many runs of an analysis a body slid, and how far at most."""
     slid = slips[slips > LEAST_SLIP]
     some = f"in {slid.size} of {np.isfinite(slips).sum()} {runs}"
     return f"{some} the block slid, by {slid.max():.3g} m at most" if slid.size else ""
 
 
 def counts_of_slides(would_slide: Generic) -> tuple[int, int]:
-    """Give how many slide and how many do not; NaN is neither."""
+    """Give how many runs slide and how many do not; NaN counts as neither."""
     return int((would_slide == 1.0).sum()), int((would_slide == 0.0).sum())
 
 
 def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
-    """Give the coefficients of friction that were given, and which demand each must bear."""
+    """Give name of the friction demand, given coefficient and body, for each base that holds."""
     parts = system.parts
     if system.setting.slides:
         return

@@ -1,4 +1,4 @@
-"""Labelled answers that need no run: rest, quasi-static rotation, small motion."""
+"""Datasets that need no run: equilibrium at rest, quasi-static rotation, modes of small motion."""
 
 import math
 from collections.abc import Iterable

@@ -41,7 +41,7 @@ from rockframe.system.options import (
 from rockframe.units import QuantityLike
 
 _DAMAGED: Final = (ValueError, KeyError, TypeError, AttributeError)
-"""What is raised where a description is not what was written."""
+"""Exceptions that a damaged description of a system may raise."""
 
 
 @proposing
@@ -67,15 +67,15 @@ class System(SystemValue):
         level unless given. Rotations are then relative to the base line, and displacements,
         velocities, accelerations and forces along and normal to it [rad].
     sliding : {"computed", "checked"}
-        What the friction of :class:`~rockframe.RigidGround` does: its forces let the block slide,
-        or the block is held and the friction that it needs is compared with it. On all other bases
-        it is checked.
+        What the friction of bases does: its forces let bodies slide, or a body is held and the
+        friction that it needs is compared with it. It is always compared in a cascade, on a base
+        of your own, and where a frame, or a block before a stiff wall, stands on the ground.
 
     Raises
     ------
     AssemblyError
-        With every fault found at once; and the supported scenes, if parts are missing or do
-        not combine. The block falls by its own weight.
+        Parts or options do not fit, with all faults, and with the supported scenes if parts are
+        missing or do not combine; or the block falls by its own weight.
 
     Examples
     --------
@@ -110,7 +110,7 @@ class System(SystemValue):
             warn(caution, ModelWarning)
 
     def describe(self) -> str:
-        """Tell which model was picked, by which equations, and what it leaves out.
+        """Describe the model that the parts make: its equations, its numbers and its limits.
 
         Returns
         -------
@@ -154,14 +154,14 @@ class System(SystemValue):
         free_vibration : str or Quantity, optional
             Time added to the motion's length, instead of `duration` [s].
         initial : InitialState or xarray.Dataset, optional
-            Where the run starts; at rest unless given. The result of another run of this
-            system starts it where that one ended, its time at zero again.
+            Where the run starts; at rest unless given. With the result of another run of this
+            system it starts where that run ended, with its time at zero again.
         accuracy : {"fast", "standard", "reference"}, float or Accuracy
             How accurate, and so how costly, the run is.
         output_step : str or Quantity, optional
             Spacing of the histories; the motion's time step unless given [s].
         outputs : sequence of str, optional
-            Histories beyond those every run has: names such as ``"friction_demand"``
+            Histories beyond those that every run has: names such as ``"friction_demand"``
             or ``"toe_pressure"``, and the groups ``"acceleration"``, ``"reaction"``,
             ``"impulse"`` and ``"energy"``. None keeps no histories at all, only events
             and scalars.
@@ -174,13 +174,13 @@ class System(SystemValue):
             Whether the run ends when the rotation reaches the overturning
             angle, or goes on until the block lies flat.
         certify : bool, Certification or "proved"
-            Whether some hundred runs beside this one, by finer means, with nudged
-            parameters and scaled motions, tell how sure the verdict is; or ``"proved"``, to
+            Whether some hundred further runs, with higher accuracy, slightly changed
+            parameters and scaled motions, show how sure the verdict is; or ``"proved"``, to
             prove the verdict as :func:`rockframe.prove` does.
         second_look : bool
-            Whether a run with ``accuracy="fast"`` is made once more, with half as many steps
-            again and without histories, to tell whether its verdict and its peak rotation are
-            sure. No other run is, nor one that is certified.
+            Whether a run with ``accuracy="fast"`` is repeated with half as many steps more and
+            without histories, to show whether its verdict and its peak rotation are sure. Runs
+            of other accuracies, and runs that are certified, are not repeated.
 
         Returns
         -------
@@ -235,9 +235,9 @@ class System(SystemValue):
         motion : GroundMotion
             The motion.
         path : str or Path
-            Of the file; its name ends in ``.py``.
+            Path of the file; its name ends in ``.py``.
         **options
-            Of :func:`rockframe.export.to_opensees`, which this calls.
+            Options of :func:`rockframe.export.to_opensees`, which this calls.
 
         Returns
         -------
@@ -258,7 +258,7 @@ class System(SystemValue):
         >>> system.to_opensees(pulse, f"{tempfile.mkdtemp()}/model.py").name
         'model.py'
         """
-        above: Any = import_module("rockframe.export")  # of a layer that this one does not know
+        above: Any = import_module("rockframe.export")  # from a layer above this one
         return above.to_opensees(self, motion, path, **options)
 
     def frequencies(self) -> xr.Dataset:
@@ -375,7 +375,7 @@ class System(SystemValue):
         Raises
         ------
         SchemaError
-            It does not describe a system.
+            The description is not one of a system.
 
         Examples
         --------
@@ -411,8 +411,8 @@ class System(SystemValue):
         Raises
         ------
         SchemaError
-            No dataset, or one that does not describe a system; or what was picked out of a
-            sweep over parameters: the system of a case is that of :func:`rockframe.case`.
+            No dataset, or one that does not describe a system; or a case picked out of a sweep
+            over parameters, whose system :func:`rockframe.case` gives.
 
         Examples
         --------

@@ -11,7 +11,7 @@ from rockframe.units import ACCELERATION, ANGLE, Quantity, quantity
 
 @proposing
 class SystemValue(metaclass=Proposing):
-    """What a system is, without what is done with it."""
+    """The parts and options of a system, without its methods that simulate."""
 
     __slots__ = ("_assembly",)
 

@@ -135,7 +135,7 @@ def accuracy_of(choice: "str | float | Accuracy", *, owner: str = "simulate") ->
 
 
 STABLE: Final = 0.85
-"""Largest product of fixed step and fastest rate at which the method is stable for any damping;
+"""Largest product of fixed step and fastest rate for which the method damps any damped vibration;
 the bound is 0.857 for infinite, 1.0 for critical and 2.45 for no damping."""
 WHOLE: Final = 1e-9
 """Share of a sub-step by which it may be longer than its limit."""

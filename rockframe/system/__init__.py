@@ -1,1 +1,1 @@
-"""Assembly of parts into a scene, and of a scene into equations."""
+"""Assembly: from the parts that users give to a scene, and from a scene to its equations."""

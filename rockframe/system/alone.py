@@ -1,4 +1,4 @@
-"""The scene of one body on a base that gives way, which may slip on it: numbers, words, models."""
+"""The scene of one body on a deformable base, on which it may slip: numbers, words, models."""
 
 import math
 from collections.abc import Sequence
@@ -32,11 +32,11 @@ class AloneSetting(Setting):
 
     @property
     def supports(self) -> tuple[Support, ...]:
-        """The one base."""
+        """The base under the body."""
         return (self.support,)
 
     def words(self) -> Words:
-        """Tell the base, and what the body on it lacks."""
+        """Describe the base, and what the model leaves out."""
         base = self.support.words()
         return Words(
             equations=base.equations,
@@ -54,7 +54,7 @@ class AloneSetting(Setting):
 
     @cached_property
     def rest_rotation(self) -> float:
-        """Rotation to which its weight turns a body; :eq:`eq-incline-lean` if small [rad]."""
+        """Rotation of the body at rest under its weight; :eq:`eq-incline-lean` if small [rad]."""
         if not self.leans:
             return 0.0
         found = self.support.standing.rest
@@ -63,7 +63,7 @@ class AloneSetting(Setting):
         return found[0].state.rotation
 
     def _falling_words(self) -> str:
-        """Say that the body finds no rest, and why."""
+        """Say that the body has no equilibrium under its weight, and why."""
         slope, body = self.slope, self.body
         moment = body.eccentricity * slope.normal_gravity - body.centre_height * slope.along_gravity
         base, whose = "base is too soft", ""
@@ -78,24 +78,24 @@ class AloneSetting(Setting):
         return f"the {base} for a body{whose}: it falls to the {side} by its own weight"
 
     def small_motion(self) -> SmallMotion:
-        """Give the equations of small motion about rest, in the contact that it has there."""
+        """Give the equations of small motion about rest, in the contact of the body at rest."""
         standing = self.support.standing
         stands = standing.rest or standing.upright
         turned = [matrix[::-1, ::-1] for matrix in standing.small_motion(stands)]
         return SmallMotion(("vertical_displacement", "rotation"), *turned)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the vertical equilibrium at rotations, :eq:`eq-incline-held`."""
+        """Give the vertical equilibrium at some rotations, :eq:`eq-incline-held`."""
         return self.support.standing.held(rotations)
 
     def upright(self) -> dict[str, float]:
-        """Give settlement, reactions and moment at uplift, as of a body that stands upright."""
+        """Give settlement, reactions and moment at uplift of the upright body, by schema names."""
         uplift = self.uplift_angle
         moment = math.nan if isnan(uplift) else self.statics(uplift).base_moment
         return {"uplift_moment": moment, **self.support.at_rest()}
 
     def equilibrium(self) -> dict[str, float]:
-        """Give settlement, reactions and moment at uplift, by their names in the schema."""
+        """Give settlement, reactions at rest and moment at uplift, by their names in the schema."""
         found = self.upright()
         if self.rest_rotation != 0.0:
             found |= static_values(self.statics(self.rest_rotation).reactions)
@@ -115,14 +115,14 @@ class SlidingAloneSetting(AloneSetting):
         return f"{self.support.model}-sliding"
 
     def words(self) -> Words:
-        """Tell the base, and the friction that holds the body on it."""
+        """Describe the base, and the friction that holds the body on it."""
         held = super().words()
         restraint = f"{held.restraint.partition(';')[0]}; as far as friction can"
         friction = ("friction at rest, and of slip", self.friction.words())
         return sliding_words(held, friction, restraint=restraint)
 
     def contact_model(self) -> "ContactModel":
-        """Give the equations of slip, rotation and rise: those of a chain of one."""
+        """Give the equations of slip, rotation and rise: those of a chain of one body."""
         from rockframe.dynamics.chain.model import AtRest, ChainBody, chain
 
         body, rest = self.load.rigid_body, None
@@ -133,5 +133,5 @@ class SlidingAloneSetting(AloneSetting):
         return chain([one], self.body.mass, rest, frictions=[self.friction])
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Tell how far the body slipped."""
+        """Give how far the body slipped."""
         return chain_slips(self, 1, ending)

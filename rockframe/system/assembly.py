@@ -51,19 +51,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Scene:
-    """A combination of parts that has a model."""
+    """A combination of parts that has a model, a row of the table of scenes."""
 
     title: str  # the parts, as users write them
     signature: frozenset[str]  # slots of :class:`rockframe.system.parts.Parts` that must be filled
-    # from parts and options to the scene's setting
+    # function that gives the scene's setting from parts and options
     make_setting: Callable[[Parts, Options], Setting]
-    # the option that picks this one of two models of the same parts
+    # value of the option that selects this scene among two of the same parts
     coupling: Coupling | None = None
     # slots and classes of the parts of a user's own scene
     made_of: Mapping[str, type[Component]] | None = None
 
     def fits(self, parts: Parts, coupling: Coupling) -> bool:
-        """Whether the scene is that of the parts."""
+        """Whether the parts make this scene."""
         if self.made_of is None:
             return self.signature == parts.signature and self.coupling in (None, coupling)
         given, kinds = parts.components, self.made_of
@@ -73,7 +73,7 @@ class Scene:
 
 
 def _held(slot: str, parts: Parts, options: Options) -> AloneSetting:
-    """Put a block on the base in a slot, which holds it; on soil with its cap as one body."""
+    """Put a block on the base in a slot, which holds it; block and cap on soil are one body."""
     if slot != "soil" or parts.cap is None:
         load = load_of(parts.the_block, options)
         return AloneSetting(load, support_of(parts[slot], load))
@@ -94,7 +94,7 @@ def _alone(slot: str, parts: Parts, options: Options) -> AloneSetting:
 
 
 def _refuse_twins(parts: Parts, upper: AloneSetting, lower: AloneSetting) -> None:
-    """Refuse two bases that show the same column, which would hide one of them."""
+    """Refuse two bases with a column of the same name: one of both would be lost."""
     shown = [
         {column.name for column in each.support.base_numbers.columns} for each in (upper, lower)
     ]
@@ -113,10 +113,10 @@ def _stacked(kind: type[StackedSetting], parts: Parts, options: Options) -> Stac
 
 
 def _coupled(parts: Parts, options: Options) -> StackedSetting:
-    """Put a block on pads on a cap on soil, on which either slips where its base has friction."""
+    """Put a block on pads on a cap on soil; block and cap slip where their bases have friction."""
     held, bases = _stacked(CoupledSetting, parts, options), (parts["pads"], parts["soil"])
     pads, soil = (friction_under(base, options) for base in bases)
-    own = any(isinstance(base, OwnBase) for base in bases)  # one of two laws alone may slip
+    own = any(isinstance(base, OwnBase) for base in bases)  # these do not slip
     if own or (pads is None and soil is None):
         return held
     if options.small:
@@ -203,12 +203,12 @@ _OWN: Final[dict[str, Scene]] = {}
 
 
 def scenes() -> tuple[Scene, ...]:
-    """Give all scenes, those of users' own last."""
+    """Give all scenes, users' own scenes last."""
     return (*_SHIPPED, *_OWN.values())
 
 
 def add_scene(kind: type[OwnScene]) -> None:
-    """Make a user's own scene known; it takes the place of one whose class had its full name."""
+    """Add a user's own scene to the table; it replaces one whose class had the same full name."""
     title = " + ".join(part.__name__ for part in kind.made_of.values())
     name = f"{kind.__module__}.{kind.__qualname__}"
     _OWN[name] = Scene(
@@ -241,11 +241,11 @@ def _own(kind: type[OwnScene], parts: Parts, options: Options) -> OwnScene:
 
 @dataclass(frozen=True)
 class Assembly:
-    """Parts, whatever their order, and options that were checked and make a scene."""
+    """Parts and options that have been checked together, and the scene that they make."""
 
-    parts: Parts  # by what they are
+    parts: Parts  # the parts by their slots
     options: Options  # all options, and gravity
-    scene: Scene = field(compare=False)  # the scene that they make
+    scene: Scene = field(compare=False)
 
     @cached_property
     def setting(self) -> Setting:
@@ -254,12 +254,12 @@ class Assembly:
 
     @cached_property
     def model(self) -> "ContactModel":
-        """The scene's equations, ready for the integrator, which leaves them as they are."""
+        """The scene's equations, ready for the integrator, which does not change them."""
         return self.setting.compile()
 
     @cached_property
     def doubts(self) -> list[str]:
-        """What is unusual about the scene."""
+        """Warnings about the scene."""
         return [
             *self.setting.cautions(),
             *contradictions(self.parts),
@@ -268,13 +268,13 @@ class Assembly:
 
     @cached_property
     def cautions(self) -> list[str]:
-        """What is unusual about the scene and its parts, each once."""
+        """Warnings about the scene and its parts, each once."""
         of_parts = [text for part in self.parts.structural() for text in part.cautions()]
         return list(dict.fromkeys([*of_parts, *self.doubts]))
 
     @cached_property
     def description(self) -> str:
-        """Which model was picked, by which equations, and what it leaves out."""
+        """The model in words: its equations, its numbers, and what it leaves out."""
         return describe(self.setting, self.parts)
 
     @cached_property
@@ -283,7 +283,7 @@ class Assembly:
         return json.dumps(self.to_dict())
 
     def __reduce__(self) -> tuple[object, ...]:
-        # without what has been computed: equations hold functions that cannot be sent
+        # without cached values: equations contain functions that cannot be pickled
         return (Assembly, (self.parts, self.options, self.scene))
 
     def to_dict(self) -> dict[str, object]:
@@ -325,7 +325,7 @@ def assembly_of(
     if scene is None and not faults:
         names = " and ".join(type(part).__name__ for part in given.structural())
         faults.append(f"no scene is made of {names} together")
-    # the scenes are of use to one whose parts make none, not to one with a wrong option
+    # the list of scenes helps where the parts make none, not where an option is wrong
     supported = [scene.title for scene in scenes()] if faults else []
     faults += [*missizes(given, options), *wrong]
     if faults or scene is None:

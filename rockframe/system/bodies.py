@@ -1,4 +1,4 @@
-"""Bodies as they stand on a base: block and cap as one, how they land, and how they are held."""
+"""Bodies on a base: sizes, inertia and restitution, block and cap as one body, and their load."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,17 +16,17 @@ from rockframe.signals.arrays import Array
 from rockframe.system.options import RESTRAINT_CODES, Options
 
 ROUNDING = 1e-12
-"""Excess over the greatest restitution that is taken for rounding."""
+"""Excess over the greatest restitution up to which it is rounding."""
 
 
 class Restitutions(NamedTuple):
-    """Ratios of speeds after and before an impact, by the corner that lands."""
+    """Coefficients of restitution of a landing on the left and on the right corner."""
 
     left: float
     right: float
 
     def words(self) -> str:
-        """Write them; one number where they are equal."""
+        """Give the coefficients in words; one number where they are equal."""
         if self.left == self.right:
             return f"{self.left:.6g}"
         return f"{self.left:.6g} (onto the left corner), {self.right:.6g} (onto the right one)"
@@ -54,12 +54,12 @@ def restitution_cautions(chosen: Restitutions, greatest: Restitutions) -> list[s
 class SupportedBody(BodyGeometry):
     """A rigid body with a straight base, in SI units."""
 
-    half_width: float  # of the base, b
-    centre_height: float  # of the centre of mass above the base, h
+    half_width: float  # half the width of the base, b
+    centre_height: float  # height of the centre of mass above the base, h
     mass: float
     inertia: float  # about the centre of mass
     shape_factor: float  # mu
-    eccentricity: float = 0.0  # of the centre of mass to the right of the middle, e_c
+    eccentricity: float = 0.0  # e_c, centre of mass to the right of the middle of the base
 
     @cached_property
     def overturning_angles(self) -> "OverturningAngles":
@@ -75,7 +75,7 @@ class SupportedBody(BodyGeometry):
 
     @property
     def base_ratio(self) -> float:
-        """Half the width that bears over b; 1 unless the body stands for several [1]."""
+        """Half the width of a single base over b; 1 unless the body stands for several [1]."""
         return 1.0
 
     def base_moment(
@@ -88,7 +88,7 @@ class SupportedBody(BodyGeometry):
         press, thrust = values["vertical_reaction"], values["horizontal_reaction"]
         moment = (self.centre_height * sine + beside) * press
         moment = moment - (self.centre_height * cosine - lift) * thrust
-        # in a cascade that of the second stage alone
+        # in a cascade, the acceleration of the second stage alone
         spin = values.get("angular_acceleration_on_base", values["angular_acceleration"])
         moment = moment - self.inertia * spin
         return moment + values[LINK_MOMENT] if LINK_MOMENT in values else moment
@@ -102,18 +102,19 @@ class SupportedBody(BodyGeometry):
         return -height - beside - 2.0 * self.centre_height * half**2
 
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
-        """Give where points, from the middle of the base, are from the centre of mass [m]."""
+        """Give x and y of points from the centre of mass; given from the middle of the base [m]."""
         return x - self.eccentricity, y - self.centre_height
 
     @property
     def base_inertia(self) -> float:
-        """About the foot of the centre of mass on the base [kg m^2]."""
+        """Moment of inertia about the point of the base below the centre of mass [kg m^2]."""
         return self.inertia + self.mass * self.centre_height**2
 
     def gyration_square_about(self, distance: float) -> float:
-        """Give inertia over mass about a point of the base, by its distance from that foot [m^2].
+        """Give inertia over mass about a point of the base [m^2].
 
-        R0^2 (1 + 1/mu) about a corner of a symmetric body.
+        `distance` is from the point below the centre of mass. About a corner of a symmetric body
+        it is R0^2 (1 + 1/mu).
         """
         square = self.radius**2 * (1.0 + 1.0 / self.shape_factor)
         return square + (distance - self.half_width) * (distance + self.half_width)
@@ -121,11 +122,11 @@ class SupportedBody(BodyGeometry):
 
 @dataclass(frozen=True)
 class OnCorners(SupportedBody):
-    """A body on rigid ground on which something else acts than its weight and its base."""
+    """A body on rigid ground on which more acts than its weight and its base."""
 
     @property
     def foot(self) -> float:
-        """Half the width that bears [m]."""
+        """Half the width of the base that bears [m]."""
         return self.half_width
 
     def base_moment(
@@ -142,13 +143,13 @@ class OnCorners(SupportedBody):
 
 
 class OverturningAngles(NamedTuple):
-    """Rotations, both positive, at which a body stands on edge; the lesser is theta [rad]."""
+    """Rotations of unstable equilibrium to either side, positive; the lesser is theta [rad]."""
 
     left: float
     right: float
 
     def on_side_of(self, rotation: float) -> float:
-        """Give that of the side to which a body is rotated."""
+        """Give the overturning angle of the side to which a body is rotated."""
         return self.left if rotation < 0.0 else self.right
 
 
@@ -171,17 +172,17 @@ def body_of_block(block: BlockSI, kind: type[SupportedBody] = SupportedBody) -> 
 
 
 _Mass = tuple[float, float, float, float]
-"""A mass, its inertia, and where its centre is, from the middle of the base; in SI units."""
+"""A mass, its inertia, and x and y of its centre from the middle of the base; in SI units."""
 
 
 def with_mass(body: SupportedBody, mass: float, x: float, y: float) -> SupportedBody:
-    """Give a body with one more mass at a point, from the middle of its base."""
+    """Give a body with an added point mass [kg] at x and y from the middle of its base [m]."""
     own = (body.mass, body.inertia, body.eccentricity, body.centre_height)
     return _two_as_one(body.half_width, own, (mass, 0.0, x, y))
 
 
 def cap_under(block: BlockSI, cap: CushionCapSI) -> Cap:
-    """Give a cap in the size it has under a block."""
+    """Give a cap in SI units; it is as wide as the block unless its width is given."""
     width = cap.width if cap.width is not None else block.width
     return Cap(0.5 * width, 0.5 * cap.height, cap.mass_at(width), cap.inertia_at(width))
 
@@ -194,7 +195,7 @@ def one_body(block: BlockSI, cap: Cap) -> SupportedBody:
 
 
 def _two_as_one(half_width: float, one: _Mass, other: _Mass) -> SupportedBody:
-    """Give two masses that move as one as a body on a base."""
+    """Give the body on a base that two rigidly joined masses make."""
     (m1, own1, x1, y1), (m2, own2, x2, y2) = one, other
     mass = m1 + m2
     height, beside = (m1 * y1 + m2 * y2) / mass, (m1 * x1 + m2 * x2) / mass
@@ -205,7 +206,7 @@ def _two_as_one(half_width: float, one: _Mass, other: _Mass) -> SupportedBody:
 
 
 _KEPT: Final = 64
-"""Blocks whose loads are kept at hand, for sweeps that change the base under them."""
+"""Size of the cache of loads, for sweeps that change the base under a block."""
 
 
 @dataclass(frozen=True)
@@ -225,17 +226,17 @@ class BaseLoad:
 
     @property
     def weight(self) -> float:
-        """Weight of the body, as far as it presses on the base [N]."""
+        """Component of the body's weight normal to the base [N]."""
         return self.body.mass * self.options.slope.normal_gravity
 
     @property
     def thrust(self) -> float:
-        """Force along the base that keeps the body at rest from sliding [N]."""
+        """Force of the base, along itself, that keeps the body at rest from sliding [N]."""
         return self.body.mass * self.options.slope.along_gravity
 
     @cached_property
     def overturning_angles(self) -> OverturningAngles:
-        """Those of the body relative to its base line, :eq:`eq-incline-overturning`."""
+        """Overturning angles of the body from its base line, :eq:`eq-incline-overturning`."""
         (left, right), i = self.body.overturning_angles, self.options.inclination
         i = tan(i) if self.options.small else i
         return OverturningAngles(left - i, right + i)
@@ -246,7 +247,7 @@ class BaseLoad:
         return self.law(self.body.mass)
 
     def law(self, mass: float) -> Body:
-        """Give the body as the equations take it, per unit of some mass [kg]."""
+        """Give the body as the equations take it, per unit of a reference mass [kg]."""
         from rockframe.dynamics.alone import rigid_body
 
         return rigid_body(
@@ -261,7 +262,7 @@ class BaseLoad:
 
 
 def load_of(block: BlockSI, options: Options) -> BaseLoad:
-    """Give a block as a load; the same one for all scenes that differ in their bases alone."""
+    """Give a block as a load; one object for all scenes that differ only in their bases."""
     numbers = (*vars(block).values(), options.gravity, options.inclination)
     if any(isinstance(number, Many) for number in numbers):
         return BaseLoad(body_of_block(block), options)

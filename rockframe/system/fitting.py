@@ -1,4 +1,4 @@
-"""Whether parts fit one another."""
+"""Whether parts fit one another: faults, contradictions, options without effect, friction."""
 
 import math
 from inspect import getattr_static
@@ -31,14 +31,14 @@ BASES = ("pads", "soil", "ground")
 """Slots of bases that bodies of a stack may stand on."""
 _ROUNDING_OF_DEPTHS = 1e-9
 _AT_THE_EDGE: Final = 1.01
-"""Share of a size up to which a point is at its end: certificates change sizes a little."""
+"""Ratio up to which a point counts as inside a size: certificates change sizes a little."""
 
 
 def misfits(parts: Parts) -> list[str]:
     """Give the faults of a combination of parts, whatever their sizes."""
     block, pads, cap, soil = parts.block, parts.pads, parts.cap, parts.soil
     faults: list[str] = []
-    if parts.own:  # of a user's own scene, which says itself what goes together
+    if parts.own:  # parts of a user's own scene, which checks them itself
         return ["no Block is given"] if block is None else []
     if parts.stack is not None:
         faults += _misfits_of_stack(parts.stack, parts)
@@ -176,9 +176,9 @@ def _misfits_of_stack(stack: Stack, parts: Parts) -> list[str]:
 
 def contradictions(parts: Parts) -> list[str]:
     """Say which sizes of parts contradict one another, though they can be simulated."""
-    depths: dict[str, float] = {}  # that each was built with, where that is known
+    depths: dict[str, float] = {}  # depth that each was built with, where that is known
     for part in (parts.cap or parts.block, parts.soil):
-        # a component that has no depth would first look for what was meant
+        # without this a component without a depth would look for names like it
         known = getattr_static(part, "depth", None) is not None
         depth = getattr(part, "depth", None) if known else None
         if depth is not None:
@@ -202,9 +202,9 @@ def _bodies_of(parts: Parts) -> tuple[BlockSI, ...]:
 
 
 def _beside_bodies(parts: Parts) -> list[str]:
-    """Tell of links at points that are above or below their bodies, or far beside them.
+    """Warn of links at points that are above or below their bodies, or far beside them.
 
-    What reaches beyond a base, such as a bracket or the arm of a statue, is less wide than high.
+    A bracket or the arm of a statue may reach beyond the base, by no more than the body's height.
     """
     told = list[str]()
     bodies = _bodies_of(parts)
@@ -257,7 +257,7 @@ def _beyond_bodies(parts: Parts) -> list[str]:
 
 
 def unused(parts: Parts, options: Options) -> list[str]:
-    """Say which options were chosen that a scene of these parts has no use for."""
+    """Say which of the chosen options have no effect in a scene of these parts."""
     told: list[str] = []
     between = () if parts.stack is None else parts.stack.interfaces
     bases = (*parts.structural(), *between)
@@ -282,14 +282,14 @@ def unused(parts: Parts, options: Options) -> list[str]:
 
 
 class BaseFriction(NamedTuple):
-    """Coefficients of friction: at rest, of slip, and in impacts; infinite where a base holds."""
+    """Coefficients of static, kinetic and impulsive friction; infinite where a base holds."""
 
     static: float
     kinetic: float
     impulsive: float
 
     def words(self) -> str:
-        """Tell the coefficients at rest and of slip."""
+        """Give the coefficients at rest and of slip in words."""
         if math.isinf(self.static):
             return "held"
         sticks = ", held in impacts" if math.isinf(self.impulsive) else ""
@@ -297,9 +297,10 @@ class BaseFriction(NamedTuple):
 
 
 HELD: Final = BaseFriction(math.inf, math.inf, math.inf)
-"""Where a base holds what stands on it."""
+"""Friction of a base that holds what stands on it."""
 WITHOUT_END: Final = 1e8
-"""Friction from which on it slips alone where what presses is lost in rounding beside weights."""
+"""Coefficient of friction that counts as infinite: a body would slip only under pressing forces
+that are lost in the rounding of weights."""
 
 
 def friction_under(part: Component, options: Options) -> BaseFriction | None:
@@ -329,7 +330,7 @@ def missizes(parts: Parts, options: Options) -> list[str]:
     """Give the faults of the sizes of parts that are together."""
     block, cap = parts.block, parts.cap
     faults: list[str] = []
-    # impacts of bodies that slide, and of those in a stack, let a squat one land flat
+    # a squat body may land flat if it slides, or stands in a stack
     if block is not None and not parts.own and not _slides(parts, options):
         faults += squat(block.si, type(block).__name__)
     if parts.links:

@@ -1,4 +1,4 @@
-"""Where the parts of a scene are, upright and at rest, and what notebooks show of it."""
+"""Geometry of a scene, upright and at rest: places and outlines of parts, also for notebooks."""
 
 from dataclasses import dataclass
 from typing import Final, NamedTuple
@@ -17,14 +17,14 @@ from rockframe.system.stack import StackSetting
 
 
 class LowerBody(NamedTuple):
-    """A body of a stack, from the middle of the lowest base [m]."""
+    """A body of a stack; places are from the middle of the lowest base [m]."""
 
     outline: Array
-    centre: tuple[float, float]
+    centre: tuple[float, float]  # its centre of mass
 
 
 class LinkedPoints(NamedTuple):
-    """Both points of a restrainer, from the middle of the lowest base [m], and their bodies.
+    """The two points of a restrainer, from the middle of the lowest base [m], and their bodies.
 
     Bodies are counted from 0 at the top; -1 is the ground.
     """
@@ -37,28 +37,28 @@ class LinkedPoints(NamedTuple):
 class Geometry:
     """Sizes and places of a scene's parts, in SI units, as :eq:`eq-scene-places` needs them.
 
-    Places count to the right of the middle of the lowest base, and up from it.
+    Places are to the right of the middle of the lowest base, and above it.
     """
 
-    outline: Array  # of the block, from the middle of its own base
-    half_width: float  # of the block's base
-    centre: tuple[float, float]  # the block's centre of mass, in the coordinates of its outline
-    # the centre of mass of the body that results are of, from the middle of the lowest base: that
-    # of the block, or of block and cap where these are one body
+    outline: Array  # outline of the block, from the middle of its own base
+    half_width: float  # half the width of the block's base
+    centre: tuple[float, float]  # the block's centre of mass, from the middle of its own base
+    # centre of mass of the body whose motion results give, from the middle of the lowest base: of
+    # the block, or of block and cap where these are one body
     moved: tuple[float, float]
     small_rotation: bool  # whether the kinematics are expanded in the rotation
-    inclination: float = 0.0  # by which the base line rises to the right [rad]
-    members: tuple[Array, ...] = ()  # outlines of a frame's members, as that of the block
-    cap: tuple[float, float] | None = None  # half the width and the height of the cap
-    # settlements under the weight of pads and of soil, where the scene has them
+    inclination: float = 0.0  # angle by which the base line rises to the right [rad]
+    members: tuple[Array, ...] = ()  # outlines of a frame's members, from the block's base
+    cap: tuple[float, float] | None = None  # half the width of the cap, and its height
+    # settlements of pads and of soil under the weight, where the scene has them
     pads_sink: float | None = None
     bed_sinks: float | None = None
-    stacked: bool = False  # whether pads stand between block and cap, which then move apart
+    stacked: bool = False  # whether pads lie between block and cap, which then move apart
     lower: tuple[LowerBody, ...] = ()  # bodies of a stack beneath the block, from the top down
     ties: tuple[LinkedPoints, ...] = ()  # points that restrainers link
-    # of columns under a beam, how far each is to the right of the middle; the block is one of them
+    # places of the columns under a beam, to the right of the middle; the block is one column
     columns: tuple[float, ...] = ()
-    beam: Array | None = None  # outline of the beam on them
+    beam: Array | None = None  # outline of the beam on the columns
     wall: Array | None = None  # outline of a wall behind the block
 
     @property
@@ -76,12 +76,12 @@ class Geometry:
 
     @property
     def height(self) -> float:
-        """Of the block [m]."""
+        """Height of the block [m]."""
         return float(self.outline[:, 1].max())
 
     @property
     def base_half_width(self) -> float:
-        """Of the lowest base [m]."""
+        """Half the width of the lowest base, from its middle to the right end [m]."""
         if self.lower:
             return float(self.lower[-1].outline[:, 0].max())
         if self.columns:
@@ -136,9 +136,9 @@ def geometry_of(scene: Assembly) -> Geometry:
 def _of_wall(
     wall: RearWall | None, body: BlockSI, place: tuple[float, float] = (0.0, 0.0)
 ) -> Array | None:
-    """Give what is drawn of a wall: it is as high as its body, and as thick as the base of that.
+    """Give the outline by which a wall is drawn: as high as its body, and as thick as its base.
 
-    `place` is the middle of that base, from the middle of the lowest one.
+    `place` is the middle of the body's base, from the middle of the lowest one.
     """
     if wall is None:
         return None
@@ -157,7 +157,7 @@ def _ties_of(setting: Setting) -> tuple[LinkedPoints, ...]:
     found: list[LinkedPoints] = []
     for one in setting.ties[: len(setting.link_names)]:
         points = np.array(one.ends)
-        if isinstance(one.part, Tendon):  # through its body, from the top of that
+        if isinstance(one.part, Tendon):  # from the top of its body through it
             points[0, 1] += setting.bodies[one.on].centre_height + setting.tops[one.on]
         found.append(LinkedPoints(points, (one.on, one.to)))
     return tuple(found)
@@ -203,11 +203,11 @@ def members_of(block: object) -> tuple[Array, ...]:
 
 
 _PAD: Final = 0.06
-"""Thickness with which pads are drawn, over the width of the base."""
+"""Thickness of pads in drawings, over the width of the base."""
 
 
 def system_html(scene: Assembly, name: str) -> str:
-    """Give drawing and numbers of a scene as HTML."""
+    """Give a drawing and the numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
     for part in scene.parts.structural():
@@ -227,7 +227,7 @@ def system_html(scene: Assembly, name: str) -> str:
 
 
 def shapes_of(geometry: Geometry) -> list[Polygon]:
-    """Give the parts of a scene, upright and at rest, from back to front."""
+    """Give the shapes of a scene's parts, upright and at rest, from back to front."""
     half, width = geometry.base_half_width, 2.0 * geometry.half_width
     pad = 0.0 if geometry.pads_sink is None else _PAD * width
     lift = np.array([0.0, pad])

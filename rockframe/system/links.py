@@ -1,4 +1,4 @@
-"""Links as they are in a scene: between which points, by which law, and in words."""
+"""Links in a scene: restrainers, tendons, elastic walls and loads, with points, law and words."""
 
 import math
 import re
@@ -53,7 +53,7 @@ class OwnLink(PointLink):
         Parameters
         ----------
         mass : float
-            That all is measured by: forces, stiffness and damping are divided by it [kg].
+            Reference mass of the model, by which to divide forces, stiffness and damping [kg].
 
         Returns
         -------
@@ -64,27 +64,27 @@ class OwnLink(PointLink):
 
 Point = tuple[float, float]
 ROUNDING: Final = 1e-14
-"""Of their distance from the middle of the lowest base, that of points that meet."""
+"""Distance of two points that counts as zero, over their distance from the lowest base."""
 
 
 @dataclass(frozen=True)
 class PlacedLink:
-    """A link between points of upright bodies."""
+    """A link between two points of upright bodies, the first called `on`, the second `to`."""
 
-    part: Link  # as it was given
-    name: str  # what results call it
-    on: int  # bodies, counted from 0 at the top; -1 for the ground
-    # from the centres of mass of their bodies to the right and up, or from the middle of the lowest
-    # base [m]
+    part: Link  # the link as users gave it
+    name: str  # its name in results
+    on: int  # body of the first point, counted from 0 at the top; -1 for the ground
+    # place of the first point, to the right of and above the centre of mass of its body, or, on the
+    # ground, the middle of the lowest base [m]
     on_point: tuple[float, float]
-    to: int
+    to: int  # body and place of the second point, likewise
     to_point: tuple[float, float]
     # both points from the middle of the lowest base [m]
     ends: tuple[tuple[float, float], tuple[float, float]]
 
     @property
     def apart(self) -> tuple[float, float]:
-        """From the second point to the first [m]."""
+        """Vector from the second point to the first [m]."""
         (x, y), (to_x, to_y) = self.ends
         return x - to_x, y - to_y
 
@@ -109,7 +109,7 @@ class PlacedLink:
 
     @property
     def steady(self) -> tuple[float, float]:
-        """Force that stays as it is, to the right and up; none of one that pulls its points [N]."""
+        """Constant force of a load, to the right and up; zero for any other link [N]."""
         if not isinstance(self.part, Load):
             return 0.0, 0.0
         return self.part.si.horizontal, -self.part.si.vertical
@@ -125,7 +125,7 @@ class PlacedLink:
 
     @property
     def along(self) -> tuple[float, float]:
-        """Direction in which it acts whichever way its points go; zero along its points."""
+        """Fixed direction in which it acts; zero if it acts along the line between its points."""
         if isinstance(self.part, RearWall):
             return self.part.direction, 0.0
         x, y = self.steady
@@ -133,7 +133,7 @@ class PlacedLink:
         return -x / size, -y / size
 
     def words(self) -> str:
-        """Tell what it links, and how."""
+        """Describe which points it links, and by which law."""
         (x, y), (to_x, to_y) = self.ends
         if isinstance(self.part, Load):
             right, up = self.steady
@@ -159,7 +159,7 @@ class PlacedLink:
 
 
 def tie_words(part: Restrainer | Tendon) -> list[str]:
-    """Tell the law of a restrainer or of a tendon."""
+    """Describe the law of a restrainer or of a tendon."""
     given = part.si
     found = [f"{given.stiffness:.6g} N/m"]
     found += [
@@ -200,7 +200,7 @@ def placed(
     tops: Sequence[float],
     offsets: Sequence[float],
 ) -> tuple[PlacedLink, ...]:
-    """Give links between points of bodies upon one another, from the top down."""
+    """Give the places of links on bodies upon one another; bodies are listed from the top down."""
     names, faults = link_labels(parts), called_alike(parts)
     found = list[PlacedLink]()
     for part, name in zip(parts, names, strict=True):
@@ -217,11 +217,11 @@ def placed(
             faults.append(f"{name}: both its points are on body {on + 1}")
             continue
         if isinstance(part, Load) and not (part.si.vertical or part.si.horizontal):
-            continue  # its mass is that of its body
+            continue  # its mass has been added to its body
         bases = [(0.0, 0.0) if k < 0 else base_of(k, bodies, tops, offsets) for k in (on, to)]
         ends = _ends_of(part, bases[0], bases[1], bodies[on], tops[on])
         if math.dist(*ends) <= ROUNDING * max(abs(place) for end in ends for place in end):
-            ends = (ends[0], ends[0])  # heights of bodies, added up, have left them apart
+            ends = (ends[0], ends[0])  # only rounding of the heights has set them apart
         points = [
             (x, y) if k < 0 else
             (x - base[0] - bodies[k].eccentricity, y - base[1] - bodies[k].centre_height)
@@ -243,14 +243,17 @@ def _other_body(part: Link, count: int) -> int:
     """Give the body of a link's other point, counted from 0 at the top; -1 for the ground."""
     if isinstance(part, PointLink):
         return -1 if part.si.to_body is None else part.si.to_body - 1
-    # a tendon goes into what its body stands on, and a load has no other point
+    # a tendon ends in the body below its own; the other point of a load or wall is on the ground
     return part.si.on_body if isinstance(part, Tendon) and part.si.on_body < count else -1
 
 
 def _ends_of(
     part: Link, base: Point, other: Point, body: SupportedBody, top: float
 ) -> tuple[Point, Point]:
-    """Give both points of a link, from the middle of the lowest base, by those of its bodies."""
+    """Give both points of a link from the middle of the lowest base [m].
+
+    `base` and `other` are the middles of the bases of its two bodies.
+    """
     x, y = base
     if isinstance(part, PointLink):
         (on_x, on_y), (to_x, to_y) = part.si.on, part.si.to
@@ -267,7 +270,7 @@ def _ends_of(
 
 
 def link_labels(parts: Sequence[Link]) -> list[str]:
-    """Give what results call links: their names, or their numbers."""
+    """Give the names of links in results: their own, or a number."""
     return [
         part.si.name or f"{'load' if isinstance(part, Load) else 'restrainer'} {i}"
         for i, part in enumerate(parts, 1)
@@ -280,7 +283,7 @@ def in_one_word(name: str) -> str:
 
 
 def called_alike(parts: Sequence[Link]) -> list[str]:
-    """Tell which names several links have, each once."""
+    """Give a fault for each name that several links have."""
     by_word: dict[str, list[str]] = {}
     for name in link_labels(parts):
         by_word.setdefault(in_one_word(name), []).append(repr(name))
@@ -295,7 +298,7 @@ def called_alike(parts: Sequence[Link]) -> list[str]:
 def base_of(
     k: int, bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> tuple[float, float]:
-    """Give the middle of the base of an upright body from that of the lowest one."""
+    """Give the middle of the base of upright body `k`, from the middle of the lowest base [m]."""
     below = range(k + 1, len(bodies))
     return math.fsum(offsets[k : len(bodies) - 1]), math.fsum(
         bodies[j].centre_height + tops[j] for j in below

@@ -1,4 +1,4 @@
-"""Options of systems and runs, and how they are written and said."""
+"""Options of systems and runs: their values, how they are read, and their words."""
 
 import math
 from collections.abc import Mapping
@@ -60,17 +60,17 @@ AccuracyLike: TypeAlias = (
 )
 SweepAccuracyLike: TypeAlias = AccuracyLike | Literal["screen"]
 PointsLike: TypeAlias = Mapping[str, tuple[QuantityLike, QuantityLike]]
-"""Points of the body: to the right of the middle of its base, and above it."""
+"""Points of the body by names: how far to the right of the middle of its base, how far above."""
 
 
 @dataclass(frozen=True)
 class Measured:
     """An option that is a number."""
 
-    measure: Measure  # its kind
-    condition: Condition  # its range
-    words: str  # what it is
-    otherwise: float  # its value unless given, in SI units
+    measure: Measure  # kind of quantity
+    condition: Condition  # range
+    words: str  # meaning
+    otherwise: float  # default, in SI units
 
 
 MEASURED: Final = {
@@ -95,7 +95,7 @@ class Options:
     gravity: float
     inclination: float = 0.0
     sliding: Sliding = Sliding.COMPUTED
-    # the base line in its gravity, and whether the kinematics are expanded to second order
+    # inclination of the base and gravity; whether the kinematics are expanded to second order
     slope: Slope = field(init=False, repr=False, compare=False)
     small: bool = field(init=False, repr=False, compare=False)
 
@@ -104,9 +104,9 @@ class Options:
         vars(self).update(slope=slope, small=self.rotation is Rotation.SMALL)
 
     def to_dict(self) -> dict[str, str]:
-        """Give the options as texts from which a system reads the same.
+        """Give the options as texts that a system reads back exactly.
 
-        A level base, and sliding that is computed, go without saying.
+        A level base and computed sliding, the defaults, are left out.
         """
         inclined = {"inclination": f"{self.inclination!r} {ANGLE.unit}"}
         checked = {"sliding": str(self.sliding)}
@@ -124,7 +124,7 @@ Option = TypeVar("Option", bound=StrEnum)
 
 
 def read_option(kind: type[Option], value: object, name: str, faults: list[str]) -> Option:
-    """Give the option that a string names, or note the fault."""
+    """Give the option that a string names; if it names none, add to faults and give the first."""
     try:
         return kind(value)  # type: ignore[arg-type]
     except ValueError:
@@ -135,7 +135,7 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
 
 
 def read_measured(given: object, name: str, faults: list[str]) -> float:
-    """Give an option that is a number, or note the fault."""
+    """Give an option that is a number; if it is wrong, add to faults and give the default."""
     one = MEASURED[name]
     if given is None:
         return one.otherwise
@@ -171,4 +171,4 @@ RESTRAINT_CODES: Final = {
     Restraint.LEADING_CORNER: LEADING_CORNER,
     Restraint.CENTRE: CENTRE,
 }
-"""The equations' codes of the rules."""
+"""Codes of the restraint rules in the equations."""

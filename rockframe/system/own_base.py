@@ -1,4 +1,4 @@
-"""Bases of a user's own: what a class declares that is to join in, and what it tells of a run."""
+"""Users' own bases: the class to derive from, and further results that it may give."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -9,26 +9,26 @@ from rockframe.system.support import Support
 
 
 class OwnAnswers:
-    """What a user's own base or scene tells of a run with histories."""
+    """Further results that a user's own base or scene gives of a run with histories."""
 
     __slots__ = ()
 
     def answers(
         self, histories: Mapping[str, Any], before: Mapping[str, Any], after: Mapping[str, Any]
     ) -> dict[str, Any]:
-        """Give the registered columns that the system does not show at each time.
+        """Give the registered columns that are not among those of the equations.
 
         Parameters
         ----------
         histories : mapping of str to ndarray
-            Everything over ``time``, by names of the schema, in SI units.
+            All histories over ``time``, by names of the schema, in SI units.
         before, after : mapping of str to ndarray
-            What the system shows just before and just after each event, and its ``time``.
+            Columns of the system just before and just after each event, and its ``time``.
 
         Returns
         -------
         dict of str to array or float
-            By their names; none unless overridden.
+            Values by the names of the columns; none unless overridden.
         """
         return {}
 
@@ -36,9 +36,9 @@ class OwnAnswers:
 class OwnBase(OwnAnswers, Component):
     """A component that carries a body, from a user's own file.
 
-    A subclass declares its parameters as all components do, says in ``slot`` whose place it
-    takes (``"pads"`` or ``"soil"``), and how it carries a body. :func:`rockframe.register`
-    makes it known; from then on it stands in scenes wherever pads, or soil, do.
+    A subclass declares its parameters as all components do, the slot that it fills (``"pads"`` or
+    ``"soil"``), and a method that gives its support under a body. :func:`rockframe.register`
+    makes it known; from then on it can take the place of pads, or of soil, in any scene.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class OwnBase(OwnAnswers, Component):
         Parameters
         ----------
         load : BaseLoad
-            The body, and how it is held.
+            The body on the base, with the options of its system.
 
         Returns
         -------
@@ -81,21 +81,21 @@ class OwnBase(OwnAnswers, Component):
         Returns
         -------
         tuple of Component
-            For the same slot; none unless overridden.
+            Bases for the same slot; none unless overridden.
         """
         return ()
 
     def misfits(self, parts: Mapping[str, Component]) -> list[str]:
-        """Give the faults of the parts that it is with.
+        """Give the faults of its combination with other parts.
 
         Parameters
         ----------
         parts : mapping
-            Components by their slots.
+            All components of the scene by their slots.
 
         Returns
         -------
         list of str
-            Each names the parts, and what would mend the combination; none unless overridden.
+            Each names the parts and a remedy; none unless overridden.
         """
         return []

@@ -1,4 +1,4 @@
-"""Scenes of a user's own: what a class declares whose equations are its own."""
+"""Users' own scenes: the class to derive from for a scene with its own equations."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,10 +19,10 @@ from rockframe.system.statics import Statics, least_overturning_energy
 class OwnScene(OwnAnswers, Setting):
     """A scene with equations of its own, from a user's own file.
 
-    A subclass says in ``made_of`` which parts make it, in ``model`` what its model is called,
-    and has the methods ``contact_model``, the equations, and ``words``, what `describe()`
-    tells. All else has a default; what a scene does not tell is refused where it is asked for.
-    :func:`rockframe.register` makes it known.
+    A subclass has the attributes ``made_of``, its parts, and ``model``, the name of its model, and
+    the methods ``contact_model``, which gives the equations, and ``words``, for `describe()`.
+    All else has a default; an answer that the scene cannot give, such as its statics, is refused
+    when a user requests it. :func:`rockframe.register` makes the scene known.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class OwnScene(OwnAnswers, Setting):
 
     parts: Parts
     made_of: ClassVar[Mapping[str, type[Component]]] = {}
-    """Slots and classes of the parts; shipped parts, of which one is a block, in their slots."""
+    """Slots and classes of the parts, one of them a block; shipped parts fill their own slots."""
 
     def misfits(self) -> list[str]:
         """Give the faults of parts and options; none unless overridden.
@@ -42,20 +42,20 @@ class OwnScene(OwnAnswers, Setting):
         Returns
         -------
         list of str
-            Each names what does not fit, and what would mend it.
+            Each names what does not fit, and a remedy.
         """
         return []
 
     @cached_property
     def uplift_angle(self) -> float:
-        """Rotation at which full contact is lost; NaN, not told, unless overridden [rad]."""
+        """Rotation at which full contact is lost; NaN, for unknown, unless overridden [rad]."""
         return math.nan
 
     @cached_property
     def overturning_energy(self) -> float:
-        """Energy that it takes to overturn the body; 0, not told, without quasi-static states [J].
+        """Energy that it takes to overturn the body; 0, for unknown, without `curve` [J].
 
-        Then no run warns that its end may not be that of the motion.
+        With 0 no run warns that the body may still overturn after its end.
         """
         if type(self).curve is OwnScene.curve:
             return 0.0
@@ -70,7 +70,7 @@ class OwnScene(OwnAnswers, Setting):
         self._lacks("tells nothing of rest", "equilibrium()")
 
     def without_small_motion(self) -> str:
-        """Say that the scene tells no equations of small motion."""
+        """Say that the scene does not give equations of small motion."""
         return f"{self.model} tells no small motion; it is for its class to give small_motion()"
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
@@ -89,7 +89,7 @@ class OwnScene(OwnAnswers, Setting):
         Raises
         ------
         AssemblyError
-            Sizes and tables are not those of the system, with every fault found.
+            Sizes of the model do not fit its system; all faults are listed.
         """
         model = super().compile()
         faults = _faults_of(model)

@@ -1,4 +1,4 @@
-"""The parts of a scene: which slot each fills, and what stands in which slot."""
+"""The parts of a scene by their slots, such as block, pads, soil and ground."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -33,10 +33,10 @@ from rockframe.system.support import Support, bed_under, pads_under
 
 @dataclass(frozen=True)
 class Kind:
-    """What scenes know of a class of parts."""
+    """The slot of a class of parts and, if it is a base, its support."""
 
-    slot: str  # that it fills
-    # from a part and its load to what it is under a body, where it is a base
+    slot: str  # slot that its parts fill
+    # for a base, the function that gives its support from the part and the load on it
     support: Callable[[Any, BaseLoad], Support] | None = None
 
 
@@ -57,29 +57,29 @@ _KINDS: Final[dict[type, Kind]] = {
 }
 
 RESTRAINER: Final = "restrainer"
-"""The slot of links, of which a scene may have several."""
+"""The slot of links; further links of a scene have numbered slots."""
 SHIPPED: Final = tuple(dict.fromkeys(kind.slot for kind in _KINDS.values()))
-"""Slots of the package's own parts, in a fixed order; that of the motion is the last."""
+"""Slots of the package's own parts, in a fixed order; `motion` is the last."""
 
 
 def slots() -> tuple[str, ...]:
-    """Give all slots, in a fixed order: those of scenes of users' own stand before the motion."""
+    """Give all slots in a fixed order: slots of users' own scenes come before `motion`."""
     own = sorted({kind.slot for kind in _KINDS.values()} - set(SHIPPED))
     return (*SHIPPED[:-1], *own, SHIPPED[-1])
 
 
 def add_kind(of: type, kind: Kind) -> None:
-    """Make a part of a user's own known: a link, a base, or what a scene of its own is made of."""
+    """Add a class of users' own parts: a link, a base, or a part of a user's own scene."""
     _KINDS[of] = kind
 
 
 def numbered(slot: str, number: int) -> str:
-    """Give the slot of one of several parts of a kind, counted from 1."""
+    """Give the slot of the part with a number, from 1, among several parts of one slot."""
     return slot if number == 1 else f"{slot}_{number}"
 
 
 def kind_of_slot(slot: str) -> str:
-    """Give the slot of a kind of which there may be several parts."""
+    """Give a slot without its number: `restrainer` for `restrainer_2`."""
     head, _, number = slot.rpartition("_")
     return head if head == RESTRAINER and number.isdigit() else slot
 
@@ -110,9 +110,9 @@ def support_of(part: Component, load: BaseLoad) -> Support:
 
 
 def _beyond_models(part: Component, known: type) -> list[str]:
-    """Refuse a part that adds to a class which scenes know something that they do not."""
+    """Give the faults of a part of a derived class whose additions no scene would use."""
     own = type(part)
-    # parameters; a property of the same name is none
+    # declared parameters only: a property of the same name is none
     declared, expected = (
         {
             name
@@ -134,7 +134,7 @@ def _beyond_models(part: Component, known: type) -> list[str]:
 
 
 def hint_for(part: object) -> str:
-    """Say what something that is no part lacks to be one; nothing if that is not known."""
+    """Say how to make a part of something that is none; empty if that is not known."""
     if isinstance(part, type) and known_kind(part) is not None:
         return "; it is the class itself: call it with its values"
     if isinstance(part, OwnBase):
@@ -152,15 +152,15 @@ def _to_register(kind: type) -> str:
 
 @dataclass(frozen=True)
 class Parts:
-    """The parts of a scene, by what they are; None where there is none of a kind."""
+    """The parts of a scene by their slots; a shipped slot that is empty is None."""
 
-    # slots and what fills them, in the order of all slots
+    # slots and the parts that fill them, in the order of all slots
     filled: tuple[tuple[str, Component | GroundMotion], ...] = ()
-    # the same apart: parts that are no motion by their slots, and those of the package's own kinds
+    # all parts but the motion, by their slots
     components: dict[str, Component] = field(init=False, repr=False, compare=False)
-    # those in slots that scenes of users' own have, by these; links between points of bodies,
-    # ground and walls, loads behind the others; and names of the parts that are no motion: rigid
-    # ground goes without saying, and an elastic wall is a link
+    # own: parts in slots of users' own scenes, by slots; links: all links, elastic walls among
+    # them, loads last; signature: names of the filled slots without numbers, motion and ground, an
+    # elastic wall counting as a restrainer; then the parts in the shipped slots
     own: dict[str, Component] = field(init=False, repr=False, compare=False)
     links: tuple[Link, ...] = field(init=False, repr=False, compare=False)
     signature: frozenset[str] = field(init=False, repr=False, compare=False)
@@ -193,15 +193,15 @@ class Parts:
 
     @classmethod
     def of(cls, by_slot: Mapping[str, Component | GroundMotion | None]) -> "Parts":
-        """Give parts by their slots, in whatever order; None fills none."""
+        """Make parts from a mapping by slots, in any order; None leaves a slot empty."""
         order = {slot: i for i, slot in enumerate(slots())}
         given = [slot for slot, part in by_slot.items() if part is not None]
-        # several of a kind keep their order
+        # several parts of one slot keep their order
         given.sort(key=lambda slot: order[kind_of_slot(slot)])
         return cls(tuple((slot, by_slot[slot]) for slot in given))  # type: ignore[misc]
 
     def __getitem__(self, slot: str) -> Component:
-        """Give the part in a slot, in a scene that has it."""
+        """Give the part in a slot; LabelError if it is empty."""
         found = dict(self.filled)
         if slot not in found:
             known = ", ".join(map(repr, found))
@@ -232,7 +232,7 @@ class Parts:
 
     @property
     def the_block(self) -> BlockSI:
-        """The numbers of the block: the highest one of a stack, a column of a frame."""
+        """The numbers of the block; of the highest block of a stack, or of a column of a frame."""
         if self.stack is not None:
             return self.stack.si.bodies[0]
         if self.frame is not None:
@@ -243,14 +243,14 @@ class Parts:
 
     @property
     def the_cap(self) -> Cap:
-        """The cap in the size it has under the block, in a scene that has one."""
+        """The cap in SI units, in a scene that has one."""
         if self.cap is None:
             raise TypeError
         return cap_under(self.the_block, self.cap.si)
 
 
 def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
-    """Put each part in its slot; note doubled parts and things that are no parts."""
+    """Put each part in its slot; duplicate parts, and things that are no parts, become faults."""
     found: dict[str, Any] = {}
     for part in given:
         kind = known_kind(type(part))

@@ -1,4 +1,4 @@
-"""The scene of a block on rigid ground before a wall: one-sided rocking."""
+"""The scene of a block on rigid ground before a stiff wall: one-sided rocking."""
 
 import math
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _INTO_WALL: Final = "is into the RearWall"
 IMPACT_TIME: Final = 1e-3
-"""Of an elastic wall in place of a stiff one [s]."""
+"""Duration of an impact on the elastic wall that messages propose for a stiff one [s]."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class RearWallSetting(RigidGroundSetting):
     """A block on rigid ground before a wall."""
 
     wall: RearWall
-    rebound: float  # ratio of the angular velocities after and before an impact [1]
-    height: float  # of the block [m]
+    rebound: float  # angular velocity after an impact over that before it [1]
+    height: float  # height of the block [m]
     struck_by_base = False
     to_fly = "; give the wall a stiffness to follow its flight"
 
@@ -54,7 +54,7 @@ class RearWallSetting(RigidGroundSetting):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        # that of the side that the wall leaves open, for both: the other is never met
+        # the angle of the open side for both sides: the block never rotates into the wall
         outwards = self.overturning_angles.on_side_of(self.direction)
         vars(self).update(overturning_angles=OverturningAngles(outwards, outwards))
 
@@ -65,26 +65,26 @@ class RearWallSetting(RigidGroundSetting):
 
     @property
     def uplift_accelerations(self) -> tuple[float, float]:
-        """Ground accelerations at which it rocks; infinite towards the wall [m s^-2]."""
+        """Ground accelerations at which it begins to rock; infinite towards the wall [m s^-2]."""
         left, right = super().uplift_accelerations
         return (math.inf, right) if self.direction > 0.0 else (left, math.inf)
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Refuse a start in the wall, too."""
+        """Give the faults of an initial state; a rotation into the wall is one."""
         found = super().start_faults(rotation, has_vertical_start)
         if rotation * self.direction < 0.0:
             found.append(f"InitialState: a rotation to the {self.wall.given.side} {_INTO_WALL}")
         return found
 
     def faults_of_velocity(self, rotation: float, angular_velocity: float) -> list[str]:
-        """Refuse the velocity of a body that leans on the wall, if it is into that."""
+        """Give the fault of an upright body that would start with a velocity into the wall."""
         if rotation == 0.0 and angular_velocity * self.direction < 0.0:
             side = self.wall.given.side
             return [f"InitialState: an angular velocity to the {side} at no rotation {_INTO_WALL}"]
         return []
 
     def contact_model(self) -> "ContactModel":
-        """Give Housner's equations of the side that is open."""
+        """Give Housner's equations, with the wall on its side."""
         model = super().contact_model()
         share = self.body.centre_height / self.height
         system = model.system._replace(  # type: ignore[attr-defined]
@@ -111,7 +111,7 @@ class RearWallSetting(RigidGroundSetting):
         return super().held_at(rotations)
 
     def words(self) -> Words:
-        """Tell the block before its wall."""
+        """Describe the block before its wall."""
         inherited, law = super().words(), self.wall.given.restitution
         named = f'law "{law}"' if isinstance(law, WallImpact) else "as given"
         away = "right" if self.direction > 0.0 else "left"
@@ -175,9 +175,9 @@ def _rebound(
 
 
 class YieldingWall(NamedTuple):
-    """An elastic wall that throws back as a stiff one does."""
+    """An elastic wall from which a block rebounds as from a stiff one."""
 
-    share: float  # of the angular velocity that it leaves
+    share: float  # angular velocity after over before the impact [1]
     stiffness: float  # [N m^-1]
     damping: float  # [N s m^-1]
 
@@ -192,7 +192,7 @@ def yielding_wall(wall: RearWall, block: BlockSI) -> YieldingWall:
     mass = (body.inertia + body.mass * body.centre_height**2) / block.height**2
     lost = -math.log(share) if share > 0.0 else math.inf
     ratio = lost / math.hypot(math.pi, lost) if math.isfinite(lost) else 1.0
-    # half a period of the damped vibration, or of the undamped one where that would not end
+    # half a period of the damped vibration; for critical damping, of the undamped one
     half = IMPACT_TIME * (math.sqrt(1.0 - ratio * ratio) if ratio < 1.0 else 1.0)
     frequency = math.pi / half
     return YieldingWall(share, mass * frequency**2, 2.0 * ratio * mass * frequency)

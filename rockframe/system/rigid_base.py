@@ -1,4 +1,4 @@
-"""Rigid bases under bodies of a stack: their words, the law of their equations, and statics."""
+"""Rigid bases under bodies of a stack: their words, law and statics, with joints that may lift."""
 
 import math
 from collections.abc import Sequence
@@ -34,12 +34,12 @@ class RigidBase(Support):
 
     @property
     def settlement(self) -> float:
-        """Zero [m]."""
+        """Settlement: zero [m]."""
         return 0.0
 
     @property
     def uplift_angle(self) -> float:  # type: ignore[override]
-        """Zero: any rotation lifts a corner [rad]."""
+        """Rotation of uplift: zero, as any rotation lifts a corner [rad]."""
         return 0.0
 
     def law(self, body: "Body", mass: float, load_mass: float) -> "BaseNumbers":
@@ -53,13 +53,13 @@ class RigidBase(Support):
         return [NO_VERTICAL_START] if has_vertical_start else []
 
     def uplift_accelerations(self) -> tuple[float, float]:
-        """Ground accelerations at which all above rocks to either side, :eq:`eq-rigid-together`."""
+        """Ground accelerations [m s^-2] at which all above rocks, :eq:`eq-rigid-together`."""
         body = self.load.body
         left, right = body.left / body.centre_height, body.right / body.centre_height
         return self.load.options.gravity * left, self.load.options.gravity * right
 
     def words(self) -> BaseWords:
-        """Tell the base in words."""
+        """Describe the base."""
         left, right = self.uplift_accelerations()
         starts = f"{left:.4g} m s^-2"
         if left != right:
@@ -77,22 +77,22 @@ REACTIONS: tuple[str, ...] = ("left_reaction", "right_reaction")
 
 
 class Pressed(NamedTuple):
-    """What a rigid base carries in full contact, and the couples that lift its corners [N, N m]."""
+    """The load on a rigid base in full contact, and the couples at which a corner lifts."""
 
-    force: float
-    to_left: float  # couple on what stands on it that lifts the right corner, to the left
-    to_right: float
-    along: float  # force of links to the right, that the base must hold
+    force: float  # normal force [N]
+    to_left: float  # couple on the bodies above, to the left, at which the right corner lifts [N m]
+    to_right: float  # likewise to the right
+    along: float  # force of links on the bodies above, to the right, which the base must hold [N]
 
     def bears(self, couple: float) -> bool:
-        """Whether both corners press under a couple to the right."""
+        """Whether both corners press under a couple to the right [N m]."""
         return -self.to_left <= couple <= self.to_right
 
 
 def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
-    """Give what the rigid base under body `k` carries, :eq:`eq-link-rest`.
+    """Give the load on the rigid base under body `k`, :eq:`eq-link-rest`.
 
-    All above it, and what links pull where their points are upright.
+    It carries all bodies above it, and the forces of links on them in the upright position.
     """
     load = setting.bases[k].load
     force, couple, along = load.weight, 0.0, 0.0
@@ -109,7 +109,7 @@ def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
 
 
 def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> "tuple[float, list[Tied]]":
-    """Give what holds back all above base `k` that rocks on what stays, and the ties [N m]."""
+    """Give the restoring moment [N m] of all above base `k`, rotated as one, and its ties."""
     from rockframe.dynamics.tied import rocked
 
     load, (middle, foot) = setting.bases[k].load, setting.base_of(k)
@@ -150,7 +150,7 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
     moment = 0.0
     if rotation != 0.0:
         moment, tied = rocking_moment(setting, k, rotation)
-    # of each centre of mass beside the middle of the lowest base; of the highest its rise
+    # rise of the highest centre of mass; moment of all weights about the middle of the lowest base
     rise, base_moment = 0.0, moment
     for j in range(len(setting.bodies) - 1, -1, -1):
         one, (place, level) = setting.bodies[j], setting.base_of(j)
@@ -161,7 +161,7 @@ def rocked_statics(setting: "StackSetting", rotation: float) -> Statics:
             rise = away * sine - above * versine
         base_moment += setting.gravity * one.mass * across
     down = math.fsum(setting.gravity * one.mass for one in setting.bodies)
-    for one, pull in zip(setting.ties, tied, strict=True):  # those to the ground, which stays
+    for one, pull in zip(setting.ties, tied, strict=True):  # ties to the ground act from outside
         if one.to < 0:
             x, y = -mass * pull.force * pull.direction
             across, up = one.ends[0] + pull.moved
@@ -182,8 +182,8 @@ def beyond_lift(
 ) -> list[Statics | None]:
     """Give the equilibria with the highest body held at rotations, where joints may lift.
 
-    From those in which all rigid bases are in full contact: farther out than where a couple first
-    lifts a corner from one, all above that base rocks about the other corner, on what is below.
+    `closed` are the equilibria with all rigid bases in full contact. At rotations beyond the one at
+    which a corner first lifts from a rigid base, all above that base rotates about its other one.
     """
     found: list[Statics | None] = [None] * len(rotations)
     for side in (1, -1):
@@ -205,11 +205,11 @@ def beyond_lift(
 
 
 class _Lift(NamedTuple):
-    """Where a couple lifts a corner from a rigid base."""
+    """The state at which a corner lifts from a rigid base."""
 
-    bodies: StandingBodies  # all above that base on its other corner
-    rotation: float  # of the highest body
-    place: Balance  # of these
+    bodies: StandingBodies  # all bodies, those above the base on its other corner
+    rotation: float  # rotation of the highest body [rad]
+    place: Balance  # equilibrium of the bodies
 
 
 def _first_lift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _Lift | None:
@@ -229,13 +229,13 @@ def _first_lift(joints: "Sequence[_Joint]", before: float, rotation: float) -> _
 
 
 class _Joint:
-    """A rigid base in full contact, beside bases that give way."""
+    """A rigid base in full contact, in a stack with deformable bases."""
 
     def __init__(self, setting: "StackSetting", k: int, side: int) -> None:
         self.closed = setting.standing.chain
         whole = [*setting.groups]
         self.place = next((i for i, some in enumerate(whole) if k in some), len(whole))
-        if self.place == len(whole):  # what is below stands still, on rigid ground
+        if self.place == len(whole):  # the bodies below rest on rigid ground
             whole.append(range(whole[-1][-1] + 1, k + 1))
         else:
             some = whole[self.place]
@@ -244,21 +244,21 @@ class _Joint:
         self.side = side
 
     def rotations(self, stands: "Sequence[Stand]") -> list[float]:
-        """Give the rotations of all bodies on what they stand on; that on this base has none."""
+        """Give the rotations of all bodies on their bases; 0 for the body on this base."""
         found = [one.state.rotation for one in stands]
         return [*found[: self.place], 0.0, *found[self.place :]]
 
     def lifted_from(self, rotation: float) -> Balance:
-        """Give how the bodies stand as the corner lifts."""
+        """Give the equilibrium in which the corner lifts."""
         chain, (stands,) = self.bodies.chain, self.closed.curve([rotation])
         found = chain.settled(self.rotations(stands or [])) or []
         return Balance.of(chain, found)
 
     def spare(self, rotation: float) -> float:
-        """Give what the couple that holds the highest body lacks to lift a corner here."""
+        """Give by how much the couple that holds the highest body is too small to lift a corner."""
         (stands,) = self.closed.curve([rotation])
         if stands is None:
-            return math.inf  # something else has given way before
+            return math.inf  # there is no equilibrium with this joint closed
         here = self.bodies.chain.settled(self.rotations(stands))
         if here is None:
             return math.inf

@@ -26,9 +26,9 @@ class RigidGroundSetting(Setting):
     to_fly: ClassVar[str] = "; put it on a TwoSpringSupport to follow its flight"
     steps_cost_most = False
     source: ClassVar[str] = "Housner; Eq. (6) for omega"
-    """Of the equation of motion."""
+    """Source of the equation of motion, for words."""
     greatest: ClassVar[str] = "Eq. (4) is the greatest value"
-    """Said of the restitution."""
+    """Remark on the restitution, for words."""
 
     @property
     def model(self) -> str:
@@ -39,13 +39,13 @@ class RigidGroundSetting(Setting):
     def uplift_acceleration(self) -> float:
         """Horizontal ground acceleration at which rocking starts, g tan(theta) [m s^-2].
 
-        Of the side that lifts first, :eq:`eq-incline-uplift`; infinite if neither does.
+        The lesser of both sides, :eq:`eq-incline-uplift`; infinite if neither side rocks.
         """
         return min(self.uplift_accelerations)
 
     @property
     def uplift_accelerations(self) -> tuple[float, float]:
-        """The same for rocking about the left and about the right corner [m s^-2].
+        """Ground accelerations at which rocking about the left, the right corner starts [m s^-2].
 
         Ground that is accelerated to the right tips the block to the left.
         """
@@ -53,11 +53,14 @@ class RigidGroundSetting(Setting):
 
     @property
     def moving_accelerations(self) -> tuple[float, float]:
-        """Ground accelerations, as those of uplift, at which a block at rest moves [m s^-2]."""
+        """Ground accelerations at which a block at rest moves, as for uplift [m s^-2]."""
         return self.uplift_accelerations
 
     def _reached_at(self, left: float, right: float) -> tuple[float, float]:
-        """Give the ground accelerations whose force, with the weight, has slopes to the base."""
+        """Give the ground accelerations at which the resultant force has some slopes [m s^-2].
+
+        `left` and `right` are tangents of its angle to the normal of the base.
+        """
         if self.slope.level:
             return self.gravity * left, self.gravity * right
         i = self.slope.inclination
@@ -112,7 +115,7 @@ class RigidGroundSetting(Setting):
         )
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the quasi-static states at rotations."""
+        """Give the quasi-static states at rotations [rad]."""
         return [self._held(rotation) for rotation in rotations]
 
     def _held(self, rotation: float) -> Statics:
@@ -165,7 +168,7 @@ class RigidGroundSetting(Setting):
         return half - shift, half + shift
 
     def words(self) -> Words:
-        """Tell the block on rigid ground."""
+        """Describe the block on rigid ground."""
         lean = "theta s - a" if self.slope.level else "theta s + i - a"
         rocking = f"a'' = -omega^2 [(1 + yg''/g) sin({lean}) + (xg''/g) cos({lean})]"
         if self.options.small:
@@ -230,7 +233,7 @@ class RigidGroundSetting(Setting):
 
 
 def refuse_fall(setting: RigidGroundSetting) -> None:
-    """Refuse a block whose weight passes beside its base, :eq:`eq-incline-standing`."""
+    """Refuse a block whose weight acts outside of its base, :eq:`eq-incline-standing`."""
     slope, tangents = setting.slope, setting.tangents
     if slope.level:
         return

@@ -1,4 +1,4 @@
-"""The scene of columns under a beam: the body that moves as they do, tendons, and words."""
+"""The scene of a rocking frame, columns under a beam: the equivalent body, tendons, words."""
 
 import math
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FrameBody(OnCorners):
-    """The body that rocks on rigid ground as columns under a beam do, :eq:`eq-rocking-frame-body`.
+    """The equivalent body, which rocks as columns under a beam do, :eq:`eq-rocking-frame-body`.
 
     Its mass and its centre of mass are those of columns and beam together.
     """
@@ -37,7 +37,7 @@ class FrameBody(OnCorners):
 
     @cached_property
     def maximum_restitution(self) -> Restitutions:
-        """That of columns and beam, not that of one body, :eq:`eq-rocking-frame-impact`."""
+        """eps_max of columns and beam, not of a single body, :eq:`eq-rocking-frame-impact`."""
         column, beam = self.frame.column, self.frame.beam_mass
         swung = self.frame.columns * column.mass + 4.0 * beam
         corner = self.mass * self.gyration_square_about(self.half_width)
@@ -55,11 +55,11 @@ class FrameBody(OnCorners):
         return self.frame.column.half_width
 
     def arms(self, x: Array, y: Array, values: Mapping[str, Any]) -> tuple[Array, Array]:
-        """Give where points of a column, or of the beam, are from the centre of mass [m].
+        """Give x and y of points of a column, or of the beam, from the centre of mass [m].
 
-        Points above the top of the columns are of the beam, which moves as the upper corner
-        that bears it. The corners that bear tell the side: the sign of a rotation does not
-        where rocking begins and at impacts.
+        Points above the top of the columns belong to the beam, which moves with the upper corner
+        that bears it. The side follows from the corners that bear: where rocking begins and at
+        impacts the rotation is zero.
         """
         half, height = self.frame.column.half_width, self.frame.column.height
         side = 1.0 * (values["right_reaction"] != 0.0) - (values["left_reaction"] != 0.0)
@@ -101,7 +101,7 @@ class RockingFrameSetting(RigidGroundSetting):
         return "rocking frame"
 
     def words(self) -> Words:
-        """Tell the frame."""
+        """Describe the frame."""
         body, si, inherited = self.body, self.frame, super().words()
         share = si.beam_mass / (si.columns * si.column.mass)
         radius = body.gyration_square_about(body.half_width) / (
@@ -139,7 +139,7 @@ class TiedFrameSetting(RockingFrameSetting):
 
     @property
     def link_names(self) -> tuple[str, ...]:
-        """What results call the tendons."""
+        """Names of the tendons in results."""
         return tuple(link_labels(self.tendons))
 
     @cached_property
@@ -172,7 +172,7 @@ class TiedFrameSetting(RockingFrameSetting):
 
     @property
     def uplift_accelerations(self) -> tuple[float, float]:
-        """Ground accelerations at which it rocks, against the preload too [m s^-2]."""
+        """Ground accelerations at which it begins to rock, against the preload [m s^-2]."""
         held = 2.0 * self.frame.column.half_width * self.pull(0.0)
         more = held / (self.body.mass * self.body.centre_height)
         left, right = super().uplift_accelerations
@@ -186,7 +186,7 @@ class TiedFrameSetting(RockingFrameSetting):
         shares = (0.5 * (1.0 - side), 0.5 * (1.0 + side))
         return replace(
             found,
-            # forces at the feet, about their middles
+            # moment of the forces at the feet about the middle of each foot
             base_moment=found.base_moment + side * pull * half * cosine,
             restoring_moment=found.restoring_moment + side * 2.0 * half * pull * cosine,
             reactions={
@@ -215,7 +215,7 @@ class TiedFrameSetting(RockingFrameSetting):
         )
 
     def words(self) -> Words:
-        """Tell the frame and its tendons."""
+        """Describe the frame and its tendons."""
         inherited = super().words()
         return replace(
             inherited,

@@ -1,4 +1,4 @@
-"""What a scene is: its numbers in SI units, its words, and its model."""
+"""The setting of a scene: its numbers in SI units, its words, its statics and its model."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -20,24 +20,24 @@ if TYPE_CHECKING:
     from rockframe.dynamics.chain.slips import SlippingBodies
 
 LARGE_LEAN = 0.1
-"""Share of the overturning angle above which a lean at rest is worth a warning."""
+"""Share of the overturning angle above which a rotation at rest gives a warning."""
 
 
 class SlipRange(NamedTuple):
-    """How far a body has slipped on its base, to the right [m]."""
+    """How far a body has slipped on its base [m]."""
 
-    residual: float  # at the end of a run
-    left: float  # at most to either side, both positive
-    right: float
+    residual: float  # slip to the right at the end of a run
+    left: float  # largest slip to the left, positive
+    right: float  # largest slip to the right
 
     @property
     def peak(self) -> float:
-        """The greatest to either side."""
+        """Largest slip to either side [m]."""
         return largest(self.left, self.right)
 
 
 def chain_slips(setting: "Setting", count: int, ending: Ending) -> tuple[SlipRange, ...]:
-    """Tell how far the highest bodies of a chain that slips have slipped, so many of them."""
+    """Give how far each of the `count` highest bodies of a chain has slipped."""
     chain = cast("SlippingBodies", setting.compile().system)
     return tuple(SlipRange(*chain.slips(k, ending)) for k in range(count))
 
@@ -49,15 +49,14 @@ class Setting(ABC):
     Parameters
     ----------
     load : BaseLoad
-        The body that the response is of, with the options of its system.
+        The body whose response results give, with the options of its system.
     cap_offset : float, optional
         Height of a cap's centre above that of the body, where a cap is part of the body [m].
     """
 
     load: BaseLoad
     cap_offset: float | None = field(default=None, kw_only=True)
-    # the body that the response is of, and its system's options; gravity [m s^-2], and the base
-    # line in it
+    # body and options of the load; gravity [m s^-2], and the inclined base with its gravity
     body: SupportedBody = field(init=False, repr=False, compare=False)
     options: Options = field(init=False, repr=False, compare=False)
     gravity: float = field(init=False, repr=False, compare=False)
@@ -71,17 +70,17 @@ class Setting(ABC):
     flies: ClassVar[bool] = True
     """Whether the equations follow a body that leaves its base."""
     to_fly: ClassVar[str] = ""
-    """What to do where they do not, if anything can be done, at the end of a sentence."""
+    """How to have flight computed where they do not, as the end of a message; or empty."""
     slides: ClassVar[bool] = False
-    """Whether in the equations a body slides on its base, so that its friction is that of these."""
+    """Whether the equations have friction, with which a body slides on its base."""
     sliding_bodies: ClassVar[tuple[str, ...]] = ()
-    """What verdicts call the bodies that slide; unless told, by their numbers."""
+    """Names of the bodies that slide, for verdicts; their numbers unless given."""
 
     steps_cost_most: ClassVar[bool] = True
-    """Whether a run spends more on steps than on events and labels, so that fixed steps save."""
+    """Whether steps take most of the time of a run, so that fixed steps make it faster."""
 
     struck_by_base: ClassVar[bool] = True
-    """Whether the impulses of impacts are those of the base alone, so that friction bears them."""
+    """Whether impacts are on the base alone, so that friction must bear their impulses."""
 
     def __post_init__(self) -> None:
         body, options = self.load.body, self.load.options
@@ -93,12 +92,12 @@ class Setting(ABC):
 
     @property
     def overturning_angle(self) -> float:
-        """Theta, the lesser of both [rad]."""
+        """Theta, the lesser of both overturning angles [rad]."""
         return min(self.overturning_angles)
 
     @property
     def overturning_rotations(self) -> tuple[float, ...]:
-        """Rotations of unstable equilibrium that differ [rad]."""
+        """Rotations of unstable equilibrium, with signs; one for both sides if symmetric [rad]."""
         left, right = self.overturning_angles
         return (right, -left) if self.leans else (right,)
 
@@ -109,45 +108,45 @@ class Setting(ABC):
 
     @cached_property
     def rest_rotation(self) -> float:
-        """Rotation at rest, of a body that leans on a base that gives way [rad]."""
+        """Rotation at rest, of a body that leans on a deformable base; else 0 [rad]."""
         return 0.0
 
     @cached_property
     def overturning_energy(self) -> float:
-        """Energy that it takes to overturn the body, by itself, on the weaker side [J]."""
+        """Least energy that overturns the body slowly, to the weaker side [J]."""
         return least_overturning_energy(self)
 
     @cached_property
     def wholes(self) -> tuple[SupportedBody, ...]:
-        """Bodies under the highest, each with all above it as one upright body."""
+        """Bodies under the highest, each joined with all above it to one upright body."""
         return ()
 
     @property
     def supports(self) -> tuple[Support, ...]:
-        """The bases that give way, from that of the body down; none on rigid ground."""
+        """The bases, from that of the highest body down; none for a block on rigid ground."""
         return ()
 
     @property
     def link_names(self) -> tuple[str, ...]:
-        """What results call links between points, of which most scenes have none."""
+        """Names of the links between points in results; empty for most scenes."""
         return ()
 
     @cached_property
     def uplift_angle(self) -> float:
-        """Rotation at which a body loses full contact; any on rigid ground, NaN if never [rad]."""
+        """Rotation at which a body loses full contact; 0 on rigid ground, NaN if never [rad]."""
         return self.supports[0].uplift_angle if self.supports else 0.0
 
     @cached_property
     def settlement(self) -> float | None:
-        """Settlement under the weight, where the base of the body gives way [m]."""
+        """Settlement of the body's base under the weight; None on rigid ground [m]."""
         return self.supports[0].settlement if self.supports else None
 
     def small_motion(self) -> SmallMotion | None:
-        """Give the linear equations of small motion about rest; a rigid base leaves none."""
+        """Give the linear equations of small motion about rest; None on a rigid base."""
         return None
 
     def without_small_motion(self) -> str:
-        """Say why there are no such equations."""
+        """Say why there are no equations of small motion."""
         return (
             "rigid ground has no small motion: a body stands still on it or rocks, with a "
             "period that grows with the amplitude; a block on pads or soil has one"
@@ -171,19 +170,19 @@ class Setting(ABC):
 
     @abstractmethod
     def words(self) -> Words:
-        """Tell equations, restraint, uplift angles, numbers, and what is left out."""
+        """Describe equations, restraint, uplift angles, numbers, and what is left out."""
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
-        """Give the faults that the base of the body finds in an initial state.
+        """Give the faults of an initial state, by the rotation and the base of the body.
 
-        Rigid ground, which is no support, leaves no vertical freedom.
+        On rigid ground, which has no support, a vertical start is a fault.
         """
         if not self.supports:
             return [NO_VERTICAL_START] if has_vertical_start else []
         return self.supports[0].start_faults(rotation, has_vertical_start)
 
     def faults_of_velocity(self, rotation: float, angular_velocity: float) -> list[str]:
-        """Give the faults of an angular velocity at which a run starts; none unless overridden."""
+        """Give the faults of an initial angular velocity; none unless overridden."""
         return []
 
     def cautions(self) -> list[str]:
@@ -191,7 +190,7 @@ class Setting(ABC):
         return [*(text for each in self.supports for text in each.cautions()), *self._leaning()]
 
     def _leaning(self) -> list[str]:
-        """Warn of a body that leans far at rest."""
+        """Give a warning about a body that leans far at rest."""
         lean = abs(self.rest_rotation)
         share = lean / self.overturning_angles.on_side_of(self.rest_rotation)
         if share <= LARGE_LEAN:
@@ -209,21 +208,21 @@ class Setting(ABC):
         ]
 
     def slips_of(self, ending: Ending) -> tuple[SlipRange, ...]:
-        """Tell how far each body slipped, by the end of a run; nothing of bodies that are held."""
+        """Give how far each body slipped, from the end of a run; empty if all are held."""
         return ()
 
     def beyond_edges(self, ending: Ending) -> list[str]:
-        """Warn of bodies that slipped beyond the edge of what they stand on, which has no end."""
+        """Warn of bodies that slipped beyond an edge, which the equations do not have."""
         return []
 
     @abstractmethod
     def contact_model(self) -> ContactModel:
-        """Give the equations, with limits of the rotation as of a level base."""
+        """Give the equations; :meth:`compile` sets the limits of the rotation for a slope."""
 
     @cached_property
     def _model(self) -> ContactModel:
         return replace(self.contact_model(), rotation_limits=self.overturning_angles)
 
     def compile(self) -> ContactModel:
-        """Give the equations, ready for the integrator, which leaves them as they are."""
+        """Give the equations, ready for the integrator, which does not change them."""
         return self._model

@@ -36,12 +36,12 @@ class SlidingSetting(RigidGroundSetting):
 
     @property
     def lands_flat(self) -> bool:
-        """Whether the block is so squat that it does not roll over."""
+        """Whether the block is so squat that it lands flat instead of rocking on."""
         return min(self.restitution) <= 0.0
 
     @property
     def moving_accelerations(self) -> tuple[float, float]:
-        """Ground accelerations at which it rocks or slides; zero of one that its weight moves."""
+        """Ground accelerations at which it rocks or slides; 0 if its weight moves it [m s^-2]."""
         left, right = (min(self.friction.static, one) for one in self.tangents)
         left, right = self._reached_at(left, right)
         return max(left, 0.0), max(right, 0.0)
@@ -55,11 +55,11 @@ class SlidingSetting(RigidGroundSetting):
         return slide_rock(system, mass=self.body.mass)
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Tell how far the block slipped."""
+        """Give how far the block slipped."""
         return (slips_on_ground(ending),)
 
     def cautions(self) -> list[str]:
-        """Give warnings about the restitution, and of a block that its weight moves."""
+        """Give warnings about the restitution, and about a block that slides by its weight."""
         along = abs(self.slope.along_gravity)
         if along <= self.friction.static * self.slope.normal_gravity:
             return super().cautions()
@@ -70,7 +70,7 @@ class SlidingSetting(RigidGroundSetting):
         return [*super().cautions(), slides]
 
     def words(self) -> Words:
-        """Tell the block that slides."""
+        """Describe the block that slides."""
         base = super().words()
         slips = "s = sgn(slip')"
         law = impact_words(self.impact)
@@ -169,20 +169,20 @@ def slips_on_ground(ending: "Ending") -> SlipRange:
 
 
 def friction_to_roll_over(body: SupportedBody) -> float:
-    """Give the coefficient from which no corner slips as it strikes, :eq:`eq-slide-housner`."""
+    """Give the friction from which on no corner slips in an impact [1], :eq:`eq-slide-housner`."""
     square = body.base_inertia / body.mass
     return max(body.centre_height * own / square for own in (body.left, body.right))
 
 
 def impact_words(impact: Impact) -> str:
-    """Tell the law of impacts."""
+    """Describe the law of impacts."""
     if impact is Impact.STICK:
         return "the corner that strikes is held"
     return "the corner that strikes slips as far as the kinetic friction lets it"
 
 
 def ill_posed(body: SupportedBody, kinetic: float) -> list[str]:
-    """Refuse friction with which a corner that slips may jam, :eq:`eq-slide-painleve`."""
+    """Give a fault for friction with which a slipping corner may jam, :eq:`eq-slide-painleve`."""
     from rockframe.dynamics.slide_rock_model import ill_posed_friction
 
     limit = ill_posed_friction(

@@ -1,4 +1,4 @@
-"""The scenes of bodies upon one another that slip, and of a block with links on rigid ground."""
+"""The scenes of stacked bodies that slip, and of a block with links on rigid ground."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel, Ending
 
 LEAST_OVERHANG: Final = 0.1
-"""Share of half the width of its base by which a body is beyond an edge when that is told.
+"""Overhang of a body beyond an edge from which on a warning is given, over half its base width.
 
-By as much the lever of the edge, which bears in its place, is shorter than that of its corner."""
+The edge bears in place of the corner, and its lever is shorter by this share."""
 
 
 @dataclass(frozen=True)
 class SlidingStackSetting(StackSetting):
-    """Bodies upon one another that friction holds on what they stand on."""
+    """Bodies upon one another that are held by friction, or slip, on their bases."""
 
     slides = True
 
@@ -41,23 +41,23 @@ class SlidingStackSetting(StackSetting):
         return f"{super().model}-sliding"
 
     def cautions(self) -> list[str]:
-        """Give warnings, also of bodies that their restrainers move at once."""
+        """Give warnings, also about bodies that slide at rest under their restrainers."""
         names = [f"body {k}" for k in range(1, len(self.bodies) + 1)]
         return [*super().cautions(), *self.slides_at_rest(*names)]
 
     def words(self) -> Words:
-        """Tell bodies and bases, and their friction."""
+        """Describe bodies, bases and friction."""
         return sliding_words(super().words(), *(
             (f"base {k}: friction at rest, and of slip", friction.words())
             for k, friction in enumerate(self.frictions, 1)
         ))  # fmt: skip
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Tell how far each body slipped."""
+        """Give how far each body slipped."""
         return chain_slips(self, len(self.bodies), ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:
-        """Warn of bodies that slipped beyond the edge of what they stand on, which has no end."""
+        """Warn of bodies that slipped beyond an edge of the body below, which the model lacks."""
         pairs = zip(self.bodies, self.bodies[1:], self.offsets, self.slips_of(ending), strict=False)
         found = (
             beyond_edge(
@@ -71,7 +71,10 @@ class SlidingStackSetting(StackSetting):
 def beyond_edge(
     slips: SlipRange, offset: float, upper: float, lower: float, names: Sequence[str]
 ) -> str:
-    """Warn of a body that slipped beyond the edge of the one below; half their widths are given."""
+    """Warn of a body that slipped beyond an edge of the one below; empty if it did not.
+
+    `upper` and `lower` are half the widths of both [m].
+    """
     over = max(slips.right + offset, slips.left - offset) - (lower - upper)
     if over <= LEAST_OVERHANG * upper:
         return ""
@@ -82,7 +85,7 @@ def beyond_edge(
 
 
 def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
-    """Give the setting of bodies with links: of those that slip where bases have friction."""
+    """Give the setting of stacked bodies: one with slip where bases have friction."""
     slips = any(getattr(one.si, "friction", None) is not None for one in bases)
     _refuse_many_modes(bases, slips)
     if not slips:
@@ -109,7 +112,7 @@ def stack_on(bases: Sequence[Component], held: StackSetting) -> StackSetting:
 
 
 def _same(held: StackSetting) -> dict[str, Any]:
-    """Give what all settings of the same bodies, bases and links have."""
+    """Give the fields that settings of the same bodies, bases and links share."""
     names = ("load", "bodies", "tops", "offsets", "bases", "ties")
     return {name: getattr(held, name) for name in names}
 
@@ -135,7 +138,7 @@ def _refuse_many_modes(bases: Sequence[Component], slips: bool) -> None:
 
 
 def sheared(held: StackSetting) -> list[str]:
-    """Refuse tendons that are bent over edges that a slip moves apart."""
+    """Give faults for tendons without depth below a joint: a slip would shear them there."""
     return [
         f"{one.name}: a Tendon is bent over the edges of a duct that goes through, and a block "
         "that slides shears it there: give the depth below the base at which it is held"
@@ -146,7 +149,7 @@ def sheared(held: StackSetting) -> list[str]:
 
 @dataclass(frozen=True)
 class TiedSetting(StackSetting):
-    """A block with links on rigid ground, which holds it."""
+    """A block with links on rigid ground, which holds it against sliding."""
 
     @property
     def friction(self) -> BaseFriction:
@@ -160,7 +163,7 @@ class TiedSetting(StackSetting):
 
         self._rest  # noqa: B018 - refuses a block that its links tip over
         bare = slide_rock_of(self.body, self.friction, self.body.maximum_restitution, self.gravity)
-        if not self.chain_ties:  # of loads that are masses
+        if not self.chain_ties:  # all links are loads that are masses
             return slide_rock(bare, mass=self.body.mass)
         return tied_slide_rock(bare, self.chain_ties, mass=self.body.mass)
 
@@ -178,11 +181,11 @@ class TiedSlidingSetting(TiedSetting):
         return "rigid-restrained-sliding"
 
     def cautions(self) -> list[str]:
-        """Give warnings, also of a block that its restrainers move at once."""
+        """Give warnings, also about a block that slides at rest under its restrainers."""
         return [*super().cautions(), *self.slides_at_rest("the block")]
 
     def words(self) -> Words:
-        """Tell the block, its links and its friction."""
+        """Describe the block, its links and its friction."""
         told = super().words()
         slides = sliding_words(
             told,
@@ -206,12 +209,12 @@ class TiedSlidingSetting(TiedSetting):
         )  # fmt: skip
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Tell how far the block slipped."""
+        """Give how far the block slipped."""
         return (slips_on_ground(ending),)
 
 
 def tied_on_ground(ground: RigidGround, held: StackSetting) -> StackSetting:
-    """Give the setting of a block with links: of one that slides where the ground has friction."""
+    """Give the setting of a block with links: one with sliding where the ground has friction."""
     found = friction_under(ground, held.options)
     if found is None:
         return TiedSetting(**_same(held))

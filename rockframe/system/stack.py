@@ -1,4 +1,4 @@
-"""The scene of bodies upon one another: its numbers, its words and its model."""
+"""The scene of bodies upon one another, with links: its numbers, words, statics and model."""
 
 import math
 from collections.abc import Sequence
@@ -45,17 +45,17 @@ PULLED: Final = ", or their restrainers or loads pull them over"
 class StackSetting(Setting):
     """Bodies upon one another."""
 
-    bodies: tuple[SupportedBody, ...]  # all of them, from the top down
+    bodies: tuple[SupportedBody, ...]  # all bodies, from the top down
     tops: tuple[float, ...]  # height of the top of each above its centre of mass [m]
     # how far the middle of each base is to the right of that of the body below [m]
     offsets: tuple[float, ...]
-    bases: tuple[Support, ...]  # what each stands on, under all that it carries
-    ties: tuple[PlacedLink, ...] = ()  # what links their points
-    frictions: tuple[BaseFriction, ...] = ()  # of each base; none where all bases hold
+    bases: tuple[Support, ...]  # base under each body, with all bodies above it as its load
+    ties: tuple[PlacedLink, ...] = ()  # links between points, called ties here
+    frictions: tuple[BaseFriction, ...] = ()  # friction of each base; empty where all bases hold
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        # one side is not as the other, by bodies, offsets or ties
+        # bodies, offsets, ties or a slope make left and right differ
         eccentric = any(body.eccentricity != 0.0 for body in self.bodies)
         leans = bool(self.ties) or eccentric or any(self.offsets) or not self.slope.level
         vars(self).update(leans=leans)
@@ -69,7 +69,7 @@ class StackSetting(Setting):
 
     @cached_property
     def wholes(self) -> tuple[SupportedBody, ...]:
-        """Bodies under the highest, each with all above it as one upright body."""
+        """Bodies under the highest, each joined with all above it to one upright body."""
         return tuple(
             combined_body(self.bodies[: k + 1], self.tops, self.offsets)
             for k in range(1, len(self.bodies))
@@ -82,17 +82,17 @@ class StackSetting(Setting):
 
     @cached_property
     def settlement(self) -> float | None:
-        """Settlement under the highest body; none on a rigid base [m]."""
+        """Settlement of the base of the highest body; None for a rigid base [m]."""
         return None if self.rigid[0] else self.bases[0].settlement
 
     @property
     def rigid(self) -> tuple[bool, ...]:
-        """Which bases are rigid."""
+        """Whether each base is rigid, from the top down."""
         return tuple(isinstance(base, RigidBase) for base in self.bases)
 
     @cached_property
     def groups(self) -> tuple[range, ...]:
-        """Bodies that rigid bases make one at rest, on each base that gives way."""
+        """Ranges of bodies that rigid bases join at rest, one above each deformable base."""
         found, first = list[range](), 0
         for k, rigid in enumerate(self.rigid):
             if not rigid:
@@ -101,7 +101,7 @@ class StackSetting(Setting):
         return tuple(found)
 
     def slides_at_rest(self, *names: str) -> list[str]:
-        """Warn of bodies, by what they are called, that their ties move on rigid bases at once."""
+        """Warn of bodies on rigid bases, with these names, that slide at rest under their ties."""
         found = list[str]()
         for k, (name, friction) in enumerate(zip(names, self.frictions, strict=True)):
             if self.rigid[k] and math.isfinite(friction.static):
@@ -116,11 +116,11 @@ class StackSetting(Setting):
 
     @property
     def link_names(self) -> tuple[str, ...]:
-        """What results call the ties."""
+        """Names of the ties in results, without loads."""
         return tuple(one.name for one in self.ties if not isinstance(one.part, Load))
 
     def cautions(self) -> list[str]:
-        """Give the warnings of all bases, each with the body that it is under."""
+        """Give the warnings of all bases, each with the number of the body on it."""
         found = [
             f"under body {k}: {text}" if len(self.bodies) > 1 else text
             for k, base in enumerate(self.bases, 1)
@@ -129,7 +129,7 @@ class StackSetting(Setting):
         return [*found, *self._leaning()]
 
     def words(self) -> Words:
-        """Tell bodies and bases, from the top down."""
+        """Describe bodies and bases, from the top down."""
         numbers = list[tuple[str, str]]()
         left_out = ["sliding", "elasticity of the bodies"]
         for k, (body, base) in enumerate(zip(self.bodies, self.bases, strict=True), 1):
@@ -185,13 +185,16 @@ class StackSetting(Setting):
 
     @cached_property
     def standing(self) -> StandingBodies:
-        """The bodies on all bases that give way, those on rigid ones as one with what is below."""
+        """Statics of the bodies: those that rigid bases join are one body on a deformable base."""
         return self.standing_in(self.groups)
 
     def standing_in(
         self, groups: Sequence[range], lifted: int = -1, side: int = 0
     ) -> StandingBodies:
-        """Give groups of bodies on their bases, of which one may have lifted from a rigid base."""
+        """Give the statics of groups of joined bodies; one may have lifted from a rigid base.
+
+        `lifted` is the lowest body of that group, -1 for none; `side` is the side of its corner.
+        """
         from rockframe.dynamics.on_base import OnBase
 
         found, numbers = list[StandingBody](), list["BaseNumbers"]()
@@ -219,7 +222,7 @@ class StackSetting(Setting):
         return StandingBodies(chain, mass, tuple(numbers))
 
     def _between_groups(self, tie: PlacedLink, groups: Sequence[range]) -> "ChainLink":
-        """Give a tie between bodies that rigid bases make one; what is on the ground stays."""
+        """Give a tie between groups of joined bodies; a point on the ground stays there."""
         found = tie.chain_link(self.body.mass)
         if not any(self.rigid):
             return found
@@ -233,11 +236,11 @@ class StackSetting(Setting):
         return found._replace(on=which[0], on_point=points[0], to=which[1], to_point=points[1])
 
     def base_of(self, k: int) -> tuple[float, float]:
-        """Give the middle of the base of an upright body from that of the lowest one [m]."""
+        """Give the middle of the base of upright body `k`, from that of the lowest one [m]."""
         return base_of(k, self.bodies, self.tops, self.offsets)
 
     def _joined(self, some: range) -> SupportedBody:
-        """Give bodies that rigid bases make one."""
+        """Give the one body that a range of joined bodies makes."""
         first, last = some[0], some[-1] + 1
         if len(some) == 1:
             return self.bodies[first]
@@ -262,13 +265,13 @@ class StackSetting(Setting):
         return found
 
     def _placed_at_rest(self) -> "list[AtRest]":
-        """Give where each body is at rest; those on rigid bases are there in full contact."""
+        """Give where each body is at rest on its base; on rigid bases, in full contact."""
         from rockframe.dynamics.chain.model import AtRest
 
         placed = [AtRest(0.0, 0.0) for _ in self.bodies]
         for some, stand in zip(self.groups, self._rest, strict=True):
             lowest, rotation, vertical = some[-1], stand.state.rotation, stand.state.vertical
-            if len(some) > 1:  # of a centre of mass at another height
+            if len(some) > 1:  # from the joined body's centre of mass to that of the lowest one
                 body = self.links[lowest].body
                 attitude = body.attitude(rotation)
                 vertical = stand.line.left - attitude.rise - body.left * attitude.sine
@@ -282,7 +285,7 @@ class StackSetting(Setting):
 
     @cached_property
     def uplift_angle(self) -> float:
-        """That of the highest body; NaN where links on it act with other bodies below [rad]."""
+        """Uplift angle of the highest body; NaN if links act on it and bodies are below [rad]."""
         if self.rigid[0] or all(0 not in (one.on, one.to) for one in self.ties):
             return self.bases[0].uplift_angle
         if len(self.bodies) > 1:
@@ -291,7 +294,7 @@ class StackSetting(Setting):
         return min((one for one in found if not math.isnan(one)), default=math.nan)
 
     def small_motion(self) -> SmallMotion | None:
-        """Give the equations of small motion about rest, of each body on what it stands on."""
+        """Give the equations of small motion about rest, of each body relative to its base."""
         if not self.groups:
             return None
         if len(self.bodies) == 1:
@@ -304,7 +307,7 @@ class StackSetting(Setting):
         return SmallMotion(names, *self.standing.small_motion(self._rest), bodies=which)
 
     def without_small_motion(self) -> str:
-        """Say why there are no such equations."""
+        """Say why there are no equations of small motion."""
         return (
             "bodies on rigid bases have no small motion: they stand still or rock, with a period "
             "that grows with the amplitude; put them on pads or soil"
@@ -312,18 +315,18 @@ class StackSetting(Setting):
 
     @cached_property
     def overturning_energy(self) -> float:
-        """Energy that it takes to overturn bodies by themselves, on the weaker side [J].
+        """Least energy that overturns bodies slowly, to the weaker side [J].
 
-        On rigid bases beside others, that of the weakest of those, as if all else were rigid.
+        With rigid and deformable bases, that of the weakest rigid base, as if all were rigid.
         """
         if not any(self.rigid) or not self.groups:
             return least_overturning_energy(self)
         return min(rocking_energy(self, k) for k, rigid in enumerate(self.rigid) if rigid)
 
     def curve(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the equilibria with the highest body held at rotations.
+        """Give the equilibria with the highest body held at rotations [rad].
 
-        On rigid bases beside others, also beyond the couple at which a corner lifts from one.
+        With rigid and deformable bases, also where a corner has lifted from a rigid base.
         """
         if not self.groups:
             return [rocked_statics(self, rotation) for rotation in rotations]
@@ -335,7 +338,7 @@ class StackSetting(Setting):
         return [None if one is None else replace(one, reactions={}) for one in found]
 
     def equilibrium(self) -> dict[str, Any]:
-        """Give what the one base and the ties show at rest; each of several has its own."""
+        """Give the values of ties and, of a single body, of its base at rest, by schema names."""
         found = dict[str, Any]()
         if len(self.bodies) == 1 and not self.groups:
             carried = pressed(self, 0, self._tied_at_rest)
@@ -359,7 +362,7 @@ class StackSetting(Setting):
 
     @cached_property
     def _tied_at_rest(self) -> "list[Tied]":
-        """How the ties are stretched at rest."""
+        """Elongations and forces of the ties at rest."""
         from rockframe.dynamics.tied import at_rest
 
         if not self.groups:
@@ -379,7 +382,7 @@ class StackSetting(Setting):
         )  # fmt: skip
 
     def _held_height(self, rotation: float) -> float:
-        """Give the height at which the one body starts at a rotation, with its ties."""
+        """Give the height at which a single body with ties starts at a rotation [m]."""
         stands = self.standing.chain.settled([rotation])
         if stands is None:
             raise AssemblyError([NO_REST + PULLED])
@@ -389,7 +392,7 @@ class StackSetting(Setting):
 def combined_body(
     bodies: Sequence[SupportedBody], tops: Sequence[float], offsets: Sequence[float]
 ) -> SupportedBody:
-    """Give bodies upon one another, from the top down, as one on the base of the lowest."""
+    """Give stacked bodies, listed from the top down, as one body on the base of the lowest."""
     lowest = bodies[-1]
     places, base, beside = [(lowest, lowest.centre_height, 0.0)], 0.0, 0.0
     for k in range(len(bodies) - 2, -1, -1):
@@ -408,7 +411,7 @@ def combined_body(
 
 
 def refuse_options(what: str, options: Options, *, small: bool) -> None:
-    """Refuse options that the equations have not."""
+    """Refuse an inclination and, unless `small`, small rotation, which the equations lack."""
     faults = list[str]()
     if options.inclination != 0.0:
         faults.append(f"{what} stands on level ground: inclination must be zero")
@@ -425,9 +428,9 @@ def stack_setting(
     options: Options,
     links: Sequence[Link],
 ) -> StackSetting:
-    """Give the scene of blocks upon one another, from the top down, on bases and with links."""
+    """Give the setting of stacked blocks, listed from the top down, on bases and with links."""
     found = [body_of_block(one) for one in blocks]
-    for link in links:  # bodies have the masses that loads put on them
+    for link in links:  # masses of loads are added to their bodies
         k = link.si.on_body - 1
         if isinstance(link, Load) and link.si.moving_mass and k < len(found):
             found[k] = with_mass(found[k], link.si.moving_mass, *link.si.at)
@@ -439,7 +442,7 @@ def stack_setting(
         for k in range(len(bodies))
     ]  # fmt: skip
     bases = tuple(support_of(part, load) for part, load in zip(standing_on, loads, strict=True))
-    bent = [  # the edges of a base that gives way do not meet
+    bent = [  # on a deformable base both edges of the joint do not meet
         f"a Tendon through body {link.si.on_body} is bent at a base that gives way: give the depth "
         "below the base at which it is held"
         for link in links

@@ -1,4 +1,4 @@
-"""The scenes of a block on pads on a cap on soil, by cascade and coupled."""
+"""The scenes of a block on pads on a cap on soil: coupled, and as a cascade."""
 
 from abc import abstractmethod
 from collections.abc import Sequence
@@ -48,7 +48,7 @@ class StackedSetting(Setting):
         return self.upper.support, self.lower.support
 
     def words(self) -> Words:
-        """Tell the block on its pads, and both on the soil."""
+        """Describe the block on its pads, and both bodies on the soil."""
         cap, (pads, soil) = self.cap, (each.words() for each in self.supports)
         size = f"{2.0 * cap.half_width:.6g} m by {2.0 * cap.half_height:.6g} m"
         rule = restraint_words(self.options)
@@ -83,7 +83,7 @@ class StackedSetting(Setting):
 
     @property
     def _rest(self) -> list[Stand]:
-        """How block and cap rest."""
+        """Equilibrium of block and cap at rest; AssemblyError if there is none."""
         found = self._moving.rest
         if found is None:
             raise AssemblyError(["the block and the cap under it find no rest under their weight"])
@@ -91,7 +91,7 @@ class StackedSetting(Setting):
 
     @property
     def rest(self) -> "StackRest":
-        """Where block and cap are at rest, as the coupled equations have it."""
+        """Rotations and heights of block and cap at rest, for the coupled equations."""
         from rockframe.dynamics.coupled.model import UPRIGHT, StackRest
 
         if not self.leans:
@@ -111,7 +111,7 @@ class StackedSetting(Setting):
 
     @cached_property
     def _moving(self) -> StandingBodies:
-        """Block and cap, which is heavy enough to be moved."""
+        """Statics of block and cap, the cap with at least the least mass."""
         return self._standing(*self._moving_cap)
 
     def _standing(self, cap_mass: float, cap_inertia: float) -> StandingBodies:
@@ -127,7 +127,7 @@ class StackedSetting(Setting):
 
     @property
     def _moving_cap(self) -> tuple[float, float]:
-        """Mass and inertia of the cap; of one that is too light, of a plate of the least mass."""
+        """Mass and inertia of the cap; if it is too light, of a plate with the least mass."""
         cap, least = self.cap, LEAST_CAP_SHARE * self.body.mass
         if cap.mass >= least:
             return cap.mass, cap.inertia
@@ -158,7 +158,7 @@ class StackedSetting(Setting):
 
 
 class CoupledSetting(StackedSetting):
-    """Block and cap with one set of equations."""
+    """Block and cap that act on one another, with one set of equations."""
 
     @property
     def model(self) -> str:
@@ -166,7 +166,7 @@ class CoupledSetting(StackedSetting):
         return "coupled"
 
     def cautions(self) -> list[str]:
-        """Give the warnings of block and soil, and of a cap that is too light."""
+        """Give the warnings of pads and soil, and about a cap that is too light."""
         found = super().cautions()
         if self.cap.mass < LEAST_CAP_SHARE * self.body.mass:
             found.append(
@@ -210,7 +210,7 @@ class CoupledSetting(StackedSetting):
 class SlidingCoupledSetting(CoupledSetting):
     """Block and cap, with friction on pads, on soil or on both."""
 
-    frictions: tuple[BaseFriction, BaseFriction]  # of the block on the cap, of the cap on the soil
+    frictions: tuple[BaseFriction, BaseFriction]  # between block and cap, between cap and soil
     slides = True
     sliding_bodies = ("the block", "the cap")
 
@@ -220,7 +220,7 @@ class SlidingCoupledSetting(CoupledSetting):
         return "coupled-sliding"
 
     def words(self) -> Words:
-        """Tell block, cap and soil, and their friction."""
+        """Describe block, cap and soil, and their friction."""
         return sliding_words(super().words(), *(
             (f"{name}: friction at rest, and of slip", friction.words())
             for name, friction in zip(("pads", "soil"), self.frictions, strict=True)
@@ -238,7 +238,7 @@ class SlidingCoupledSetting(CoupledSetting):
         return block_on_cap(*self.bodies(), self.body.mass, rest, self.frictions)
 
     def slips_of(self, ending: "Ending") -> tuple[SlipRange, ...]:
-        """Tell how far the block slipped on the cap and, where that may, the cap on the soil."""
+        """Give how far the block slipped on the cap and, if it can slip, the cap on the soil."""
         return chain_slips(self, 1 if self.frictions[-1] == HELD else 2, ending)
 
     def beyond_edges(self, ending: "Ending") -> list[str]:

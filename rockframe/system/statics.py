@@ -1,4 +1,4 @@
-"""Bodies held at rotations, the work that it takes, and modes of small motion about rest."""
+"""Quasi-static states of bodies held at rotations, the work to reach them, and vibration modes."""
 
 import itertools
 import math
@@ -23,10 +23,10 @@ class Statics:
     Parameters
     ----------
     vertical_displacement : float
-        Of the centre of mass from rest.
+        Displacement of the centre of mass from rest.
     base_moment : float
-        Of the lowest base's vertical reactions about the middle of the base, against the
-        rotation.
+        Moment of the lowest base's vertical reactions about the middle of the base, against
+        the rotation.
     restoring_moment : float
         Couple that holds the body at the rotation: the base moment less the weight's
         moment about the middle of the base.
@@ -44,12 +44,12 @@ class Statics:
 
 
 def static_values(shown: Mapping[str, float]) -> dict[str, float]:
-    """Give what bases show at rest the names of the schema for that."""
+    """Give values of bases at rest by their names in the schema, which begin with `static_`."""
     return {f"static_{name}": value for name, value in shown.items()}
 
 
 def required_states(rotations: Sequence[float], states: Sequence[Statics | None]) -> list[Statics]:
-    """Give states at rotations, of which there must be one at each."""
+    """Give the states at rotations; SolverError if there is none at one of them."""
     found = list[Statics]()
     for rotation, state in zip(rotations, states, strict=True):
         if state is None:
@@ -67,7 +67,7 @@ _PLACES: Final[list[tuple[float, float]]] = [
     (0.5 + 0.5 * float(point), 0.5 * float(weight))
     for point, weight in zip(_POINTS, _WEIGHTS, strict=True)
 ]
-"""Gauss-Legendre rule on (0, 1)."""
+"""Points and weights of the Gauss-Legendre rule on (0, 1)."""
 
 
 def stored_energy(setting: "Setting", rotation: float) -> float:
@@ -77,19 +77,19 @@ def stored_energy(setting: "Setting", rotation: float) -> float:
 
 
 def least_overturning_energy(setting: "Setting") -> float:
-    """Give the work against the restoring moment up to where that ends, on the weaker side [J]."""
+    """Give the work against the restoring moment up to overturning, to the weaker side [J]."""
     ends = setting.overturning_rotations
     return min(work_against(lambda some: _restoring(setting, some), end) for end in ends)
 
 
 def work_against(moments: Callable[[list[float]], list[float]], end: float) -> float:
-    """Give the work against moments, of rotations, that hold a body back up to a rotation [J]."""
+    """Give the work against restoring moments, a function of rotations, up to a rotation [J]."""
     found = moments([at * end for at, _ in _PLACES])
     return sum(of * max(end * moment, 0.0) for (_, of), moment in zip(_PLACES, found, strict=True))
 
 
 def _restoring(setting: "Setting", rotations: list[float]) -> list[float]:
-    """Give what holds a body back: nothing where its base gives way altogether."""
+    """Give restoring moments at rotations [N m]; zero where there is no equilibrium."""
     states = setting.curve(rotations)
     return [0.0 if state is None else state.restoring_moment for state in states]
 
@@ -99,16 +99,16 @@ class SmallMotion:
     """Linear equations of small motion M q'' + C q' + K q = 0."""
 
     coordinates: tuple[str, ...]  # names of the coordinates
-    mass: Array  # SI units
+    mass: Array  # M, C and K in SI units
     damping: Array
     stiffness: Array
-    # of a stack, whose coordinates are those of these bodies in turn, counted from 1 at the top
+    # for a stack, the bodies whose coordinates follow one another, counted from 1 at the top
     bodies: tuple[int, ...] = field(default=(), kw_only=True)
 
 
 @dataclass(frozen=True)
 class VibrationMode:
-    """A mode: frequency without damping, damping ratio, both NaN if it does not return; shape."""
+    """A mode: undamped frequency [rad s^-1] and damping ratio, NaN if it is unstable; shape."""
 
     angular_frequency: float
     damping_ratio: float
@@ -116,7 +116,7 @@ class VibrationMode:
 
 
 def modes_of(motion: SmallMotion) -> list[VibrationMode]:
-    """Give the modes, from slow to fast."""
+    """Give the modes of linear equations, from slow to fast; unstable ones first."""
     size = len(motion.coordinates)
     transition = np.block(
         [
@@ -152,7 +152,7 @@ def modes_of(motion: SmallMotion) -> list[VibrationMode]:
 
 
 def _pairs(real: list[int], shapes: Array, mass: Array) -> list[tuple[int, int]]:
-    """Join real rates whose shapes are most alike, in the measure of the mass."""
+    """Pair real eigenvalues whose shapes are most alike, in the inner product of the mass."""
     scaled = {i: shapes[:, i] / math.sqrt(shapes[:, i] @ mass @ shapes[:, i]) for i in real}
     alike = sorted(
         itertools.combinations(real, 2),
@@ -168,5 +168,5 @@ def _pairs(real: list[int], shapes: Array, mass: Array) -> list[tuple[int, int]]
 
 
 def _shape(vector: NDArray[np.complex128]) -> Array:
-    """Give the real part of a shape, turned so that its largest entry is 1."""
+    """Give the real part of a complex shape, scaled so that its largest entry is 1."""
     return np.real(vector / vector[np.argmax(np.abs(vector))])

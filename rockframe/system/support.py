@@ -1,7 +1,7 @@
-"""A base as it is under a body: pads, a bed of soil; and bodies that stand on such bases.
+"""Supports: bases under a certain body, such as pads or a bed of soil, and statics on them.
 
-The numbers of a base follow from its component and from the body on it; its words tell them,
-and its law is what the equations take.
+The numbers of a support follow from its component and from the body on it; its words describe them,
+and its law is the base in the equations.
 """
 
 from abc import ABC, abstractmethod
@@ -30,32 +30,32 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
 LEAST: Final = 2.0**-20
-"""Rotation, over that which the settlement allows, below which moments are linear in it: of the
-difference of the ends' forces, rounding leaves too little."""
+"""Rotation, over the one that the settlement allows, below which moments are taken as linear in it:
+the difference of the forces at both ends loses too many digits there."""
 SMALL: Final = 2.0**-6
-"""Rotation, likewise, at which their slope is found."""
+"""Rotation, over the same, at which the slope of the moments is found."""
 
 
 @dataclass(frozen=True)
 class StandingBodies:
-    """Bodies that stand on one another, in SI units."""
+    """Statics of bodies that stand on one another, in SI units."""
 
-    chain: StandingChain  # the bodies on their bases, as the equations take them
-    mass: float  # that the chain is measured by, that of its highest body [kg]
-    bases: tuple[BaseNumbers, ...]  # under each body, from the top down
+    chain: StandingChain  # the bodies on their bases, per unit of the reference mass
+    mass: float  # reference mass, that of the highest body [kg]
+    bases: tuple[BaseNumbers, ...]  # bases of the bodies, from the top down
 
     @cached_property
     def rest(self) -> list[Stand] | None:
-        """How the bodies rest under their weight; None if they fall by it."""
+        """Equilibrium of the bodies under their weight; None if there is none."""
         return self.chain.rest()
 
     @cached_property
     def upright(self) -> list[Stand]:
-        """How they stand while all are held upright."""
+        """Equilibrium with all bodies held upright."""
         return self.chain.settled([0.0] * len(self.bases)) or []
 
     def held(self, rotations: Sequence[float]) -> list[Statics | None]:
-        """Give the states with the highest body held at rotations; None where there is none."""
+        """Give the states with the highest body held at rotations [rad]; None where none exists."""
         curve = self.chain.curve(rotations)
         found = [None if stands is None else self.statics_of(stands) for stands in curve]
         least = LEAST * self.chain.bodies[0].allowed_rotation if self.chain.upright else 0.0
@@ -65,7 +65,7 @@ class StandingBodies:
         return found
 
     def _near_upright(self, rotation: float, state: Statics) -> Statics:
-        """Give a state with moments to all digits, by their slope, exact to the fourth order."""
+        """Give a state with moments free of cancellation, by their slope, exact to fourth order."""
         step = SMALL * self.chain.bodies[0].allowed_rotation
         near, far = required_states((step, 2.0 * step), self.held((step, 2.0 * step)))
         share = rotation / (6.0 * step)
@@ -76,7 +76,7 @@ class StandingBodies:
         )
 
     def statics_of(self, stands: list[Stand]) -> Statics:
-        """Give the moments by which bodies stand so, and what their bases show."""
+        """Give the quasi-static state of bodies from their equilibrium."""
         (part, *_), lowest = self.chain.bodies[0], stands[-1]
         body = self.chain.bodies[-1].part.body
         attitude = body.attitude(lowest.state.rotation)
@@ -92,7 +92,7 @@ class StandingBodies:
         )
 
     def reactions(self, stands: list[Stand]) -> dict[str, float]:
-        """Give what the bases show, by the names of the schema."""
+        """Give the columns of the bases in an equilibrium, by the names of the schema."""
         found = dict[str, float]()
         for standing, stand, numbers in zip(self.chain.bodies, stands, self.bases, strict=True):
             if standing.corner:
@@ -106,7 +106,7 @@ class StandingBodies:
         return found
 
     def small_motion(self, stands: list[Stand]) -> "tuple[Array, Array, Array]":
-        """Give mass, damping and stiffness about rest, by rotation and height of each body."""
+        """Give mass, damping and stiffness matrix about rest, for rotation and height of each."""
         from rockframe.dynamics.linear import linear
 
         mass, damping, stiffness = linear(self.chain, stands)
@@ -120,17 +120,17 @@ class BaseWords:
     Parameters
     ----------
     law : str
-        How its forces follow, in a stack.
+        Law of its forces, for the description of a stack.
     equations : list of (str, str)
         Each contact state with the equation that governs it.
     uplift : (str, str)
         Name and value of the uplift angle.
     numbers : list of (str, str)
-        The numbers that a reader wants to see, with their names.
+        Names of numbers that a reader wants to see, with values and units.
     left_out : list of str
-        What the base does not have.
+        Effects that the base does not have.
     body, end : str
-        What the body on it, and an end of its base line, are called.
+        Words for the body on it, and for an end of its base line.
     """
 
     law: str
@@ -149,12 +149,12 @@ class Support(ABC):
     Parameters
     ----------
     load : BaseLoad
-        What stands on it.
+        All that stands on it, as one body.
     """
 
     load: BaseLoad
     settlement_name: ClassVar[str] = "pad_settlement"
-    """Of the settlement, in the schema."""
+    """Name of the settlement in the schema."""
 
     @property
     @abstractmethod
@@ -182,19 +182,19 @@ class Support(ABC):
         body : rockframe.dynamics.body.Body
             The body on it.
         mass : float
-            That all is measured by [kg].
+            Reference mass of the model [kg].
         load_mass : float
-            That rests on the base, with what stands on the body [kg].
+            Mass on the base: the body and all that stands on it [kg].
         """
 
     def at_rest(self) -> dict[str, float]:
-        """Give settlement and what the base shows at rest, by their names in the schema."""
+        """Give settlement and reactions of the upright body at rest, by their schema names."""
         shown = self.standing.reactions(self.standing.upright)
         return {self.settlement_name: self.settlement, **static_values(shown)}
 
     @abstractmethod
     def words(self) -> BaseWords:
-        """Tell the base in words."""
+        """Describe the base."""
 
     def cautions(self) -> list[str]:
         """Give warnings about values near or beyond the model's validity."""
@@ -206,7 +206,7 @@ class Support(ABC):
         Parameters
         ----------
         rotation : float
-            Of the body [rad].
+            Rotation of the body [rad].
         has_vertical_start : bool
             Whether a vertical displacement or velocity is given.
         """
@@ -229,26 +229,26 @@ class Support(ABC):
 
     @cached_property
     def base_numbers(self) -> BaseNumbers:
-        """The base as the equations of its body alone take it, per unit mass of that."""
+        """The base as the equations take it under its load alone, per unit mass of that load."""
         mass = self.load.body.mass
         return self.law(self.load.rigid_body, mass, mass)
 
     @cached_property
     def rocking_stiffness(self) -> float:
-        """Of small rotations in full contact, less what the raised weight takes [N m rad^-1]."""
+        """Rotational stiffness in full contact, less the effect of the weight [N m rad^-1]."""
         return self.load.body.mass * self._slopes("rotation")[0]
 
     @cached_property
     def vertical_frequency(self) -> float:
-        """omega_v, of vertical vibration in full contact, Eqs. (7a) and (18a) [rad s^-1]."""
+        """omega_v of vertical vibration in full contact, Eqs. (7a) and (18a) [rad s^-1]."""
         return sqrt(self._slopes("vertical")[1])
 
     def _slopes(self, name: str) -> tuple[float, float]:
-        """Give how moment and force on the upright body fall with a coordinate or a rate."""
+        """Give moment and force against a unit of a coordinate or rate, of the upright body."""
         return of_base(self.standing.chain.bodies[0], self.standing.upright[0], name)
 
     def vibrations(self, vertical: str, rocking: str) -> list[tuple[str, str]]:
-        """Tell vertical vibration, and rocking where the base holds the body, by these titles."""
+        """Describe vertical vibration and, on a base stiff enough, rocking, by these titles."""
         body, rate = self.load.body, self.vertical_frequency
         ratio = 0.5 * self._slopes("vertical_velocity")[1] / rate
         rows = [(vertical, vibration_words("omega_v", rate, ratio))]
@@ -269,7 +269,7 @@ class PadSupport(Support):
     load : BaseLoad
         The block on them.
     stiffness, damping : float
-        Of one pad [N m^-1], [N s m^-1].
+        Stiffness and damping of one pad [N m^-1], [N s m^-1].
     restitution : Restitutions
         eps of a landing corner [1].
     """
@@ -304,7 +304,7 @@ class PadSupport(Support):
         )
 
     def words(self) -> BaseWords:
-        """Tell the pads in words."""
+        """Describe the pads."""
         omega = self.load.body.frequency_at(self.load.options.gravity)
         return BaseWords(
             law="pad forces as in Eqs. (12) and (15)",
@@ -344,7 +344,7 @@ def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
     damping = given.damping
     if damping is None:
         damping = given.damping_ratio * body.mass * vertical
-    # a corner of a body so squat that it does not roll over keeps nothing of its speed
+    # the restitution of a body too squat to rock from corner to corner is zero
     greatest = Restitutions(*(max(one, 0.0) for one in body.maximum_restitution))
     restitution = resolve_restitution(given.restitution, greatest)
     return PadSupport(load, stiffness, damping, restitution)
@@ -367,7 +367,7 @@ class BedSupport(Support):
     stiffness, damping : float
         k0 and c0, per length of the base [Pa], [Pa s].
     separation : Separation
-        Where the base parts from the bed.
+        Condition of separation from the bed.
     """
 
     stiffness: float
@@ -400,7 +400,7 @@ class BedSupport(Support):
         )
 
     def words(self) -> BaseWords:
-        """Tell the bed in words."""
+        """Describe the bed."""
         body = self.load.body
         one_sided = (
             "Eq. (19), corrected: inertia I_O + m (h + b a)^2 and its a'^2 term in (19b), (19e), "

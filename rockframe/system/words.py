@@ -1,4 +1,4 @@
-"""A scene in words, how its numbers are written, and the text that describes a system."""
+"""Descriptions of scenes in words: their elements, how numbers are written, and the whole text."""
 
 import math
 import re
@@ -14,17 +14,17 @@ SLIPS = (
     "slip",
     "H = -s mu_k N at the point that would be held, s = sgn(slip'); held while |H| <= mu_s N",
 )
-"""Of a base with friction, as an equation of :class:`Words`."""
+"""Equation of slip on a base with friction, for :class:`Words`."""
 HELD_BY_FRICTION = (
     "friction at the corner that bears, or on the whole base (the restraint options make no "
     "difference)"
 )
-"""Of a block that slides on rigid ground, as the restraint of :class:`Words`."""
+"""Restraint of a block that slides on rigid ground, for :class:`Words`."""
 
 
 @dataclass(frozen=True)
 class Words:
-    """What a scene is said to be.
+    """The elements of the description of a scene.
 
     Parameters
     ----------
@@ -33,9 +33,9 @@ class Words:
     restraint : str
         Which point of the base is held horizontally.
     numbers : list of (str, str)
-        The numbers that a reader wants to see, with their names, first those of uplift.
+        Names of numbers that a reader wants to see, with values and units; uplift comes first.
     left_out : list of str
-        What the model does not have.
+        Effects that the model does not have.
     """
 
     equations: list[tuple[str, str]]
@@ -45,7 +45,7 @@ class Words:
 
 
 def sliding_words(held: Words, *frictions: tuple[str, str], restraint: str | None = None) -> Words:
-    """Tell the same of what slips, with its coefficients of friction by their names."""
+    """Give the description of a scene that slips from that of the held one, with its frictions."""
     return Words(
         equations=[*held.equations, SLIPS],
         restraint=held.restraint if restraint is None else restraint,
@@ -78,7 +78,7 @@ _WIDTH = 100
 
 
 def describe(setting: "Setting", parts: "Parts") -> str:
-    """Tell the model, its equations, its numbers and its limits."""
+    """Describe the model, its equations, its numbers and its limits."""
     words, body, height = setting.words(), setting.body, setting.body.centre_height
     theta = angle_words(setting.overturning_angle)
     sections = {
@@ -88,7 +88,7 @@ def describe(setting: "Setting", parts: "Parts") -> str:
         "Numbers": [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
             *(_of_both_sides(setting) if setting.leans else [(_THETA, theta)]),
-            # with less, the base slides before an end of it lifts, on the lesser side
+            # with less friction the base slides before an end lifts, on the side of the lesser one
             ("friction to rock, at least b/h", f"{min(body.left, body.right) / height:.6g}"),
             *words.numbers,
         ],
@@ -102,7 +102,7 @@ _THETA: Final = "overturning angle theta, Eq. (1)"
 
 
 def _of_both_sides(setting: "Setting") -> list[tuple[str, str]]:
-    """Tell how a body that leans stands, and overturns to either side."""
+    """Describe rotation at rest and overturning angles of a body whose sides differ."""
     body, slope, (left, right) = setting.body, setting.slope, setting.overturning_angles
     rows = [(_THETA, f"to the left {angle_words(left)}, to the right {angle_words(right)}")]
     if not slope.level:
@@ -125,7 +125,7 @@ def _of_both_sides(setting: "Setting") -> list[tuple[str, str]]:
 def _section(title: str, rows: list[tuple[str, str]]) -> list[str]:
     """Set names and words in two columns, the second as far right as the longest name needs.
 
-    Lines are broken behind commas and semicolons, so that numbers keep their names and units.
+    Lines are broken after commas and semicolons, so that numbers keep their names and units.
     """
     longest = max(len(name) for name, _ in rows)
     lines = [f"{title}:"]

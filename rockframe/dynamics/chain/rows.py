@@ -80,7 +80,7 @@ BLOW: Final = 28
 BLOW_MOMENT: Final = 29
 BLOW_ALONG: Final = 30
 IMPULSES: Final = 8  # numbers from LEFT_IMPULSE on
-# senses of slip along the base, 1 to the right, -1 to the left, 0 for none
+# senses of slip along the base, 1 to the right, -1 to the left, 0 for none; half without friction
 SLIPS: Final = 31  # in the trial at hand
 STARTS: Final = 32  # in which friction that is overcome lets the body start to slip
 RUBS: Final = 33  # friction over normal force at a corner that slips, with its sign [1]

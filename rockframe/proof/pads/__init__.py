@@ -1,4 +1,4 @@
-"""Verdicts of the block on two pads that are proved.
+"""Proofs of the verdicts of a block on two pads.
 
 Section "Proved verdicts" of the theory manual.
 """

@@ -1,7 +1,7 @@
-"""Sets of states of a block on pads: how a step carries them on, in doubles with their errors.
+"""Sets of states of a block on pads, and their images after a step.
 
-The centre of a set is enclosed by balls; the set about it is so small that doubles, with bounds of
-all that they lose, do for its derivatives. Lemmas :eq:`eq-proof-pads-variation` and
+The centre of a set is enclosed by balls. The set about it is so small that its derivatives are
+computed in doubles, with bounds of their rounding errors. Lemmas :eq:`eq-proof-pads-variation` and
 :eq:`eq-proof-set` of the manual.
 """
 
@@ -18,15 +18,15 @@ from rockframe.proof.pads.series import UPWARDS, PadCourse, TooLong
 
 Array = Any
 DEGREE: Final = 12
-"""Of the polynomials that stand for derivatives and guards."""
+"""Degree of the polynomials for derivatives and guards."""
 _OF_VARIATION: Final = 20
 _LOST: Final = 1e-13
-"""Share of the sum of sizes that a sum of products of doubles may lose by rounding."""
+"""Bound of the rounding error of a sum of products of doubles, over the sum of their sizes."""
 _ROTATION, _RATE, _HEIGHT, _SPEED = range(4)
 
 
 class Curve:
-    """A polynomial in the share of a step, within an error that holds all over it."""
+    """A function of the share of a step, from 0 to 1: a polynomial with a bound of its error."""
 
     __slots__ = ("error", "of", "size")
 
@@ -52,14 +52,14 @@ class Curve:
         return Curve(self.of * factor, abs(factor) * self.error + _LOST * abs(factor) * self.size)
 
     def __mul__(self, other: "Curve") -> "Curve":
-        """Multiply, and cut what is of too high a degree."""
+        """Multiply, and put terms of too high a degree into the error."""
         whole = np.convolve(self.of, other.of)
         cut = float(np.abs(whole[DEGREE + 1 :]).sum())
         error = cut + self.size * other.error + other.size * self.error
         return Curve(whole[: DEGREE + 1], (error + _LOST * self.size * other.size) * UPWARDS)
 
     def inverse(self) -> "Curve":
-        """Give one over it, whose product with it differs from one by what is then known."""
+        """Give the reciprocal; its error follows from the product with it, which should be 1."""
         first = 1.0 / float(self.of[0])
         found = np.zeros(DEGREE + 1)
         found[0] = first
@@ -75,7 +75,7 @@ class Curve:
 
 
 def constant(value: float) -> Curve:
-    """Give a curve that is the same everywhere."""
+    """Give a constant curve."""
     found = np.zeros(DEGREE + 1)
     found[0] = value
     return Curve(found, abs(value) * _LOST)
@@ -94,18 +94,18 @@ def curve(series: Row, error: float) -> Curve:
 
 
 class StateSet(NamedTuple):
-    """Centre + weights times (axes times spread): states of which each spread is at most so far."""
+    """The states centre + weights * (axes @ r), for all r with abs(r) <= spread."""
 
     centre: Row
     axes: Array
     spread: Array  # not negative
 
     def radius(self) -> float:
-        """Bound the distance of a member from the centre, over the weights."""
+        """Bound the distance of members from the centre, over the weights, in any coordinate."""
         return float((np.abs(self.axes) @ self.spread).max()) * UPWARDS
 
     def radii(self, weights: Array) -> Array:
-        """Bound the distances of each coordinate from the centre."""
+        """Bound the distance of members from the centre in each coordinate."""
         return weights * (np.abs(self.axes) @ self.spread) * UPWARDS
 
     def box(self, weights: Array) -> Row:
@@ -114,7 +114,10 @@ class StateSet(NamedTuple):
         return [one + ball(0, each) for one, each in zip(self.centre, radii, strict=True)]
 
     def mapped(self, image: Row, middle: Array, error: Array, weights: Array) -> "StateSet":
-        """Give the image, from that of the centre and the derivative, weighted, within an error."""
+        """Give the image of the set from that of the centre, and the weighted derivative.
+
+        The derivative is `middle`, each element within `error`.
+        """
         centre = [one.mid() for one in image]
         away = np.array(
             [float((one - mid).abs_upper()) for one, mid in zip(image, centre, strict=True)]
@@ -146,10 +149,10 @@ class Step(NamedTuple):
     """A step of a set."""
 
     course: PadCourse
-    powers: Array  # of the share, of the derivative by the start, weighted
-    error: Array  # of that derivative, all over the step
-    tube: float  # how far members stray from the centre over the step, over the weights
-    rate: float  # bound of the rate of change over the weights, times h
+    powers: Array  # weighted derivative by the start, coefficients of powers of the share
+    error: Array  # bound of the error of that derivative in the step
+    tube: float  # bound of the distance of members from the centre in the step, over the weights
+    rate: float  # bound of the norm of the weighted derivative of the field, times h
     curves: dict[Guard, tuple[Curve, Curve]]  # guards and their derivatives by the share
 
     def image(self, share: Any) -> Row:
@@ -158,7 +161,7 @@ class Step(NamedTuple):
         return [value(series, share) + ball(0, rest) for series, rest in pairs]
 
     def derivative(self, share: float) -> Array:
-        """Give the derivative by the start at a share of the step, but for its error."""
+        """Give the weighted derivative by the start at a share of the step, without its error."""
         found = self.powers[-1]
         for one in self.powers[-2::-1]:
             found = found * share + one
@@ -169,12 +172,12 @@ def step(
     pads: PadBalls, standing: Standing, found: PadCourse, states: StateSet, weights: Array,
     guards: list[Guard],
 ) -> Step:  # fmt: skip
-    """Enclose what a step does to a set, :eq:`eq-proof-pads-variation`.
+    """Enclose the image of a set in a step, :eq:`eq-proof-pads-variation`.
 
     Raises
     ------
     TooLong
-        The step is to be halved.
+        The step must be halved.
     """
     h = float(found.h)
     radius = states.radius()
@@ -201,14 +204,14 @@ def step(
 
 
 class _Motion(NamedTuple):
-    """A motion as curves that hold for all members of a set."""
+    """The motion of all members of a set, as curves."""
 
     rate: Curve
     sine: Curve
     cosine: Curve
-    forces: tuple[Curve | None, Curve | None]
-    along: Curve
-    strays: Array  # of the coordinates
+    forces: tuple[Curve | None, Curve | None]  # of the left and of the right pad
+    along: Curve  # ground acceleration along the base
+    strays: Array  # bounds of the distances of members from the centre, in each coordinate
 
 
 def _motion(pads: PadBalls, found: PadCourse, strays: Array) -> _Motion:
@@ -235,7 +238,7 @@ def _motion(pads: PadBalls, found: PadCourse, strays: Array) -> _Motion:
 
 
 def _stiffness(pads: PadBalls, standing: Standing, motion: _Motion) -> dict[tuple[int, int], Curve]:
-    """Give the derivatives of the accelerations by the state."""
+    """Give the derivatives of both accelerations by the state, by row and column."""
     if standing.flies:
         return {}
     tall, stiff, damped = float(pads.height), float(pads.stiffness), float(pads.damping)
@@ -277,7 +280,7 @@ def _stiffness(pads: PadBalls, standing: Standing, motion: _Motion) -> dict[tupl
 
 
 def _weighted(stiff: dict[tuple[int, int], Curve], h: float, weights: Array) -> tuple[Array, Array]:
-    """Give the coefficients of the derivative of the field, over the weights and times h."""
+    """Give the coefficients of the weighted derivative of the field times h, and their errors."""
     matrix, error = np.zeros((DEGREE + 1, SIZE, SIZE)), np.zeros((SIZE, SIZE))
     for (i, j), one in stiff.items():
         factor = h * weights[j] / weights[i]
@@ -290,7 +293,7 @@ def _weighted(stiff: dict[tuple[int, int], Curve], h: float, weights: Array) -> 
 
 
 def _variation(matrix: Array, error: Array) -> tuple[Array, Array]:
-    """Give a polynomial for the derivative by the start, and by how far it misses its equation."""
+    """Give a polynomial for the derivative by the start, and its residual in its equation."""
     powers = np.zeros((_OF_VARIATION + 1, SIZE, SIZE))
     powers[0] = np.eye(SIZE)
     size, whole = np.abs(matrix), np.zeros((SIZE, SIZE))
@@ -308,7 +311,7 @@ def _guard(
     pads: PadBalls, standing: Standing, guard: Guard, found: PadCourse, motion: _Motion,
     bounds: tuple[float, float], weights: Array,
 ) -> tuple[Curve, Curve]:  # fmt: skip
-    """Give a guard as a curve, and its derivative by the share."""
+    """Give a guard and its derivative by the share, as curves."""
     tube, rate = bounds
     h = float(found.h)
     lean, turn, sink, fall = (float(one) for one in motion.strays[:4])
@@ -331,7 +334,7 @@ def _guard(
         level = curve(series.levels[i], level_away) - constant(float(pads.settlements[i]))
         sign = 1.0 if guard.kind == "gap" else -1.0
         return level.times(sign), speed.times(sign * h)
-    # accelerations stray by no more than the rate of change of the strays
+    # accelerations of members differ by no more than the rate of change of their distances
     turning_away, falling_away = (float(rate * tube * weights[j] / h) for j in (_RATE, _SPEED))
     order = len(series.speeds[i])
     sizes = (k * float(one.abs_upper()) for k, one in enumerate(series.rate))

@@ -1,8 +1,8 @@
-"""A block on two pads as a proof sees it: motion and changes of contact, for balls and for duals.
+"""The equations of a block on two pads in a proof, for balls and for balls with gradients.
 
-Derived anew from :eq:`eq-pad-force`, :eq:`eq-two-spring`, :eq:`eq-guards`, :eq:`eq-repinning` and
-:eq:`eq-impact`. A state is rotation, its rate, height, its rate, and the horizontal velocity of a
-block that flies, which is zero as long as a pad holds it.
+Written independently of the equations of runs, from :eq:`eq-pad-force`, :eq:`eq-two-spring`,
+:eq:`eq-guards`, :eq:`eq-repinning` and :eq:`eq-impact`. A state consists of rotation, its rate,
+height, its rate, and the horizontal velocity of a block in flight, which is zero otherwise.
 """
 
 from typing import Any, Final, NamedTuple
@@ -15,13 +15,13 @@ from rockframe.proof.problem import Undecided
 SIZE: Final = 5
 """Numbers of a state."""
 _TOGETHER: Final = 1e-9
-"""Share of the settlement within which corners land together, and a little more is undecided."""
+"""Share of the settlement within which runs take two landings as one; up to twice undecided."""
 _PARTED: Final = 1e-11
-"""Share of the settlement from which on a corner that leaves is below its pad's level."""
+"""Share of the settlement by which a corner that lifts off must be below its pad's own level."""
 
 
 class Dual:
-    """A ball with the gradient of what it stands for by the state."""
+    """A ball with its gradient by the state (forward differentiation)."""
 
     __slots__ = ("slope", "value")
 
@@ -79,13 +79,13 @@ class Dual:
 
 
 def duals(state: Row) -> list[Dual]:
-    """Give a state of which gradients are asked."""
+    """Give a state as duals, the independent variables of gradients."""
     one = [[ball(int(i == j)) for j in range(SIZE)] for i in range(SIZE)]
     return [Dual(value, one[i]) for i, value in enumerate(state)]
 
 
 class Shaken(NamedTuple):
-    """The ground at an instant, or over some: along the base, and gravity with what is normal."""
+    """Ground acceleration along the base, and gravity plus the normal one, at a time or several."""
 
     along: Ball
     weight: Ball
@@ -95,23 +95,23 @@ class PadBalls(NamedTuple):
     """Two pads and the block on them, per unit mass."""
 
     height: Ball  # h
-    left: Ball  # from the foot of the centre of mass to the left corner
-    right: Ball
+    left: Ball  # from below the centre of mass to the left corner
+    right: Ball  # likewise to the right corner
     inertia: Ball  # I_O/m
-    middle: Ball  # of the base, to the right of the centre of mass
+    middle: Ball  # middle of the base, to the right of the centre of mass
     stiffness: Ball  # of a pad
     damping: Ball
-    settlements: tuple[Ball, Ball]  # of the left and of the right pad's level
-    restitutions: tuple[Ball, Ball]
-    rest: Ball
-    rule: int  # of the restraint
-    small: bool
-    limits: tuple[Ball, Ball]  # rotations called overturning, to the left and to the right
+    settlements: tuple[Ball, Ball]  # settlement at rest of the left and of the right pad
+    restitutions: tuple[Ball, Ball]  # of a corner that lands on the left and on the right pad
+    rest: Ball  # settlement of a pad under half the weight
+    rule: int  # rule of the restraint
+    small: bool  # whether the kinematics are those of small rotation
+    limits: tuple[Ball, Ball]  # rotations that count as overturning, to the left and to the right
     gravity: Ball
 
 
 class Standing(NamedTuple):
-    """Contacts of both corners, by the words of :mod:`rockframe.dynamics.pads`."""
+    """Contacts of both corners, by the constants of :mod:`rockframe.dynamics.pads`."""
 
     left: int
     right: int
@@ -121,7 +121,7 @@ class Standing(NamedTuple):
         return self.left if left else self.right
 
     def with_corner(self, left: bool, contact: int) -> "Standing":
-        """Give another contact to a corner."""
+        """Give the contacts with another one of a corner."""
         return Standing(contact, self.right) if left else Standing(self.left, contact)
 
     @property
@@ -131,10 +131,10 @@ class Standing(NamedTuple):
 
 
 class Guard(NamedTuple):
-    """What is positive as long as a contact lasts."""
+    """A function of the state that is positive as long as a contact lasts."""
 
     kind: str  # "press", "slack", "depth", "gap", "rise", "limit"
-    left: bool
+    left: bool  # whether it is of the left corner
 
 
 _GUARDS: Final = {
@@ -147,7 +147,7 @@ _GUARDS: Final = {
 
 
 def guards_of(standing: Standing) -> list[Guard]:
-    """Give the guards of a standing, :eq:`eq-guards`, and those of overturning."""
+    """Give the guards of some contacts, :eq:`eq-guards`, and those of overturning."""
     found = [Guard(kind, left) for left in (True, False) for kind in _GUARDS[standing.of(left)]]
     return [*found, Guard("limit", True), Guard("limit", False)]
 
@@ -177,7 +177,7 @@ class CornerMotion(NamedTuple):
 
 
 def corner(pads: PadBalls, left: bool, state: list[Any]) -> CornerMotion:
-    """Give a corner of a state."""
+    """Give height, speed and lever of a corner in a state."""
     reach = pads.left if left else -pads.right
     at = turned(pads, state[0])
     lever = at.sine * pads.height + at.cosine * reach
@@ -185,19 +185,19 @@ def corner(pads: PadBalls, left: bool, state: list[Any]) -> CornerMotion:
 
 
 def reaction(pads: PadBalls, left: bool, at: CornerMotion) -> Any:
-    """Give what a pad would press a corner with, :eq:`eq-pad-force`."""
+    """Give the force of a pad on a corner if they touched, :eq:`eq-pad-force`."""
     depth = pads.settlements[not left] - at.level
     return depth * pads.stiffness - at.speed * pads.damping
 
 
 def pivot(pads: PadBalls, standing: Standing) -> int:
-    """Give the point that is held."""
+    """Give the pivot: which point of the base is held."""
     left, right = (standing.of(one) < RELAXING for one in (True, False))
     return pivot_of(pads.rule, left, right, 0.0, 0.0)
 
 
 def pin(pads: PadBalls, standing: Standing) -> Ball:
-    """Give e, the held point, from beneath the centre of mass."""
+    """Give e, from below the centre of mass to the held point."""
     found = pivot(pads, standing)
     if found == PIVOT_CENTRE:
         return pads.middle
@@ -205,7 +205,7 @@ def pin(pads: PadBalls, standing: Standing) -> Ball:
 
 
 def arm(pads: PadBalls, standing: Standing, rotation: Any) -> Any:
-    """Give x', by which the centre of mass sways as the block rotates."""
+    """Give x', the derivative of the centre's horizontal place by the rotation."""
     if pads.small:
         return pads.height
     at = turned(pads, rotation)
@@ -213,7 +213,7 @@ def arm(pads: PadBalls, standing: Standing, rotation: Any) -> Any:
 
 
 def field(pads: PadBalls, standing: Standing, state: list[Any], ground: Shaken) -> list[Any]:
-    """Give the rates of a state, :eq:`eq-two-spring`."""
+    """Give the rates of change of a state, :eq:`eq-two-spring`."""
     rotation, rate, _, speed, _ = state
     upward, moment = -ground.weight, ZERO
     for left in (True, False):
@@ -234,7 +234,7 @@ def field(pads: PadBalls, standing: Standing, state: list[Any], ground: Shaken) 
 
 
 def guard_value(pads: PadBalls, guard: Guard, state: list[Any]) -> Any:
-    """Give a guard of a state."""
+    """Give the value of a guard in a state."""
     if guard.kind == "limit":
         limit = pads.limits[not guard.left]
         return state[0] + limit if guard.left else limit - state[0]
@@ -250,7 +250,7 @@ def guard_value(pads: PadBalls, guard: Guard, state: list[Any]) -> Any:
 
 
 class Switched(NamedTuple):
-    """A state after a change of contact; `fresh` are guards that are zero there."""
+    """A state after a change of contact; `fresh` are the guards that are zero then."""
 
     state: list[Dual]
     standing: Standing
@@ -261,12 +261,12 @@ class Switched(NamedTuple):
 def switched(
     pads: PadBalls, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
 ) -> Switched:
-    """Give what becomes of a state whose guard has fallen to zero.
+    """Give the state after the event of a guard that has fallen to zero.
 
     Raises
     ------
     Undecided
-        The sign that decides about it is not known.
+        A sign that decides about the event is not known.
     """
     left, was = guard.left, standing.of(guard.left)
     if guard.kind == "depth" and was in (RELAXING, LEAVING):
@@ -286,7 +286,7 @@ def switched(
 def _separated(
     pads: PadBalls, standing: Standing, left: bool, state: list[Dual], ground: Shaken
 ) -> Switched:
-    """Let a corner leave."""
+    """Give the state after a corner has lifted off."""
     at, free = corner(pads, left, state), Guard("gap", left)
     own = CLEAR
     if standing.of(left) == TOUCHING and pads.damping > 0:
@@ -329,7 +329,7 @@ def _separated(
 
 
 def _held(pads: PadBalls, standing: Standing, left: bool, state: list[Dual]) -> Switched:
-    """Let a corner land, or be pressed again."""
+    """Give the state after a corner has landed, or is pressed again by its pad."""
     lands, other = standing.of(left) == CLEAR, standing.of(not left)
     if lands and other == CLEAR:
         level = guard_value(pads, Guard("gap", not left), state).value
@@ -389,11 +389,11 @@ def _struck(pads: PadBalls, after: Standing, left: bool, state: list[Dual]) -> l
 def _rate(
     pads: PadBalls, standing: Standing, guard: Guard, state: list[Dual], ground: Shaken
 ) -> Ball:
-    """Give the rate of a guard of a state, as balls."""
+    """Give the rate of change of a guard in a state, as a ball."""
     at = duals([one.value for one in state])
     return along(guard_value(pads, guard, at), field(pads, standing, at, ground))
 
 
 def along(of: Dual, rates: list[Dual]) -> Ball:
-    """Give the rate of a dual along the rates of its state."""
+    """Give the rate of change of a dual, from the rates of its state."""
     return sum((a * b.value for a, b in zip(of.slope, rates, strict=True)), ZERO)

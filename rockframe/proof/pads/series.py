@@ -1,6 +1,6 @@
-"""Taylor's series of a block on pads over a step, and what it leaves out.
+"""Taylor's series of a block on pads over a step, with bounds of the remainders.
 
-One recursion gives the coefficients and, with every sign turned to plus, their bounds: lemma
+One recursion gives the coefficients and, with all signs positive, their bounds: lemma
 :eq:`eq-proof-pads-majorant` of the manual.
 """
 
@@ -16,29 +16,29 @@ from rockframe.proof.problem import GroundPiece
 LOWEST: Final = 14
 HIGHEST: Final = 80
 UPWARDS: Final = 1.0 + 1e-9
-"""More than what a sum of products of doubles that are not negative can lose by rounding."""
+"""Factor above the rounding error of a sum of products of non-negative doubles."""
 _ROOM: Final = 1.01
-"""Bounds over those of the polynomial, which the motion is shown not to reach."""
+"""Factor from the bounds of the polynomials to those that the motion is proved not to reach."""
 
 
 class TooLong(Exception):  # noqa: N818  (a step to be halved, no error)
-    """A step over which the series does not serve."""
+    """A step that is too long for the series."""
 
 
 class SeriesNumbers(NamedTuple):
-    """Numbers of the block, its pads and its hold, as balls or as bounds."""
+    """Numbers of the block, its pads and its held point, as balls or as bounds."""
 
     height: Any
-    reaches: tuple[Any, Any]  # of the left and of the right corner, to the left
+    reaches: tuple[Any, Any]  # distances of the left and of the right corner, both positive
     inertia: Any
     stiffness: Any
     damping: Any
     settlements: tuple[Any, Any]
-    pin: Any
+    pin: Any  # e, from below the centre of mass to the held point
 
 
 class Series(NamedTuple):
-    """Coefficients by the share of a step, in lists; or one bound of each."""
+    """Lists of coefficients of powers of the share of a step; or a bound for each list."""
 
     rotation: Any
     rate: Any
@@ -47,9 +47,9 @@ class Series(NamedTuple):
     sway: Any  # horizontal velocity of a block that flies
     sine: Any
     cosine: Any
-    levels: Any  # of both corners
+    levels: Any  # heights of both corners
     speeds: Any
-    forces: Any  # what the pads press with, or would
+    forces: Any  # forces of both pads, if they touched
     inertia: Any  # I_O/m + x'^2
     arm: Any  # x'
 
@@ -65,7 +65,7 @@ def recursion(
 ) -> Series:  # fmt: skip
     """Give series from their first coefficients; `minus` is -1, or 1 for their bounds.
 
-    `enough` is told the series after each order, and says when they are long enough.
+    `enough` is called with the order and the series, and returns whether they are long enough.
     """
     found = start
     rotation, rate, height, speed, sway, sine, cosine = start[:7]
@@ -145,12 +145,12 @@ def recursion(
 
 
 class PadCourse(NamedTuple):
-    """A motion from a point over a step h, and bounds of what its series leave out."""
+    """A motion from a point over a step h, with bounds of the remainders of its series."""
 
     h: Ball
-    along: Row  # of the ground
+    along: Row  # ground acceleration along the base
     series: Series
-    left_out: Series  # of one coefficient each
+    left_out: Series  # bounds of the remainders
 
 
 def course(
@@ -159,13 +159,13 @@ def course(
 ) -> PadCourse:  # fmt: skip
     """Enclose the motion from a point, :eq:`eq-proof-pads-majorant`.
 
-    The series end where their coefficients, over typical sizes, are a margin of bits below the
-    precision.
+    The series end where their coefficients, over the typical sizes `sizes_of`, are `margin` bits
+    below the precision.
 
     Raises
     ------
     TooLong
-        The step is to be halved.
+        The step must be halved.
     """
     held = pin(pads, standing) if not (standing.flies or pads.small) else 0 * h
     shape = SeriesNumbers(
@@ -220,7 +220,7 @@ def course(
 
 
 def _anywhere(row: Row) -> list[float]:
-    """Bound the Taylor coefficients of a polynomial about any share of the step."""
+    """Bound the Taylor coefficients of a polynomial about all points of the step."""
     sizes = [_bounds(one) for one in row]
     return [
         sum(math.comb(j, k) * one for j, one in enumerate(sizes)) * UPWARDS
@@ -229,7 +229,7 @@ def _anywhere(row: Row) -> list[float]:
 
 
 def _first(pads: PadBalls, standing: Standing, start: Row, held: Ball) -> Series:
-    """Give the first coefficients of a point."""
+    """Give the first coefficients of the series from a state."""
     rotation, rate, height, speed, sway = start
     if pads.small:
         sine, cosine = rotation, rotation * 0 + 1
@@ -245,21 +245,21 @@ def _first(pads: PadBalls, standing: Standing, start: Row, held: Ball) -> Series
 
 
 def _bounds(one: Any) -> Any:
-    """Bound the size of balls by doubles."""
+    """Bound the absolute values of balls by doubles."""
     if isinstance(one, tuple):
         return tuple(_bounds(each) for each in one)
     return float(abs(one).upper()) * UPWARDS
 
 
 def _sizes(one: Any) -> Any:
-    """Bound the size of a polynomial."""
+    """Bound the absolute value of a polynomial over the step."""
     if isinstance(one, tuple):
         return tuple(_sizes(each) for each in one)
     return sum(float(each.abs_upper()) for each in one) * UPWARDS
 
 
 def _upper(size: Any) -> Any:
-    """Give a bound that a motion is to be shown not to reach."""
+    """Give a bound that the motion is to be proved not to reach."""
     if isinstance(size, tuple):
         return tuple(_upper(each) for each in size)
     return size * _ROOM + 1e-200
@@ -275,7 +275,7 @@ def _last(one: Any) -> Any:
 def _confirm_bounds(
     sizes: list[Any], most: list[Any], left_out: Series, swing: float, low: float
 ) -> None:
-    """Show that no bound was reached, from which all of them hold."""
+    """Prove that the motion reaches no bound: then all of them hold; raise TooLong otherwise."""
     firsts = zip(sizes, most, left_out, strict=True)
     pairs = [one for i, one in enumerate(firsts) if i in (0, 1, 2, 3, 5)]
     pairs += zip(sizes[9], most[9], left_out.forces, strict=True)

@@ -1,4 +1,4 @@
-"""What has been proved of a block on pads."""
+"""Proof of the verdict of a block on pads: its numbers in balls, its start, and the result."""
 
 import math
 from typing import Final
@@ -23,7 +23,7 @@ from rockframe.system.bodies import OverturningAngles
 
 LAW: Final = "the law of two pads"
 _REACH: Final = 1.6
-"""Step over the time in which the fastest vibration turns by a radian."""
+"""Length of a step, over the inverse of the fastest angular frequency."""
 
 
 def pad_numbers(part: OnBase, limits: OverturningAngles, inputs: Deviations) -> PadBalls:
@@ -52,7 +52,7 @@ def way_of(
     inputs: Deviations | None = None,
     watch: Watch | None = None,
 ) -> PadWay:
-    """Give the way from a start, not begun."""
+    """Give the way of a block from its start, ready to be followed."""
     part, body = law.part, law.state_of(0, state)
     pads = pad_numbers(part, limits, inputs or Deviations())
     contact = part.mode_of(mode).contact
@@ -83,9 +83,9 @@ def prove_pads(
     scale: float = 1.0,
     within: Tolerances = EXACT,
 ) -> Proof:
-    """Prove the verdict of a block on pads, from its mode and its state.
+    """Prove the verdict of a block on pads, from its mode and its state at the start.
 
-    Its pads are elastic, its ground is level, and its restraint is no leading corner.
+    The pads must be elastic, the ground level, and the restraint not that of the leading corner.
     """
 
     def attempt(inputs: Deviations) -> tuple[Proof, list[float]]:

@@ -1,4 +1,4 @@
-"""From the start of a motion to a verdict of a block on pads, by enclosures alone."""
+"""The way of a set of states on pads, from the start of a motion to a proved verdict."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -32,30 +32,30 @@ _HALVINGS: Final = 30
 _PIECES: Final = 16
 _DEEPEST: Final = 40
 _CHAIN: Final = 6
-"""Changes of contact at one instant beyond which nothing is decided."""
+"""Largest number of changes of contact at one instant; with more a proof is given up."""
 _PLACES: Final = np.linspace(0.0, 1.0, 4 * _PIECES + 1)
 _LOST_BITS: Final = 16.0
 _NARROW: Final = 1e-3
-"""Radius of a set, over that of its weights, beyond which it tells nothing."""
+"""Radius of a set, over the weights, beyond which a proof is given up."""
 
 Watch = Callable[[int, Standing, Row], None]
-"""Is told the number of a knot, the contacts and the enclosure there."""
+"""A function called with the number of a knot, the contacts and the enclosure there."""
 
 
 @dataclass
 class PadWay:
-    """The way through a motion; what is found stands in its fields.
+    """The way of a set of states through a motion; its fields change as it is followed.
 
     Parameters
     ----------
     pads : PadBalls
         The block and its pads.
     shaking : Shaking
-        Of the ground.
+        Motion of the ground.
     standing : Standing
-        Contacts at the start.
+        Contacts, at first those at the start.
     states : StateSet
-        At the start.
+        States, at first those at the start.
     weights : ndarray
         Typical sizes of the state's numbers, powers of two.
     reach : float
@@ -63,7 +63,7 @@ class PadWay:
     patience : float
         Time after the record in which the block has to calm down [s].
     watch : callable, optional
-        Is told every enclosure at a knot.
+        Function that is called with each enclosure at a knot.
     """
 
     pads: PadBalls
@@ -118,7 +118,7 @@ class PadWay:
         return True
 
     def _to_next_knot(self) -> None:
-        """Go on to the next knot, or until the block has overturned."""
+        """Follow the set to the next knot, or until the block has overturned."""
         depth, parts = 0, 0
         while True:
             left = self.shaking.length(self.k) - self.offset
@@ -155,7 +155,7 @@ class PadWay:
             raise Undecided(msg)
 
     def _advance(self, ground: GroundPiece, h: Ball) -> bool:
-        """Make a step, or a part of it up to a change of contact; tell whether it was whole."""
+        """Make a step, or a part of it up to a change of contact; give whether it was whole."""
         pads, standing = self.pads, self.standing
         sizes = tuple(float(one) for one in self.weights)
         found = course(pads, standing, ground, self.states.centre, h, sizes, self.margin)
@@ -179,7 +179,7 @@ class PadWay:
         return False
 
     def _set_margin(self, left_out: Series, sizes: tuple[float, ...]) -> None:
-        """Let the next series be longer or shorter by what this one has left out."""
+        """Choose the margin of the next series from the remainders of this one."""
         rests = zip(left_out[:SIZE], sizes, strict=True)
         lost = max(float(rest) / size for rest, size in rests) * 2.0 ** bits()
         if lost > _LOST_BITS:
@@ -188,7 +188,7 @@ class PadWay:
             self.margin = max(self.margin - 4, 8)
 
     def _first(self, made: Step) -> tuple[Guard | None, float]:
-        """Guess which guard is the first to fall to zero, and where; nothing is proved by it."""
+        """Estimate which guard is the first to fall to zero, and where; this proves nothing."""
         which, first = None, 2.0
         for guard, (value, change) in made.curves.items():
             if value.size == 0.0:
@@ -219,7 +219,7 @@ class PadWay:
     def _change(
         self, ground: GroundPiece, h: Ball, states: StateSet, guard: Guard, rate: float
     ) -> None:
-        """Carry a set over a change of contact of all its members, :eq:`eq-proof-pads-event`."""
+        """Map a set through a change of contact of all its members, :eq:`eq-proof-pads-event`."""
         whole = self._crossed(ground, h, states.box(self.weights), guard, rate)
         centre = self._crossed(ground, h, states.centre, guard, rate)
         self.offset = self.offset + h
@@ -240,7 +240,7 @@ class PadWay:
     def _crossed(
         self, shaking: GroundPiece, h: Ball, box: Row, guard: Guard, rate: float
     ) -> "_Crossed":
-        """Enclose the image of a box whose members come to a guard's zero near one time."""
+        """Enclose the image of a box whose members reach the zero of a guard near one time."""
         pads, standing = self.pads, self.standing
         value = guard_value(pads, guard, duals(box))
         falling = along(value, rates_of(pads, standing, duals(box), _shaken(shaking, h)))
@@ -281,7 +281,7 @@ class PadWay:
         return _Crossed(delay, image, slope, after)
 
     def _settled(self, after: Switched, ground: Shaken) -> Switched:
-        """Carry out what has to follow at once."""
+        """Carry out further changes of contact that follow at the same instant."""
         for _ in range(_CHAIN):
             state = [one.value for one in after.state]
             waiting = [
@@ -311,7 +311,7 @@ class PadWay:
                 raise Undecided(msg)
 
     def _swung(self, slope: Matrix, near: Ball) -> Matrix:
-        """Allow for what members go through between their change and that of the centre."""
+        """Widen a derivative by the motion of members between their change and the centre's."""
         scale = [ball(float(one)) for one in self.weights]
         beside = [
             [ball(int(i == j)) + near * scale[i] / scale[j] for j in range(SIZE)]
@@ -345,20 +345,20 @@ class PadWay:
 class _Crossed:
     """A change of contact of a box of states."""
 
-    delay: Ball
-    image: Row
-    slope: Matrix
+    delay: Ball  # time of the change of each member, from now [s]
+    image: Row  # states after it
+    slope: Matrix  # derivative of these by the states before
     after: Switched
 
 
 def _shaken(ground: GroundPiece, time: Ball) -> Shaken:
-    """Give the ground at a time, or over several."""
+    """Give the ground at a time, or at all times of a ball [s]."""
     now = ground.at(time)
     return Shaken(now.along[0], now.weight[0])
 
 
 def _inflated(rates: Callable[[list[Any]], list[Any]], box: Row, window: Ball, weights: Any) -> Row:
-    """Enclose all that a box goes through within a window of time."""
+    """Enclose all states that a box passes through in a window of time [s]."""
     grown = box
     for _ in range(12):
         flow = [one.value for one in rates(duals(grown))]
@@ -376,7 +376,7 @@ def _inflated(rates: Callable[[list[Any]], list[Any]], box: Row, window: Ball, w
 def _saltation(
     after: Switched, before: list[Any], later: list[Any], guarded: Any, falling: Ball
 ) -> Matrix:
-    """Give the derivative of a change by the state, at one time for all."""
+    """Give the saltation matrix: the derivative of a change by the state, at one fixed time."""
     reset = [one.slope for one in after.state]
     speeds = [one.value for one in before]
     jump = [
@@ -390,13 +390,13 @@ def _saltation(
 
 
 def _norm(rates: list[Any], weights: Any) -> float:
-    """Bound the derivative of the field, over the weights."""
+    """Bound the norm of the weighted derivative of the field."""
     sizes = np.array([[float(one.abs_upper()) for one in row.slope] for row in rates])
     return float((sizes * weights[None, :] / weights[:, None]).sum(axis=1).max()) * UPWARDS
 
 
 def _positive(value: Curve, change: Curve, until: float, *, fresh: bool, falls: bool) -> bool:
-    """Prove that a guard is positive up to a share, but for where it begins or ends at zero."""
+    """Prove that a guard is positive up to a share, except where it begins or ends at zero."""
     of, slopes = value.of, change.of
     powers = np.arange(of.size)
     bend = float((np.abs(of) * powers * np.maximum(powers - 1, 0)).sum()) * UPWARDS
@@ -426,7 +426,7 @@ def _positive(value: Curve, change: Curve, until: float, *, fresh: bool, falls: 
 
 
 def _series(pads: PadBalls, guard: Guard, made: Step) -> Row:
-    """Give the series of a guard."""
+    """Give the series of a guard over a step."""
     found, i = made.course.series, int(not guard.left)
     if guard.kind == "limit":
         sign = 1 if guard.left else -1
@@ -443,7 +443,7 @@ def _series(pads: PadBalls, guard: Guard, made: Step) -> Row:
 
 
 def _root(series: Row, place: float) -> Ball:
-    """Give about where a series comes to zero; nothing is proved by it."""
+    """Estimate where a series comes to zero, from a first guess; this proves nothing."""
     at = ball(place)
     for _ in range(8):
         value, slope = ZERO, ZERO

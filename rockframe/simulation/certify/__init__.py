@@ -1,1 +1,1 @@
-"""How sure the verdict of a run is: runs beside it, by finer means and with changed inputs."""
+"""Certificates: how sure a verdict is, by runs of higher accuracy and with changed inputs."""

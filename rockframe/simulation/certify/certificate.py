@@ -1,4 +1,8 @@
-"""How sure a verdict is, by finer means, changed parameters and scales; in numbers and words."""
+"""The certificate of a run: how sure its verdict is, in numbers and words.
+
+It follows from runs "by finer means", of higher accuracy than the run itself, from runs with
+slightly changed ("nudged") parameters, and from runs with a scaled motion.
+"""
 
 import math
 import warnings
@@ -26,28 +30,28 @@ from rockframe.solve.accuracy import FEWEST
 from rockframe.system.assembly import Assembly
 
 SAFETY: Final = 3.0
-"""Error that a run may have, over its largest difference from a run by finer means."""
+"""Estimated error of a run, over its largest difference from a run by finer means."""
 RESOLUTION: Final = 0.004
-"""Length of an interval of scales that is not looked into, over its distance from one."""
+"""Length of an interval of scales, over its distance from 1, below which it is not divided."""
 NUDGE_RESOLUTION: Final = 0.06
-"""The same of the values of a parameter, over the distance from its own."""
+"""Length of an interval of values of a parameter, over its distance from the parameter's own."""
 INSIDE: Final = (0.5, 1.0)
-"""Shares of the nudge by which a parameter is changed first."""
+"""First changes of a parameter, as shares of the nudge."""
 PER_PARAMETER: Final = (4, 14)
-"""Least and most runs for one parameter."""
+"""Smallest and largest number of runs for one parameter."""
 FOR_PARAMETERS: Final = 0.6
-"""Share of all runs that may go to parameters."""
+"""Largest share of all further runs that change parameters."""
 
 
 @dataclass(frozen=True)
 class Certificate:
-    """A run, and what further runs showed; none where it was not finished."""
+    """A run and its further runs; without any if the run was not finished."""
 
-    wanted: Certification  # what was to be tried
+    wanted: Certification  # the further runs to make
     plan: Plan  # the run's arguments
-    base: RunSummary  # what the run showed
-    finer: Sequence[tuple[str, RunSummary]] = ()  # runs by finer means, with these in words
-    nudged: Sequence[tuple[str, Scan]] = ()  # runs with a parameter changed, with its name in words
+    base: RunSummary  # the run
+    finer: Sequence[tuple[str, RunSummary]] = ()  # runs by finer means, each with these in words
+    nudged: Sequence[tuple[str, Scan]] = ()  # runs with a parameter changed, by its name
     along: Scan = NOT_TRIED  # runs with a scaled motion or start
 
     @property
@@ -57,14 +61,14 @@ class Certificate:
 
     @property
     def converged(self) -> bool:
-        """Whether the verdict is that of every run by finer means, by more than they differ."""
+        """Whether all runs by finer means have the same verdict, with a margin above the error."""
         return self.finished and all(settles(self.base, other) for _, other in self.finer)
 
     @property
     def robust(self) -> bool:
         """Whether no change of a parameter or the scale up to the nudge has another verdict.
 
-        Nor is one to be feared between the changes that were tried.
+        Changes between those that were tried must be unlikely to have one, too.
         """
         followed = all(found.flip is None and found.followed for _, found in self.nudged)
         least = min(self.wanted.nudge, self.wanted.reach)
@@ -72,26 +76,26 @@ class Certificate:
 
     @property
     def margin(self) -> float:
-        """Largest change of scale up to which no other verdict was found; NaN if none was tried."""
+        """Largest change of scale up to which no other verdict was found; NaN without runs [1]."""
         return self.along.margin if self.along.tried else math.nan
 
     @property
     def flip(self) -> float:
-        """Scale nearest to one that was found to change the verdict; NaN if none."""
+        """Scale nearest to 1 that was found to change the verdict; NaN if none [1]."""
         return math.nan if self.along.flip is None else 1.0 + self.along.flip
 
     @property
     def peak_error(self) -> float:
-        """Largest difference from the peak by finer means, times a safety factor [rad]."""
+        """Largest difference of peak rotations by finer means, times a safety factor [rad]."""
         return SAFETY * self._farthest([other for _, other in self.finer])
 
     @property
     def peak_sensitivity(self) -> float:
-        """Largest difference from the peak with a nudged parameter [rad]."""
+        """Largest difference of peak rotations with a nudged parameter [rad]."""
         return self._farthest([shown for _, found in self.nudged for shown in found.tried.values()])
 
     def _farthest(self, others: list[RunSummary]) -> float:
-        """Give the largest difference of peaks; NaN if a run was cut off before its own."""
+        """Give the largest difference of peak rotations; NaN if a run was not finished [rad]."""
         apart = [
             math.nan if one.overturned is None else abs(one.peak - self.base.peak)
             for one in (self.base, *others)
@@ -105,7 +109,7 @@ class Certificate:
 
     @property
     def sentence(self) -> str:
-        """All this in words."""
+        """The certificate in words."""
         return certificate_sentence(self)
 
     def values(self) -> dict[str, float | bool]:
@@ -120,7 +124,7 @@ class Certificate:
         }
 
     def attributes(self) -> dict[str, str | float | int]:
-        """Give what a dataset says of the certificate."""
+        """Give the attributes of a dataset that describe the certificate."""
         return {
             "certificate": self.sentence,
             "certificate_nudge": self.wanted.nudge,
@@ -172,7 +176,7 @@ def _nudged(
 def _scaled(
     system: Assembly, plan: Plan, base: RunSummary, wanted: Certification, run: Run, most: int
 ) -> Scan:
-    """Scale the motion, or the start."""
+    """Scale the motion or, without one, the start."""
     limits = system.setting.overturning_angles
 
     def look(change: float) -> RunSummary | None:
@@ -184,7 +188,7 @@ def _scaled(
 
 
 def _perturbed_run(system: Assembly, plan: Plan, run: Run) -> RunSummary | None:
-    """Run a nudged scene; with a sub-step more where those given have become too few."""
+    """Run a nudged scene, with more sub-steps where the given number is too small for it."""
     try:
         return run(system, plan)
     except SolverError:
@@ -194,7 +198,7 @@ def _perturbed_run(system: Assembly, plan: Plan, run: Run) -> RunSummary | None:
 
 
 def settles(base: RunSummary, finer: RunSummary) -> bool:
-    """Whether a run by finer means has the verdict of a run, by more than they differ."""
+    """Whether a run by finer means has the same verdict, with a margin above the error."""
     if not base.alike(finer):
         return False
     pairs = zip(base.clearances, finer.clearances, strict=True)
@@ -206,13 +210,13 @@ def _number_of_runs(nudged: Sequence[tuple[str, Scan]]) -> int:
 
 
 NEAR: Final = 0.01
-"""A margin up to which a verdict is called near the boundary [1]."""
+"""Margin up to which a verdict is called near the boundary [1]."""
 NEAR_WORDS: Final = "Near the boundary"
-"""How the sentence of such a verdict begins."""
+"""Beginning of the sentence about such a verdict."""
 
 
 def certificate_sentence(found: Certificate) -> str:
-    """Say what was tried and what was found."""
+    """Say which further runs were made and what they showed."""
     if not found.finished:
         return "No certificate: the run was not finished."
     ends = _Ends(found)
@@ -237,7 +241,7 @@ def certificate_sentence(found: Certificate) -> str:
 
 
 class _Ends:
-    """How runs end, in words, in the sense in which they were asked."""
+    """How runs end, in words: with overturning as the run's arguments define it."""
 
     def __init__(self, found: Certificate) -> None:
         stops = found.plan.stop_at_overturning
@@ -256,7 +260,7 @@ class _Ends:
 
 
 def _unsettled(found: Certificate, ends: _Ends) -> Iterator[str]:
-    """Say which runs by finer means end otherwise, or come too near to it."""
+    """Say which runs by finer means have another verdict, or come too near to another one."""
     if found.converged:
         return
     verdict = found.base.overturned
@@ -287,7 +291,7 @@ def _fragile(found: Certificate, ends: _Ends) -> Iterator[str]:
 
 
 def _near(found: Certificate, ends: _Ends) -> list[str]:
-    """Say that a slightly other scale changes the verdict, or may."""
+    """Say that a slightly different scale changes the verdict, or may change it."""
     margin, along, what = found.margin, found.along, _driver(found.plan)
     if not margin <= _little(found) or (along.followed and along.flip is None):
         return []
@@ -307,12 +311,12 @@ def _little(found: Certificate) -> float:
 
 
 def _scaled_a_little(found: Certificate) -> bool:
-    """Whether the flip that is known is near."""
+    """Whether the known change of the verdict is at a scale near to 1."""
     return abs(found.flip - 1.0) <= 2.0 * _little(found)
 
 
 def _tried(found: Certificate) -> str:
-    """Say at which scales no other verdict was found; nothing where none was tried."""
+    """Say at which scales no other verdict was found; empty where none was tried."""
     margin, along, what = found.margin, found.along, _driver(found.plan)
     if math.isnan(margin):
         return ""
@@ -326,7 +330,7 @@ def _tried(found: Certificate) -> str:
 
 
 def _nearest(found: Certificate) -> str:
-    """Say at which scale another verdict is known; nothing where none is."""
+    """Say which is the nearest scale with another verdict; empty where none is known."""
     flip = found.flip
     if math.isnan(flip):
         return ""

@@ -1,4 +1,4 @@
-"""Runs to compare a run with: the same by finer means, and with inputs a little changed."""
+"""Plans of the further runs of a certificate: of higher accuracy, and with changed inputs."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -16,17 +16,17 @@ from rockframe.system.bodies import OverturningAngles
 from rockframe.system.links import link_labels
 
 QUARTERS: Final = (0.25, 0.5)
-"""Shares of the nudge at which scales are tried inside it."""
+"""First changes of scale, as shares of the nudge."""
 RATIO: Final = 1.25
-"""Of the changes of scale in a geometric row."""
+"""Ratio of each further change of scale to the one before it, a geometric sequence."""
 LONGEST: Final = 0.04
-"""Longest step between two changes of scale, over the reach."""
+"""Largest distance between two changes of scale, over the reach."""
 
 SceneAt = Callable[[float], Assembly | None]
 
 
 def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
-    """Give every parameter of every part of a scene, and the scene with it changed."""
+    """Give the name of each parameter of each part, and a function that gives the changed scene."""
     parts = system.parts
 
     def changed(slot: str, name: str) -> SceneAt:
@@ -50,7 +50,7 @@ def parameters(system: Assembly) -> Iterator[tuple[str, SceneAt]]:
 
 
 def scales(nudge: float, reach: float) -> list[float]:
-    """Give the changes of scale to be tried first, from a share of the nudge up to the reach."""
+    """Give the first changes of scale to try, from a share of the nudge up to the reach."""
     row = [share * nudge for share in QUARTERS if share * nudge < reach]
     place = min(nudge, reach)
     while place < reach:
@@ -62,7 +62,7 @@ def scales(nudge: float, reach: float) -> list[float]:
 
 
 def scaled_plan(plan: Plan, scale: float, limits: OverturningAngles) -> Plan | None:
-    """Scale what drives a run: its motion, or without one its start; None if it cannot be."""
+    """Scale the motion of a run or, without one, its start; None if that is not possible."""
     if plan.motion is not None:
         return replace(plan, motion=plan.motion.scaled(scale))
     start = plan.initial
@@ -85,17 +85,21 @@ def scaled_plan(plan: Plan, scale: float, limits: OverturningAngles) -> Plan | N
 TIGHTER: Final = 0.01
 """Tolerance of a finer run, over that of the run."""
 TIGHTEST: Final = 1e-13
-"""Tolerance beyond which rounding rules."""
+"""Smallest tolerance of a finer run: below it rounding errors dominate."""
 SHORTER: Final = 2.7
-"""Step of the run over the longest of a finer one; no whole number, so that steps end elsewhere."""
+"""Step of the run over the longest step of a finer one; not an integer, so that steps do not end
+at the same times."""
 CUTS: Final = (3, 4, 8)
-"""Parts into which the intervals of the motion are cut."""
+"""Numbers of parts into which the intervals of the motion are divided."""
 MOST_SUBSTEPS: Final = 10**6
 MOST_PER_PERIOD: Final = 1e4
 
 
 def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str, Plan]]:
-    """Give the run, of steps of a length [s], by finer means one by one, and what is finer."""
+    """Give the plans of runs by finer means, each with these in words.
+
+    `step` is the mean step of the run itself [s].
+    """
     accuracy = plan.accuracy
     yield tolerance_words(accuracy), replace(plan, accuracy=tightened(accuracy))
     yield (
@@ -122,14 +126,14 @@ def tolerance_words(accuracy: Accuracy) -> str:
 
 
 def tightened(accuracy: Accuracy) -> Accuracy:
-    """Give finer settings: a tighter tolerance, or one instead of fixed sub-steps."""
+    """Give settings with a tighter tolerance, or with a tolerance instead of fixed sub-steps."""
     if accuracy.rtol is None:
         return LEVELS[AccuracyLevel.STANDARD]
     return replace(accuracy, rtol=max(TIGHTER * accuracy.rtol, TIGHTEST))
 
 
 def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float) -> Accuracy:
-    """Give settings with steps shorter than those of a run, by its motion's time step [s]."""
+    """Give settings with shorter steps than the mean one of a run; interval of its motion [s]."""
     wanted = step / SHORTER
     if accuracy.substeps is not None:
         given = accuracy.substeps if isinstance(accuracy.substeps, int) else 1
@@ -141,5 +145,5 @@ def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float
 
 
 def cut(motion: GroundMotion, parts: int) -> GroundMotion:
-    """Give the same function of time by shorter intervals."""
+    """Give the same function of time, with each interval divided into parts."""
     return GroundMotion(motion.si.each(lambda one: divided_signal(one, parts)), name=motion.name)

@@ -1,4 +1,4 @@
-"""What a run showed, and how far its verdict was from the other one."""
+"""The summary of a run for certificates: its verdict, and how far it is from the other one."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -17,57 +17,56 @@ from rockframe.solve.workspace import Status
 from rockframe.system.assembly import Assembly
 
 LATER: Final = 0.05
-"""Share of its time by which an overturning comes earlier or later in another swing."""
+"""Relative difference of the times of two overturnings from which on their swings differ."""
 OTHER: Final = 0.2
-"""Share of the largest by which the parts of a course differ if they are another course."""
+"""Difference of two courses, over their largest element, beyond which the courses are different."""
 PARTS: Final = 6
-"""Instants, spread evenly over a run, about which its course is summed up."""
+"""Number of instants, spread evenly over a run, about which its course is summed up."""
 
 
 @dataclass(frozen=True)
 class RunSummary:
-    """What a run showed.
+    """The outcome of a run, as certificates compare it.
 
-    The verdict is that of the run, in the sense in which it was asked. The clearances are
-    numbers above zero that change smoothly from scene to scene, and at least one of them goes
-    to zero where the verdict changes, or where a body that comes back first passes the
+    The clearances are positive numbers that change smoothly with the inputs; at least one of them
+    goes to zero where the verdict changes, or where a body that does not overturn first passes the
     overturning angle.
     """
 
     overturned: bool | None  # its verdict; None where the run was not finished
     peak: float  # largest absolute rotation [rad]
-    # of a body that stands, the share of the overturning angle that its peak left; of one that came
-    # back from beyond it, how far it was beyond, and the share of a right angle that was left. Of
-    # one that overturns, the square of its rate at that angle, and the time that was left: it fails
-    # to overturn if it gets there without speed, or not within the run
+    # for a body that stays within the overturning angle, 1 less its peak over that angle; for one
+    # that came back from beyond it, its peak over that angle less 1, and 1 less its peak over a
+    # right angle. For one that overturns, the square of its rate at that angle [rad^2 s^-2], and
+    # the time from then to the end of the run [s]: it would not have overturned without speed, or
+    # in less time
     clearances: tuple[float, ...] = ()
-    # of overturning, or of falling flat in a run that goes on; NaN if none [s]
-    time: float = math.nan
+    time: float = math.nan  # of overturning by the verdict, NaN if none [s]
     direction: int = 0  # sign of the rotation at overturning, 0 if none
     step: float = math.nan  # average length of a step [s]
-    # of the whole run: root of the sum of squared rates at its events about some instants. Where
-    # the verdict hangs on what came before, as after many impacts, this tells of it long before a
-    # clearance does [rad s^-1]
+    # root of the sum of squared angular velocities at events, about some instants of the run. Where
+    # the verdict depends on the history, as after many impacts, a change of it shows here long
+    # before it shows in a clearance [rad s^-1]
     course: tuple[float, ...] = ()
     status: Status = Status.COMPLETED  # how it ended
-    peak_share: float = math.nan  # largest share of a rotation in the overturning angle of its side
-    in_motion: bool = False  # whether it stood with the energy to overturn later
+    peak_share: float = math.nan  # largest ratio of a rotation to the overturning angle of its side
+    in_motion: bool = False  # whether it did not overturn, but has the energy to do so later
     # whether it would slide, 1 or 0; NaN where no base has a coefficient of friction, or the run
     # was made without samples
     slides: float = math.nan
-    lifted: bool = True  # whether the base left the ground; True also where nobody looked
+    lifted: bool = True  # whether the base left the ground; True also where that is not known
     slip: float = math.nan  # largest slip of a body; NaN where none slides [m]
 
     @property
     def within_the_angle(self) -> bool:
-        """Whether it stood and never passed the overturning angle: it has one clearance then."""
+        """Whether it never passed the overturning angle: it has one clearance then."""
         return not self.overturned and len(self.clearances) == 1
 
     def alike(self, other: "RunSummary") -> bool:
-        """Whether both take the same course.
+        """Whether two runs take the same course.
 
-        Both stand, within the overturning angle or back from beyond it, or both overturn in the
-        same swing.
+        Both stay within the overturning angle, or both come back from beyond it, or both overturn
+        in the same swing.
         """
         if self.overturned is None or self.overturned != other.overturned:
             return False
@@ -83,7 +82,7 @@ class RunSummary:
 
 
 Run: TypeAlias = Callable[[Assembly, Plan], RunSummary]
-"""Makes a run, and tells what it showed."""
+"""A function that makes a run and gives its summary."""
 
 
 def run_summary(
@@ -94,7 +93,7 @@ def run_summary(
     *,
     in_motion: bool,
 ) -> RunSummary:
-    """Tell what a run showed, also by its events, by their names in the schema."""
+    """Give the summary of a run, from its events by names of the schema and its length [s]."""
     rates = np.abs(events["angular_velocity_before"])
     if summary.overturned:
         rate = float(rates[events["event_kind"] == EventKind.OVERTURNING][0])
@@ -119,7 +118,7 @@ def run_summary(
 
 
 def _course(place: Array, rates: Array) -> tuple[float, ...]:
-    """Sum up squares of rates by their places in a run, the nearer to an instant the more."""
+    """Sum up squared rates about some instants, with weights that fall with distance in time."""
     instants = np.arange(PARTS)[:, None] / (PARTS - 1)
     weights = np.clip(1.0 - (PARTS - 1) * np.abs(place - instants), 0.0, None)
     return tuple(np.sqrt(weights @ rates**2).tolist())

@@ -1,8 +1,8 @@
-"""Where, along a change of one number, a verdict turns round: tried from near to far.
+"""Search for a change of the verdict along a change of one number, from small to large changes.
 
-Between two runs of the same verdict there may be others. Whether to look is told by the
-clearances of the runs, which go to zero where the verdict changes: if they could, at twice
-the slopes seen hereabouts, the interval is halved.
+Between two runs of the same verdict there may be runs of the other one. That is judged by the
+clearances of the runs, which go to zero where the verdict changes: if they could do so inside an
+interval, at twice the slopes found around it, the interval is halved.
 """
 
 import math
@@ -15,38 +15,38 @@ from typing import Final
 from rockframe.simulation.certify.run_summary import RunSummary
 
 STEEPER: Final = 2.0
-"""Slope that a clearance is allowed between two runs, over those seen hereabouts."""
+"""Largest slope of a clearance assumed between two runs, over the slopes found around it."""
 BENT: Final = 2.0
-"""Clearance that is looked into, over its departure from a straight line hereabouts."""
+"""Ratio of a clearance to its departure from a straight line below which an interval is halved."""
 EVEN: Final = 2.0
-"""Ratio up to which two slopes are those of a straight line."""
+"""Ratio of two slopes up to which they belong to a straight line."""
 CROWD: Final = 2
-"""Intervals with unlike ends that make all those around them suspect."""
+"""Number of intervals between runs of different course that makes all around them doubtful."""
 AROUND: Final = 8.0
-"""Distance up to which they do, over the length of an interval."""
+"""Distance up to which it does, over the length of an interval."""
 AS_LONG: Final = 1.4
-"""Ratio up to which two intervals are of about the same length."""
+"""Ratio of the lengths of two intervals up to which they count as equally long."""
 AHEAD: Final = 2.0
-"""Share of its own length up to which the slope of an interval tells of the next one."""
+"""Distance, over the length of an interval, up to which its slope is used for the next one."""
 LEAST: Final = 1e-15
-"""Change below which nothing can be told from rounding."""
+"""Length of an interval below which changes are rounding."""
 
 Look = Callable[[float], RunSummary | None]
-"""Makes the run with a change; None where that cannot be."""
+"""A function that makes the run with a change; None where that is not possible."""
 
 
 @dataclass(frozen=True)
 class Scan:
-    """What was found along a path."""
+    """The result of a search."""
 
     # largest change, to both sides, up to which no other verdict was found and every interval was
     # followed closely enough to tell [1]
     margin: float
     flip: float | None  # change nearest to zero with another verdict [1]
-    ended: RunSummary | None  # what that run showed
-    # whether the margin ends at another verdict or at the reach, not for want of runs
+    ended: RunSummary | None  # the run with that change
+    # whether the margin ends at another verdict or at the reach, not since all runs were used
     followed: bool
-    tried: dict[float, RunSummary]  # all runs, without the one at zero
+    tried: dict[float, RunSummary]  # all runs by their changes, without the one at zero
 
     def within(self, reach: float) -> int:
         """Give the number of changes tried up to a reach."""
@@ -54,31 +54,31 @@ class Scan:
 
 
 NOT_TRIED: Final = Scan(math.nan, None, None, followed=False, tried={})
-"""What is found without a run."""
+"""The result of a search without runs."""
 
 
 @dataclass
 class Side:
-    """The runs to one side, by the size of their change."""
+    """The runs with positive, or with negative, changes, by the size of their change."""
 
     sign: float  # of the changes
-    shown: dict[float, RunSummary]  # the runs by their places, at first the nearest one only
-    places: list[float] = field(default_factory=lambda: [0.0])  # sizes of the changes, rising
-    closed: bool = False
+    shown: dict[float, RunSummary]  # the runs by the sizes of their changes; at first that at 0
+    places: list[float] = field(default_factory=lambda: [0.0])  # sizes of the changes, ascending
+    closed: bool = False  # whether no run is possible with a larger change
+    # middles and lengths of intervals between runs of different course
     rough: list[tuple[float, float]] = field(default_factory=list)
 
     def add(self, place: float, shown: RunSummary) -> None:
-        """Put a run in its place."""
+        """Add a run by the size of its change."""
         self.shown[place] = shown  # first, so that an interrupt leaves no place without a run
         insort(self.places, place)
-        # intervals whose ends took other courses are remembered, with their lengths
         number = self.places.index(place)
         for near, far in pairwise(self.places[number - 1 : number + 2]):
             if not self.shown[near].alike(self.shown[far]):
                 self.rough.append((0.5 * (near + far), far - near))
 
     def crowded(self, near: float, far: float) -> bool:
-        """Whether several intervals of about this length hereabouts have unlike ends."""
+        """Whether several intervals of about this length nearby are between different courses."""
         length, middle = far - near, 0.5 * (near + far)
         count = 0
         for place, other in self.rough:
@@ -91,7 +91,7 @@ class Side:
         yield from pairwise(self.places)
 
     def flip(self) -> tuple[float, float] | None:
-        """Give the first interval at whose end the verdict is another one."""
+        """Give the first interval at whose far end the verdict differs from that at 0."""
         verdict = self.shown[0.0].overturned
         for near, far in self.intervals():
             if self.shown[far].overturned != verdict:
@@ -108,10 +108,11 @@ def scan(
     resolution: float,
     close_in: bool = True,
 ) -> Scan:
-    """Try changes to both sides, from near to far.
+    """Try changes of both signs, from small to large ones.
 
     `row` are the sizes of the first changes, the last of which is the reach. Intervals are halved
-    down to `resolution` over their far ends; where the verdict changes only if `close_in`.
+    until their length is `resolution` times their far end; an interval in which the verdict changes
+    is halved only if `close_in`.
     """
     sides = [Side(sign, {0.0: base}) for sign in (-1.0, 1.0)]
     tried: dict[float, RunSummary] = {}
@@ -167,7 +168,7 @@ def _flips(sides: Sequence[Side]) -> list[_Task]:
 
 
 def _nearest_flip(sides: Sequence[Side]) -> _Task | None:
-    """Give the interval that may hold the nearest flip: the one that begins first."""
+    """Give the interval that may contain the nearest flip: the one that begins first."""
     return min(_flips(sides), key=lambda one: one[1:], default=None)
 
 
@@ -176,7 +177,7 @@ def _wide(near: float, far: float, resolution: float) -> bool:
 
 
 def _first_doubt(sides: Sequence[Side], end: float, resolution: float) -> _Task | None:
-    """Give the nearest interval, up to an end, in which the verdict might change and back."""
+    """Give the nearest interval, up to an end, in which the verdict might change to and fro."""
     found: list[_Task] = []
     for side, other in zip(sides, reversed(sides), strict=True):
         for number, (near, far) in enumerate(side.intervals()):
@@ -189,7 +190,7 @@ def _first_doubt(sides: Sequence[Side], end: float, resolution: float) -> _Task 
 
 
 def may_change_between(side: Side, number: int, other: Side | None = None) -> bool:
-    """Tell whether a clearance might go to zero between two runs of the same verdict."""
+    """Whether a clearance might go to zero between two runs of the same verdict."""
     near, far = side.places[number], side.places[number + 1]
     first, last = side.shown[near], side.shown[far]
     if not first.alike(last) or side.crowded(near, far):
@@ -213,7 +214,7 @@ def may_change_between(side: Side, number: int, other: Side | None = None) -> bo
         )
         if start + end > STEEPER * steep and min(start, end) > BENT * bent:
             continue
-        # before a change of the verdict a clearance goes to zero, as a line does or a root
+        # before a change of the verdict a clearance goes to zero, linearly or like a square root
         even = (
             bool(before.of) and before.of[k] <= 0.0 and EVEN * slope <= before.of[k] <= slope / EVEN
         )
@@ -225,7 +226,7 @@ def may_change_between(side: Side, number: int, other: Side | None = None) -> bo
 
 @dataclass(frozen=True)
 class _Slopes:
-    """Slopes of the clearances over an interval; none where its ends are not alike."""
+    """Slopes of the clearances over an interval; none where its ends take different courses."""
 
     length: float
     of: tuple[float, ...]

@@ -1,4 +1,4 @@
-"""Whether a run by fixed steps is sure: what half as many steps again show, :eq:`eq-screened`."""
+"""Whether a run in fixed steps is sure, by a second run with more steps, :eq:`eq-screened`."""
 
 import math
 from collections.abc import Iterator
@@ -15,34 +15,34 @@ from rockframe.system.assembly import Assembly
 from rockframe.system.setting import Setting
 
 MORE: Final = 0.5
-"""Share of steps by which the second look at a run has more of them."""
+"""Additional steps of the second run, as a share of those of the first."""
 OTHER_COURSE: Final = 0.05
-"""Share of their number by which the impacts of both runs differ if they took another course."""
+"""Relative difference of the numbers of impacts beyond which two runs took different courses."""
 SAME_PEAK: Final = 0.01
-"""Error of a peak, over itself, up to which a body that stands took the same course to it."""
+"""Relative error of the peak up to which two runs without overturning took the same course."""
 SAME_FALL: Final = 0.1
-"""The same of the energy with which a body overturned."""
+"""Relative error of the energy at overturning up to which two runs took the same course."""
 OFF: Final = 0.05
-"""Estimated error of a peak rotation beyond which a run says so, over that peak."""
+"""Estimated relative error of a peak rotation beyond which a run warns."""
 _AGAIN: Final = "with half as many steps again"
 _REMEDY: Final = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"
 
 
 @dataclass(frozen=True)
 class Look:
-    """What a run tells of its verdict."""
+    """The numbers of a run from which follows how sure its verdict is."""
 
     overturned: bool | None  # the verdict; None where the run was not finished
-    share: float  # of the peak rotation in the overturning angle of its side [1]
-    impacts: int  # their number
-    time: float  # when it overturned, and how much of the run was left then; NaN if it did not [s]
-    left: float
-    direction: int  # in which it overturned; 0 if it did not
-    frequency: float  # omega of Eq. (6), at which a body leaves its unstable equilibrium [rad s^-1]
+    share: float  # peak rotation over the overturning angle of its side [1]
+    impacts: int  # number of impacts
+    time: float  # time of overturning, NaN if it did not [s]
+    left: float  # time from then to the end of the run [s]
+    direction: int  # direction in which it overturned; 0 if it did not
+    frequency: float  # omega of Eq. (6), the rate of growth near unstable equilibrium [rad s^-1]
 
 
 def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
-    """Take from a run of some length [s] what tells of its verdict."""
+    """Give the numbers of a run of some length [s] from which follows how sure its verdict is."""
     time = summary.verdict_time
     return Look(
         summary.overturned,
@@ -56,18 +56,22 @@ def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
 
 
 def second_look(system: Assembly, plan: Plan) -> Plan:
-    """Give the same run with more steps in each interval of the motion, by at least one."""
+    """Give the plan of the second run: more steps in each interval of the motion, at least one."""
     given = max(substeps_of(plan.accuracy, system.model, plan.interval), 1)
     return replace(plan.bare(), accuracy=Accuracy(substeps=given + math.ceil(MORE * given)))
 
 
 def is_sure(first: Look, second: Look) -> bool:
-    """Whether a verdict is farther from its flip than its error, :eq:`eq-screened`."""
+    """Whether a verdict is farther from the other one than its error, :eq:`eq-screened`."""
     return is_clear(first, second) and not _other_impacts(first, second)
 
 
 def is_together(first: Look, second: Look) -> bool:
-    """Whether a verdict is so, and its peak or fall the same: other impacts are small ones then."""
+    """Whether a verdict is clear, and both runs take the same course.
+
+    With the same peak, or the same energy at overturning, they do even if their numbers of impacts
+    differ: these are small impacts then.
+    """
     if not is_clear(first, second):
         return False
     if first.overturned:
@@ -79,13 +83,13 @@ def is_together(first: Look, second: Look) -> bool:
 
 
 def _other_impacts(first: Look, second: Look) -> bool:
-    """Whether the numbers of impacts tell of another course."""
+    """Whether the numbers of impacts show that two runs took different courses."""
     apart = abs(first.impacts - second.impacts)
     return apart > OTHER_COURSE * max(first.impacts, second.impacts)
 
 
 def is_clear(first: Look, second: Look) -> bool:
-    """Whether a verdict is farther from its flip than its error, whatever the impacts."""
+    """Whether a verdict is farther from the other one than its error, whatever the impacts."""
     if first.overturned is None or first.overturned != second.overturned:
         return False
     if not first.overturned:
@@ -96,20 +100,20 @@ def is_clear(first: Look, second: Look) -> bool:
     return (
         first.direction == second.direction
         and error < min(first.left, second.left)
-        # near the unstable equilibrium the time tells of the energy: its error over itself
+        # near unstable equilibrium the relative error of the energy follows from that of the time
         and 2.0 * first.frequency * error < 1.0
     )
 
 
 def peak_error(first: Summary, second: Summary) -> float:
-    """Estimate the error of the peak rotation of a run; NaN where one was cut off [rad]."""
+    """Estimate the error of the peak rotation of a run; NaN if a run is not finished [rad]."""
     if first.overturned is None or second.overturned is None:
         return math.nan
     return SAFETY * abs(first.peak_rotation - second.peak_rotation)
 
 
 def doubts(setting: Setting, plan: Plan, first: Summary, second: Summary) -> Iterator[str]:
-    """Say what is not sure of a run by fixed steps."""
+    """Say whether the verdict or the peak of a run in fixed steps is not sure."""
     if first.overturned is None:
         return
     mine, other = (look_at(setting, one, plan.duration) for one in (first, second))

@@ -1,4 +1,4 @@
-"""Integration of many runs of one kind of system in lanes: the counterpart of `solve/integrate.py`.
+"""Integration of many runs of one kind of system in lanes, the counterpart of integrate.py above.
 
 Puts each run into a row, makes batches of rows, and reads the outcomes from the rows.
 """
