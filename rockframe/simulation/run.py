@@ -303,14 +303,17 @@ def _leaving(
     overturning_time: float,
 ) -> Iterator[str]:
     """Warn of a block that would lift off the ground, where the equations do not allow flight."""
-    slope = system.options.slope
-    if motion is not None and not (slope.level and motion.si.vertical is None):
+    slope, links = system.options.slope, bool(system.setting.link_names)
+    # a link may press the block on: then reactions tell, where there are histories of them
+    by_motion = motion is not None and not (links and "left_reaction" in values)
+    if motion is not None and by_motion and not (slope.level and motion.si.vertical is None):
         moved, _ = ground_on_slope(ground_at(motion, motion.si.horizontal.times), slope)
         lowest = float(np.min(moved[:, 1]))
         if lowest < -slope.normal_gravity:
             which = "vertical" if slope.level else "normal"
             found = f"the {which} ground acceleration falls to {lowest:.4g} m s^-2, beyond gravity"
-            yield f"{found}: {_LEAVES}{system.setting.to_fly}"
+            unless = "unless links press it on, " if links else ""
+            yield f"{found}: {unless}{_LEAVES}{system.setting.to_fly}"
     if "left_reaction" not in values:
         return
     stands = ~(values["time"] > overturning_time)  # the fall after overturning does not count

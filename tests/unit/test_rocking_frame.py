@@ -65,6 +65,19 @@ def test_what_would_fly_is_told_what_can_be_done(parts, ends):
         rf.System(*parts).simulate(pulse.with_vertical(pulse.scaled(11.0)), outputs=None)
 
 
+def test_what_tendons_press_on_the_ground_does_not_leave_it():
+    pulse = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    motion = pulse.with_vertical(pulse.scaled(11.0))
+    pressed = rf.System(BENT, rf.Tendon(stiffness="1 MN/m", preload="5 MN"))
+    run = pressed.simulate(motion)  # warnings are errors
+    assert float((run.left_reaction + run.right_reaction).min()) > 0.0
+    hardly = rf.System(BENT, rf.Tendon(stiffness="1 kN/m", preload="1 kN"))
+    with pytest.warns(ModelWarning, match="have to pull at the bearing corner"):
+        hardly.simulate(motion)
+    with pytest.warns(ModelWarning, match="beyond gravity: unless links press it on, the block"):
+        pressed.simulate(motion, outputs=None)
+
+
 def test_what_a_frame_does_not_go_with():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     with pytest.raises(AssemblyError, match="a RockingFrame stands on rigid ground"):
