@@ -8,6 +8,7 @@ import math
 import pickle
 from typing import ClassVar
 
+import numpy as np
 import pint
 import pytest
 from hypothesis import given, settings
@@ -161,8 +162,11 @@ def test_a_component_takes_back_what_it_gives(given):
     for name in inspect.signature(type(given)).parameters:
         value = getattr(given, name)
         if value is not None:
-            again = given.replace(**{name: value})
-            assert repr(getattr(again, name)) == repr(value)
+            again = getattr(given.replace(**{name: value}), name)
+            if isinstance(value, pint.Quantity):  # derived from others, some lose a digit
+                np.testing.assert_allclose(again.magnitude, value.magnitude, rtol=1e-14)
+                again, value = again.units, value.units
+            assert repr(again) == repr(value)
 
 
 # the way to text and back ----------------------------------------------------------------
