@@ -17,6 +17,8 @@ import pytest
 import rockframe as rf
 from rockframe.dynamics.events import EventKind
 
+pytestmark = pytest.mark.wide
+
 AGREEMENT = 1e-6  # of the largest base shear
 STEP = 1e-3
 STENCIL = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])

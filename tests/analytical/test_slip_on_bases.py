@@ -13,7 +13,7 @@ from rockframe.dynamics.protocol import IMPACT_LOSS, Start
 from rockframe.errors import AssemblyError, ComponentError
 from rockframe.solve.workspace import Status
 
-pytestmark = [pytest.mark.analytical, pytest.mark.filterwarnings("ignore")]
+pytestmark = [pytest.mark.wide, pytest.mark.analytical, pytest.mark.filterwarnings("ignore")]
 
 BLOCK = rf.Block(width="1 m", height="3 m", mass="1 t")
 PADS = rf.TwoSpringSupport(frequency_ratio=12, damping_ratio=0.1)
@@ -321,7 +321,6 @@ def test_a_corner_of_a_squat_body_keeps_nothing_of_its_speed_on_pads():
     assert abs(found.rotation[-1]) < 1e-3
 
 
-@pytest.mark.wide
 @pytest.mark.parametrize(
     ("number", "ends"),
     [(733, "0.76 s"), (379, "1.88 s"), (1318, "1.74 s"), (358, "2.05 s")],

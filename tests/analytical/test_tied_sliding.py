@@ -8,7 +8,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import AssemblyError
 
-pytestmark = [pytest.mark.analytical, pytest.mark.filterwarnings("ignore")]
+pytestmark = [pytest.mark.wide, pytest.mark.analytical, pytest.mark.filterwarnings("ignore")]
 
 BLOCK = rf.Block(width="1 m", height="3 m", mass="1 t")
 LOW = rf.Block(width="2 m", height="1 m", mass="1 t")
@@ -48,7 +48,6 @@ def kinds_of(found):
     return [names[kind - 1] for kind in found.event_kind.values]
 
 
-@pytest.mark.wide
 @BASES
 def test_friction_without_end_holds_the_base(base):
     """To rounding; on rigid ground the equations are others, and what happens at once is so."""
@@ -67,7 +66,6 @@ def test_friction_without_end_holds_the_base(base):
     assert sorted(kinds_of(far)[:last]) == sorted(kinds_of(held)[:last])
 
 
-@pytest.mark.wide
 @BASES
 @pytest.mark.parametrize("stiffness", ["60 kN/m", "1 GN/m"])
 def test_a_tie_that_is_never_taut_changes_nothing(base, stiffness):

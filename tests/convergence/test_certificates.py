@@ -17,6 +17,8 @@ from benchmarks.certified_scenes import cases
 import rockframe as rf
 from rockframe.simulation.certify.perturbations import cut
 
+pytestmark = pytest.mark.wide
+
 COUNT = 3
 
 

@@ -21,7 +21,10 @@ from unit.motion.test_received import AT2, tarred, zipped
 import rockframe as rf
 from rockframe.errors import RecordError
 
-pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning")
+pytestmark = [
+    pytest.mark.wide,
+    pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning"),
+]
 
 TIMES = float(os.environ.get("ROCKFRAME_FUZZ", "1"))
 LONGEST = 1.0  # s of processor time

@@ -13,7 +13,7 @@ from property.test_energy import energy_scale
 import rockframe as rf
 from rockframe.results.schema import GROUPS
 
-pytestmark = pytest.mark.property
+pytestmark = [pytest.mark.wide, pytest.mark.property]
 
 ALONE = ("rigid", "pads")
 SCENES = (*ALONE, *SOIL_SCENES)

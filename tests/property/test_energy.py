@@ -16,7 +16,7 @@ import rockframe as rf
 from rockframe.errors import ModelWarning
 from rockframe.solve.accuracy import accuracy_of
 
-pytestmark = pytest.mark.property
+pytestmark = [pytest.mark.wide, pytest.mark.property]
 
 FINISHED = {0, 1, 2}
 HARD = {

@@ -11,7 +11,7 @@ from property.scenarios import CASE, GRAVITY, RULES, Scenario, scenarios
 
 import rockframe as rf
 
-pytestmark = pytest.mark.property
+pytestmark = [pytest.mark.wide, pytest.mark.property]
 
 
 # output ------------------------------------------------------------------------------------

@@ -28,7 +28,10 @@ from rockframe.motion import GroundMotion, formats
 if sys.platform != "win32":
     import resource
 
-pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning")
+pytestmark = [
+    pytest.mark.wide,
+    pytest.mark.filterwarnings("ignore::rockframe.errors.RecordWarning"),
+]
 
 TIMES = float(os.environ.get("ROCKFRAME_FUZZ", "1"))
 LONGEST = 1.0  # s of processor time for one file

@@ -34,7 +34,7 @@ from property.test_symmetry import SWAPPED, SWAPS_CORNERS, TRADES_PLACES, TURNS_
 import rockframe as rf
 from rockframe.errors import ModelWarning
 
-pytestmark = pytest.mark.property
+pytestmark = [pytest.mark.wide, pytest.mark.property]
 
 CASE = SoilScenario(**vars(PADS_CASE), firmness=30.0, cap_width=1.3)
 ONE_MODEL = ("soil", "cap and soil", "coupled")

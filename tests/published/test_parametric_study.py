@@ -14,6 +14,8 @@ from pages import said
 
 import rockframe as rf
 
+pytestmark = pytest.mark.wide
+
 RADII = (1, 5, 10)
 SLENDERNESS = (2, 4, 6)
 FREQUENCY_RATIOS = (10, 20, 40)

@@ -30,6 +30,8 @@ from records import record_path
 import rockframe as rf
 from rockframe.errors import ModelWarning
 
+pytestmark = pytest.mark.wide
+
 PRINTED, HONEST = SHAPE_FACTORS
 THETAS = {3: 0.418, 6: 0.219}
 every_shape = pytest.mark.parametrize("shape", SHAPE_FACTORS)

@@ -21,6 +21,8 @@ from rockframe.proof.pads.verdict import way_of
 from rockframe.proof.problem import Undecided
 from rockframe.simulation.plan import plan_run, start_of
 
+pytestmark = pytest.mark.wide
+
 STEP, KNOTS, DIGITS, BITS = 0.01, 32, 50, 106
 COLUMNS, ROUGH_DIGITS, ROUGH_COLUMNS = 12, 18, 5
 TOUCHES, RELAXES, CLEAR, LEAVES = "touches", "relaxes", "clear", "leaves"

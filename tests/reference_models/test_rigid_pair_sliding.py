@@ -6,7 +6,7 @@ from reference_models.rigid_pair.drawing import have_records
 from reference_models.rigid_pair_sliding.compare import compared
 from reference_models.rigid_pair_sliding.drawing import draw, draw_giving
 
-pytestmark = pytest.mark.reference_models
+pytestmark = [pytest.mark.wide, pytest.mark.reference_models]
 
 # on pads and on beds, below and above the rigid base; in 199 a corner that slips parts into a
 # flight, in 283 one parts as the held point below changes

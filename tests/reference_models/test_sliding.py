@@ -12,7 +12,7 @@ from reference_models.sliding import (
     draw_walled_on_base,
 )
 
-pytestmark = [pytest.mark.reference_models, pytest.mark.filterwarnings("ignore")]
+pytestmark = [pytest.mark.wide, pytest.mark.reference_models, pytest.mark.filterwarnings("ignore")]
 
 # on corner and base, with flights, on slopes, let go tilted, and overturning; each takes a second
 SCENES = (2, 4, 8, 11, 15, 21, 33)

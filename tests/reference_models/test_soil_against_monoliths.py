@@ -11,6 +11,8 @@ from reference_models.monoliths import coupled, winkler
 
 import rockframe as rf
 
+pytestmark = pytest.mark.wide
+
 AGREEMENT = 1e-7  # of theta
 TIGHT = {"rtol": 1e-10, "atol": 1e-12}  # leaves the monoliths an error of some 1e-11
 GRAVITY = 9.80665

@@ -20,6 +20,8 @@ from rockframe.solve.accuracy import accuracy_of
 from rockframe.solve.integrate import integrate
 from rockframe.solve.workspace import Status
 
+pytestmark = pytest.mark.wide
+
 STATUE = rf.Block(width="0.5 m", height="1.8 m", mass="900 kg")
 PLINTH = rf.Block(width="0.9 m", height="1 m", mass="2200 kg")
 COLUMN = rf.Block(width="0.5 m", height="3 m", mass="3 t")
@@ -208,7 +210,6 @@ def test_more_links_than_can_be_numbered_are_refused():
         _ = rf.System(column, *[tie] * 8).simulate(duration="0.1 s")
 
 
-@pytest.mark.wide
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize(
     ("number", "ends"),
@@ -240,7 +241,6 @@ def test_changes_of_contact_come_to_an_end(number, ends):
     assert int(found.status) == Status.COMPLETED
 
 
-@pytest.mark.wide
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 def test_a_slip_does_not_begin_against_its_force():
     """A drum, nearly weightless, would slip and stick in turn: it tilts as it begins to slip."""

@@ -9,6 +9,8 @@ from rockframe.dynamics.events import EventKind
 from rockframe.results.points import Placement
 from rockframe.system.geometry import geometry_of
 
+pytestmark = pytest.mark.wide
+
 BLOCK = rf.Block(width="1 m", height="4 m", mass="4 t")
 CAP = rf.CushionCap(width="2 m", height="0.5 m", mass="2 t")
 PLATE = rf.Block(width="2 m", height="0.5 m", mass="2 t")

@@ -16,6 +16,7 @@ from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.study import Study, SweepJob
 
 pytestmark = [
+    pytest.mark.wide,
     pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning"),
     pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning"),
 ]

@@ -12,7 +12,10 @@ from rockframe.simulation.certify.second_look import Look, is_sure
 from rockframe.studies.sweeps import study
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES
 
-pytestmark = pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+pytestmark = [
+    pytest.mark.wide,
+    pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning"),
+]
 
 SYSTEM = rf.System(
     rf.Block.from_size(radius="2.5 m", slenderness=4.5, mass="20 t"),

@@ -13,6 +13,7 @@ from rockframe.studies.sweeps.lanes import FinishedTogether
 from rockframe.studies.sweeps.planning import plan_study
 
 pytestmark = [
+    pytest.mark.wide,
     pytest.mark.skipif(not COMPILED, reason="lanes are compiled"),
     pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning"),
 ]
