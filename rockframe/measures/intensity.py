@@ -94,8 +94,7 @@ def intensity_measures(
     too. Squares and absolute values of a record are summed over its samples by the
     trapezoidal rule. The ground starts from rest and nothing is corrected: an offset of the
     acceleration distorts ``peak_ground_velocity``, and ``peak_ground_displacement`` even more.
-    The measures of the block hold on rigid ground,
-    :eq:`eq-rocking-measures`.
+    The measures of the block hold on rigid ground, :eq:`eq-rocking-measures`.
 
     Examples
     --------
