@@ -30,11 +30,11 @@ from rockframe.many import atan2, hypot, sqrt
 
 HORIZONTAL: Final = 2
 OWN: Final = 2 * DEGREES
-"""Places in the state, see :mod:`rockframe.dynamics.bodies`; the base's own variables are last."""
+"""Indices in the state, see :mod:`rockframe.dynamics.bodies`; from OWN on variables of the base."""
 
 
 class OnePart(NamedTuple):
-    """What a system of one body is made of."""
+    """The data of a system of one body: the body on its base."""
 
     part: OnBase
 
@@ -66,7 +66,7 @@ class Alone(InState, OnePart):
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give how many coordinates move: all, or all but the one that is held."""
+        """Give the number of coordinates that move: all, or all but a held horizontal one."""
         return DEGREES if self.part.is_free(self.part.mode_of(mode)) else HORIZONTAL
 
     @inlined
@@ -76,12 +76,12 @@ class Alone(InState, OnePart):
 
     @inlined
     def relaxation_in(self, mode: int) -> float:
-        """Give the rate at which an end that slides follows the base."""
+        """Give the rate at which a sliding end follows the base [s^-1]."""
         return self.part.relaxation_in(self.part.mode_of(mode))
 
     @inlined
     def own_place(self, k: int) -> int:
-        """Give the place of the variables of the base's own in the state."""
+        """Give the index in the state of the base's own variables."""
         return OWN
 
     @inlined
@@ -124,7 +124,7 @@ class Alone(InState, OnePart):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give kinetic, gravity and elastic energy, and elastic less that at rest."""
+        """Give kinetic, gravity and elastic energy, and the elastic energy less that at rest."""
         body = self.state_of(0, state)
         elastic, change = self.part.elastic_energy(body, self.part.base.read(state, OWN))
         kinetic = self.part.kinetic_energy(self.part.mode_of(mode), body)
@@ -134,7 +134,7 @@ class Alone(InState, OnePart):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion and reactions, :eq:`eq-reactions`, and what the base shows."""
+        """Give motion and reactions, :eq:`eq-reactions`, and the base's columns."""
         standing, body = self.part.mode_of(mode), self.state_of(0, state)
         attitude = self.part.body.attitude(body.rotation)
         shear = slope[HORIZONTAL] + ground.x
@@ -155,12 +155,12 @@ class Alone(InState, OnePart):
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give how the body stands."""
+        """Give contact, held point and sliding of the body in a mode."""
         return self.part.mode_of(mode)
 
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the mode in which the body stands otherwise."""
+        """Give the number of a mode of the body."""
         return self.part.number_of(part)
 
     @kernel
@@ -174,7 +174,7 @@ class Alone(InState, OnePart):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give how the velocities change by an impulse, or as the hold stops a slip."""
+        """Give the changes of velocities by an impulse, or by a hold that stops a slip."""
         attitude = self.part.body.attitude(state[ROTATION])
         return self.part.response_in(self.part.mode_of(mode), attitude, press, moment, slip)
 
@@ -187,14 +187,14 @@ class Alone(InState, OnePart):
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the accelerations of the ends of the base in a mode, upwards."""
+        """Give the upward accelerations of the left and right end of the base in a mode."""
         body, own = self.state_of(0, state), self.part.base.read(state, OWN)
         rates = self.part.rates_in(self.part.mode_of(mode), body, own, ground)
         return self.part.end_rises(body, rates.vertical, rates.rotation)
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the side to which the ground, or the contact, will rotate the body."""
+        """Give the sign of the rotation that the ground, or else the contact, will cause."""
         if ground.x != 0.0:
             return -ground.x
         return self.part.base.tilt(self.part.mode_of(mode).contact)
@@ -210,16 +210,16 @@ def rigid_body(
     small_rotation: bool,
     gravity: float,
 ) -> Body:
-    """Give a body as the equations take it.
+    """Give the body of the equations of motion.
 
     Parameters
     ----------
     left, right : float
-        From the foot of the centre of mass to the ends of the base [m].
+        Horizontal distances from the centre of mass to the ends of the base, upright [m].
     height : float
-        h, of the centre of mass above the base [m].
+        Height h of the centre of mass above the base [m].
     inertia : float
-        I_O over the mass that all is measured by [m^2].
+        I_O over the reference mass, by which all is divided [m^2].
     restraint : int
         A rule of :mod:`rockframe.dynamics.body`; at small rotation the rules coincide.
     small_rotation : bool
@@ -253,13 +253,13 @@ def alone(
     name : str
         Name of the model.
     body : Body
-        Per unit of its own mass.
+        The body, per unit of its own mass.
     base : BaseNumbers
-        Under the body.
+        The base under it.
     mass : float
-        Of the body [kg].
+        Mass of the body [kg].
     rest_rotation : float
-        Of the body at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest` [rad].
+        Rotation of the body at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest` [rad].
 
     Returns
     -------
@@ -271,7 +271,7 @@ def alone(
     fastest = max(vertical, rocking)
     size, rate = radius_of(body), rocking_rate(body)
     sizes = np.array([body.angle, base.settlement, size * body.angle])
-    # how the coordinates answer the rounding of a height
+    # changes of the coordinates by the rounding of a height
     width = 0.5 * (body.left + body.right)
     answers = np.array([width / (body.inertia + body.height**2), 1.0, 1.0])
     return ContactModel(
@@ -300,7 +300,7 @@ def radius_of(body: Body) -> float:
 
 
 def eccentricity_of(body: Body) -> float:
-    """Give how far the centre of mass is to the right of the middle of the base [m]."""
+    """Give the distance of the centre of mass to the right of the middle of the base [m]."""
     return 0.5 * (body.left - body.right)
 
 
@@ -311,22 +311,22 @@ def rocking_rate(body: Body) -> float:
 
 
 def part_tolerance(base: BaseNumbers) -> Vector:
-    """Give the rounding noise of the guards of a body: of both ends, and of the body's own."""
+    """Give the rounding noise of the guards of a body: those of both ends, then its own."""
     return np.concatenate([base.end_tolerance, base.end_tolerance, np.full(BODY_GUARDS, ROUNDING)])
 
 
 def rounding_at(
     size: float, settlement: float, answers: Vector, fastest: float, variables: int
 ) -> Callable[[float], Vector]:
-    """Estimate the rounding noise of everything in the state, by the rotation.
+    """Give a function of the rotation that estimates the rounding noise of each state variable.
 
-    The heights of the base's ends are differences of terms as large as the settlement and
-    the tilt; what the base answers to their rounding moves the body to and fro by as much.
+    The heights of the base's ends are differences of terms as large as the settlement and the
+    tilt; the base reacts to their rounding, and moves the body to and fro by as much.
     """
     all_answers = np.concatenate([answers, fastest * answers, np.zeros(variables)])
 
     def noise(rotation: float) -> Vector:
-        # an error estimate is a small part of what it is made of
+        # an error estimate is a small part of the terms that it is computed from
         return 0.02 * ROUNDING * (settlement + size * abs(rotation)) * all_answers
 
     return noise

@@ -3,7 +3,7 @@
 Along the base everything is linear: the compression u = delta - w of the springs, its rate
 -v, the pressure p = k u - c v and the lever of a point. So each resultant is exact from the
 values at both ends of the bearing part, without a division by the rotation. A place on the
-base is its share of the way from the left end (0) to the right end (1).
+base is a coordinate from 0 at the left end to 1 at the right end.
 """
 
 from typing import Final, NamedTuple
@@ -13,18 +13,17 @@ from rockframe.dynamics.base import SIMULTANEOUS, Base, BaseForce, EndEvent, Gua
 from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import REENGAGEMENT, SEPARATION
 
-# an end of the base
+# contact of an end of the base
 DOWN: Final = 0  # below the level of the unloaded bed
 RAISED: Final = 1
-# Both ends in one integer: left end + 2 * right end.
-# contacts of both ends in one integer: that of the left one in its lowest bit
-LEFT_BIT: Final = 1
-RIGHT_BIT: Final = 1
+# contacts of both ends in one integer: left end + 2 * right end
+LEFT_BIT: Final = 1  # mask of the left end
+RIGHT_BIT: Final = 1  # shift to the right end
 CONTACTS: Final = 4
 
 
 class Ends(NamedTuple):
-    """Compression of the bed under the base's ends, and its rate with opposite sign."""
+    """Compression of the bed under both ends [m]; upward speeds of these [m s^-1]."""
 
     u_left: float
     u_right: float
@@ -52,15 +51,15 @@ def mean_product(f0: float, f1: float, g0: float, g1: float) -> float:
 
 @inlined
 def between(left: float, right: float, place: float) -> float:
-    """Give a linear function of the base at a place."""
+    """Give a function that is linear along the base at a place, from its values at both ends."""
     return left + place * (right - left)
 
 
 @inlined
 def first_place(near: float, far: float) -> float:
-    """Give the place from which on a linear function is positive, seen from its near end.
+    """Give the distance, from the near end, beyond which a linear function is positive.
 
-    Goes on beyond the end, up to one length of the base, so that a step may overshoot
+    As a share of the length of the base. It may be negative, down to -1, as a step may overshoot
     the instant at which the end starts to bear.
     """
     if near < far:
@@ -70,7 +69,7 @@ def first_place(near: float, far: float) -> float:
 
 @inlined
 def compressed_part(left: int, right: int, ends: Ends) -> tuple[float, float]:
-    """Give the places between which the base is down, by its ends."""
+    """Give the places between which the bed is compressed, from the contacts of both ends."""
     if left == RAISED and right == RAISED:
         return 0.0, 0.0
     start = first_place(ends.u_left, ends.u_right) if left == RAISED else 0.0
@@ -80,17 +79,17 @@ def compressed_part(left: int, right: int, ends: Ends) -> tuple[float, float]:
 
 @inlined
 def end_of(u: float) -> int:
-    """Give whether an end is down or raised, by the compression under it."""
+    """Give the contact of an end, DOWN or RAISED, from the compression under it."""
     return DOWN if u > 0.0 else RAISED
 
 
 class BedNumbers(NamedTuple):
     """A bed, per unit length of base and unit mass of the body on it."""
 
-    stiffness: float  # k0/m
-    damping: float  # c0/m
-    settlement: float  # delta
-    width: float  # of the base, B
+    stiffness: float  # k0/m [m^-1 s^-2]
+    damping: float  # c0/m [m^-1 s^-1]
+    settlement: float  # delta [m]
+    width: float  # of the base, B [m]
     by_pressure: bool  # whether tension is cut off as well
 
 
@@ -101,7 +100,7 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def contacts(self) -> int:
-        """Give the number of both ends' contacts."""
+        """Give the number of contacts of both ends together."""
         return CONTACTS
 
     @kernel
@@ -148,9 +147,9 @@ class Bed(Base, BedNumbers):
 
     @inlined
     def force(self, contact: int, line: BaseLine, own: Variables) -> BaseForce:
-        """Give the bed's force, its generalised force on the rotation, and what is dissipated.
+        """Give the bed's force, its generalised force on the rotation, and the dissipated power.
 
-        Where the base is down without bearing, the springs under it feed their own dashpots.
+        Where the bed is compressed without pressing, its springs relax against their own dashpots.
         """
         ends = self.ends(line)
         start, end = self.bearing_part(contact, ends)
@@ -162,7 +161,7 @@ class Bed(Base, BedNumbers):
         l1 = between(line.left_lever, line.right_lever, end)
         length = self.width * (end - start)
         dissipated = self.damping * length * mean_product(v0, v1, v0, v1)
-        # without dashpots all that is down bears
+        # without dashpots all of the compressed part bears
         if self.by_pressure and self.damping > 0.0:
             down, up = compressed_part(
                 end_contact(contact, True), end_contact(contact, False), ends
@@ -174,7 +173,7 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def spring_power(self, start: float, end: float, ends: Ends) -> float:
-        """Give the power that the springs of a part of the bed give away."""
+        """Give the power that the springs release between two places of the bed."""
         u0 = between(ends.u_left, ends.u_right, start)
         u1 = between(ends.u_left, ends.u_right, end)
         v0 = between(ends.v_left, ends.v_right, start)
@@ -183,7 +182,7 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def energy(self, line: BaseLine, own: Variables) -> tuple[float, float]:
-        """Give the energy of the compressed springs, and that less the energy at rest."""
+        """Give the energy of the compressed springs, and the energy less that at rest."""
         ends, delta = self.ends(line), self.settlement
         half = 0.5 * self.stiffness * self.width
         start, end = compressed_part(end_of(ends.u_left), end_of(ends.u_right), ends)
@@ -192,12 +191,12 @@ class Bed(Base, BedNumbers):
         stored = half * (end - start) * mean_product(u0, u1, u0, u1)
         if end - start < 1.0:
             return stored, stored - half * delta * delta
-        # u^2 - delta^2 as a product, to all digits
+        # u^2 - delta^2 as a product, without cancellation
         return stored, half * mean_product(u0 - delta, u1 - delta, u0 + delta, u1 + delta)
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
-        """Give the guard of an end, its level above or below the unloaded bed, and its rate."""
+        """Give the guard of an end, its level below or above the unloaded bed, and its rate."""
         scale = (1.0 if self.is_held(contact, left) else -1.0) / self.settlement
         level = line.left if left else line.right
         speed = line.left_speed if left else line.right_speed
@@ -209,8 +208,7 @@ class Bed(Base, BedNumbers):
     ) -> EndEvent:
         """Give the contact and the event after the guard of an end.
 
-        An end that lands together with the other one, or leaves together with it, takes
-        it along if that moves so, too.
+        Where both ends land, or leave, at the same instant one event switches both.
         """
         ends = self.ends(line)
         end, other = end_contact(contact, left), end_contact(contact, not left)
@@ -226,7 +224,7 @@ class Bed(Base, BedNumbers):
 
     @kernel
     def level(self, left: bool, line: BaseLine, own: Variables) -> float:
-        """Give how much higher than an end the unloaded bed is."""
+        """Give how far below the unloaded bed an end is [m]."""
         return self.settlement - (line.left if left else line.right)
 
     @kernel
@@ -257,6 +255,6 @@ class Bed(Base, BedNumbers):
 
 
 class Rigid(Bed):
-    """A rigid base, in chains of bodies: a bed without forces, whose ends constraints hold."""
+    """A rigid base in a chain of bodies: a bed without forces; constraints hold its ends."""
 
     __slots__ = ()

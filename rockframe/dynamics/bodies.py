@@ -1,7 +1,7 @@
-"""What a system knows of its bodies, and where they stand in the state.
+"""Order of the state of a system of bodies, and the access of events to each body.
 
-Rotation and height of each body in turn, then the horizontal coordinate of each, which a
-restraint may hold; the rates in the same order; then the variables of the bases' own.
+The state has rotation and height of each body in turn, then the horizontal coordinate of each,
+which a restraint may hold; the rates in the same order; then the bases' own variables.
 """
 
 from typing import Final, Protocol
@@ -15,58 +15,58 @@ from rockframe.dynamics.sliding import blend
 ROTATION: Final = 0
 VERTICAL: Final = 1
 BEFORE_HORIZONTAL: Final = 2
-"""Coordinates of each body that stand before the horizontal ones of all bodies."""
+"""Coordinates of each body that come before the horizontal ones of all bodies."""
 DEGREES: Final = 3
 """Coordinates of a body."""
 
 
 class Bodies(Protocol):
-    """What a system of bodies knows of body `k`, and does to it."""
+    """What events need of a system of bodies: access to body `k`, and responses to impulses."""
 
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give how the body stands in a mode."""
+        """Give contact, held point and sliding of body `k` in a mode."""
         ...
 
     def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the mode in which the body stands otherwise."""
+        """Give the system's mode with another mode of body `k`."""
         ...
 
     def state_of(self, k: int, state: Vector) -> BodyState:
-        """Give placement and rates of the body relative to its base."""
+        """Give placement and rates of body `k` relative to its base."""
         ...
 
     def own_place(self, k: int) -> int:
-        """Give the place of the variables of its base's own in the state."""
+        """Give the index in the state of the own variables of the base of body `k`."""
         ...
 
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the horizontal place of its centre of mass, relative to its base."""
+        """Give the horizontal place of the centre of mass of body `k`, relative to its base."""
         ...
 
     def change(self, k: int, rise: float, speed: float, state: Vector) -> None:
-        """Add to its height and to its vertical velocity."""
+        """Add to height and vertical velocity of body `k`."""
         ...
 
     def stand_upright(self, k: int, state: Vector) -> None:
-        """Set its rotation to zero."""
+        """Set the rotation of body `k` to zero."""
         ...
 
     def set_sway(self, k: int, place: float, velocity: float, state: Vector) -> None:
-        """Set its horizontal coordinate and velocity."""
+        """Set horizontal coordinate and velocity of body `k`."""
         ...
 
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give how velocities change by an impulse of its base, or as the hold stops a slip."""
+        """Give changes of velocities by an impulse of a base, or by a hold that stops a slip."""
         ...
 
     def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
-        """Change the velocities."""
+        """Change the velocities by a response."""
         ...
 
     def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
-        """Note the impulse that a body has got from its base, as an end of it landed."""
+        """Record the impulse of a base on body `k` as an end lands."""
         ...
 
     def velocities(self, state: Vector) -> tuple[float, ...] | Vector:
@@ -76,22 +76,22 @@ class Bodies(Protocol):
     def blend_velocities(
         self, before: tuple[float, ...] | Vector, share: float, state: Vector
     ) -> None:
-        """Take back all but a share of what has changed the velocities since."""
+        """Reduce the changes of velocities since `before` to a share of them."""
         ...
 
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the accelerations of the ends of its base in a mode, upwards."""
+        """Give the upward accelerations of the left and right end of the base of body `k`."""
         ...
 
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the side to which it will rotate, upright and at rest."""
+        """Give the sign of the rotation that body `k`, upright and at rest, will begin."""
         ...
 
 
 class InState:
-    """What systems of bodies share: how the bodies stand in the state. A mixin of named tuples."""
+    """Access to the coordinates of bodies in the state. A mixin of named tuples."""
 
     __slots__ = ()
 
@@ -106,7 +106,7 @@ class InState:
 
     @inlined
     def horizontal_of(self, k: int) -> int:
-        """Give the place of the horizontal coordinate of body `k`."""
+        """Give the index in the state of the horizontal coordinate of body `k`."""
         return BEFORE_HORIZONTAL * self.bodies() + k
 
     @inlined
@@ -139,20 +139,20 @@ class InState:
 
     @kernel
     def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
-        """Change the velocities of body `k`, which alone answers."""
+        """Change the velocities of body `k` by a response, in which no other body moves."""
         i = self.coordinates() + BEFORE_HORIZONTAL * k
         state[i + ROTATION] += response.rotation
         state[i + VERTICAL] += response.vertical
 
     @inlined
     def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
-        """Note the impulse of a base on a body that has landed: none has to be taken back here."""
+        """Record the impulse of a base on a body that lands: it is not needed here."""
 
     @kernel
     def blend_velocities(
         self, before: tuple[float, ...] | Vector, share: float, state: Vector
     ) -> None:
-        """Take back all but a share of what has changed the velocities since."""
+        """Reduce the changes of velocities since `before` to a share of them."""
         n = self.coordinates()
         for i in range(n):
             state[n + i] = blend(before[i], state[n + i], share)

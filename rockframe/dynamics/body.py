@@ -1,7 +1,7 @@
 """A rigid body on a base: kinematics of its base line and of its centre of mass.
 
-Equation :eq:`eq-kinematics`. The body need not be symmetric: its centre of mass stands at a
-height h above the base, b_l from its left and b_r from its right end.
+Equation :eq:`eq-kinematics`. The body need not be symmetric: its centre of mass is at a height
+h above the base, b_l from its left and b_r from its right end.
 """
 
 from typing import Final, NamedTuple
@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 from rockframe.compiled import inlined, kernel
 from rockframe.dynamics.trigonometry import sine_cosine
 
-# rules
+# rules of restraint
 BY_CONTACT: Final = 0
 LEADING_CORNER: Final = 1
 CENTRE: Final = 2
@@ -20,13 +20,13 @@ PIVOT_RIGHT: Final = 1
 PIVOT_LEFT: Final = 2
 
 REST_AMPLITUDE: Final = 1e-10
-"""Share of theta below which a rebound is taken for rest. It is far below what any
-accuracy setting resolves, and ends the endless series of ever smaller impacts."""
+"""Amplitude of a rebound over theta below which the body is put to rest [1]. It is far below
+what any accuracy setting resolves, and ends the infinite series of ever smaller impacts."""
 
 
 @kernel
 def leading_pivot(rotation: float, tendency: float) -> int:
-    """Give the pivot of the corner that a body leans to, or tends to."""
+    """Give the pivot of the corner to which a body leans, or else tends to lean."""
     leading = rotation if rotation != 0.0 else tendency
     if leading == 0.0:
         return PIVOT_CENTRE
@@ -37,7 +37,7 @@ def leading_pivot(rotation: float, tendency: float) -> int:
 def pivot_of(
     rule: int, holds_left: bool, holds_right: bool, rotation: float, angular_velocity: float
 ) -> int:
-    """Give the pivot that a rule asks of a body whose base bears somewhere."""
+    """Give the pivot by a rule of restraint, for a body not in flight."""
     if rule == BY_CONTACT:
         if not holds_left:
             return PIVOT_RIGHT
@@ -50,9 +50,9 @@ def pivot_of(
 
 
 class BodyState(NamedTuple):
-    """Placement and rates of a body relative to its base; the centre of mass, from rest.
+    """Rotation [rad], displacements of the centre of mass from rest [m], and rates; on its base.
 
-    The horizontal coordinate is one of its own only while the base does not hold the body.
+    The horizontal coordinate is independent only while no point of the base is held.
     """
 
     rotation: float
@@ -64,7 +64,7 @@ class BodyState(NamedTuple):
 
 
 class Attitude(NamedTuple):
-    """Sine and cosine of a rotation, and h(1 - cos a); or their small-rotation forms."""
+    """Sine and cosine of a rotation, and h(1 - cos a) [m]; or their small-rotation forms."""
 
     sine: float
     cosine: float
@@ -74,8 +74,8 @@ class Attitude(NamedTuple):
 class BaseLine(NamedTuple):
     """Both ends of a base: heights above their places at rest, speeds upwards, levers.
 
-    A lever is the rate of an end's height with the rotation. Guards know the accelerations of
-    the ends, too; forces come before them.
+    A lever is the derivative of an end's height by the rotation. The accelerations are set for
+    guards only: forces are computed before them.
     """
 
     left: float
@@ -98,7 +98,7 @@ def accelerated(line: BaseLine, left: float, right: float) -> BaseLine:
 
 
 class Reach(NamedTuple):
-    """First and second derivative of the centre's horizontal place by the rotation."""
+    """Derivatives of the centre of mass's horizontal place x by the rotation a [m]."""
 
     rate: float  # dx/da
     bend: float  # d2x/da2
@@ -112,7 +112,7 @@ class Body(NamedTuple):
     right: float  # b_r
     inertia: float  # I_O/m
     gravity: float  # g
-    angle: float  # theta, which rotations are measured by
+    angle: float  # theta, the scale of rotations
     restraint: int  # a rule of rockframe.dynamics.body
     small: bool  # whether the kinematics are expanded to second order in the rotation
 
@@ -122,14 +122,14 @@ class Body(NamedTuple):
         if self.small:
             return Attitude(rotation, 1.0, 0.5 * self.height * rotation * rotation)
         sine, cosine = sine_cosine(rotation)
-        # sin^2/(1 + cos) keeps its digits at small rotation; past a right angle 1 - cos does
+        # sin^2/(1 + cos) has no cancellation at small rotation, 1 - cos none past a right angle
         if cosine > 0.0:
             return Attitude(sine, cosine, self.height * sine * sine / (1.0 + cosine))
         return Attitude(sine, cosine, self.height * (1.0 - cosine))
 
     @inlined
     def base_line(self, state: BodyState, attitude: Attitude) -> BaseLine:
-        """Give the ends of the base."""
+        """Give heights, speeds and levers of both ends of the base."""
         middle = state.vertical + attitude.rise
         swing = self.height * attitude.sine
         left = swing + self.left * attitude.cosine
@@ -147,7 +147,7 @@ class Body(NamedTuple):
 
     @kernel
     def base_line_at(self, state: BodyState) -> BaseLine:
-        """Give the ends of the base of a body whose attitude is not known yet."""
+        """Give the same as `base_line`, with the attitude computed from the state."""
         return self.base_line(state, self.attitude(state.rotation))
 
     @inlined
@@ -176,7 +176,7 @@ class Body(NamedTuple):
 
     @inlined
     def pin(self, pivot: int) -> float:
-        """Give e, the held point, from beneath the centre of mass to the right."""
+        """Give e, the held point to the right of the centre of mass, upright [m]."""
         if pivot == PIVOT_RIGHT:
             return self.right
         if pivot == PIVOT_LEFT:
@@ -185,7 +185,7 @@ class Body(NamedTuple):
 
     @inlined
     def reach(self, pin: float, attitude: Attitude) -> Reach:
-        """Give how the centre of mass moves horizontally about the held point."""
+        """Give dx/da and d2x/da2 of the centre of mass about the held point."""
         if self.small:
             return Reach(self.height, 0.0)
         return Reach(
@@ -195,20 +195,20 @@ class Body(NamedTuple):
 
     @inlined
     def about_pin(self, pin: float, attitude: Attitude) -> float:
-        """Give h sin a - e cos a, the centre of mass seen from the held point."""
+        """Give h sin a - e cos a, the centre of mass to the right of the held point [m]."""
         return self.height * attitude.sine - pin * attitude.cosine
 
     @kernel
     def size(self) -> float:
-        """Give half the width and the height together, a length that levers are measured by."""
+        """Give half the width plus the height of the centre of mass, a scale of levers [m]."""
         return 0.5 * (self.left + self.right) + self.height
 
     @inlined
     def least_rise(self) -> float:
-        """Give the height to which an end must rise to count as one that has left."""
+        """Give the height above which a rise of an end counts as one [m]."""
         return REST_AMPLITUDE * self.angle * self.size()
 
     @inlined
     def returns_at_once(self, speed: float, fall: float) -> bool:
-        """Whether an end that rises so fast comes back before it counts as one that has left."""
+        """Whether an end with this upward speed and downward acceleration rises negligibly."""
         return fall > 0.0 and speed * speed < 2.0 * fall * self.least_rise()

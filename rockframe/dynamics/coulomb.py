@@ -1,4 +1,4 @@
-"""The impulse of an impact with dry friction, :eq:`eq-slide-impact`, whatever it acts on."""
+"""Impulses along and normal to a base in an impact with dry friction, :eq:`eq-slide-impact`."""
 
 import math
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from rockframe.compiled import inlined
 
 
 class ImpulseResponse(NamedTuple):
-    """What unit impulses do to the velocities of the point that strikes."""
+    """Changes of the striking point's velocities by unit impulses."""
 
     normal_by_normal: float
     normal_by_along: float
@@ -19,11 +19,11 @@ class ImpulseResponse(NamedTuple):
 def coulomb_impulse(
     answers: ImpulseResponse, slip: float, sinking: float, friction: float
 ) -> tuple[float, float]:
-    """Give the impulses along and normal to the base that take a normal velocity away.
+    """Give the impulses along and normal to the base that change the normal velocity by -`sinking`.
 
-    The normal impulse grows until the velocity has changed by the opposite of `sinking`, which is
-    negative; that along the base opposes the slip by `friction` times the normal one. A slip may
-    end, and turn round, within the impact. An infinite coefficient holds the point that strikes.
+    `sinking` is negative. The normal impulse grows until this change is reached; friction opposes
+    the slip by `friction` times the normal impulse. The slip may end, and reverse, within the
+    impact. An infinite coefficient holds the point that strikes.
     """
     normal_by_normal, normal_by_along, along_by_normal, along_by_along = answers
     both = normal_by_normal * along_by_along - normal_by_along * along_by_normal
@@ -41,7 +41,7 @@ def coulomb_impulse(
             slip, sinking = 0.0, sinking + slowing * stops
     pushed = (slip * normal_by_along - sinking * along_by_along) / both
     held = -(slip + along_by_normal * pushed) / along_by_along
-    if friction == math.inf and pushed < 0.0:  # what stops the slip throws the point up
+    if friction == math.inf and pushed < 0.0:  # the impulse that stops the slip throws the point up
         return -slip / along_by_along, 0.0
     if friction < math.inf and abs(held) > friction * pushed:
         ratio = math.copysign(friction, held)

@@ -1,8 +1,8 @@
-"""Equilibrium of bodies on one another: Newton's steps, followed while loads or a rotation grow.
+"""Equilibrium of bodies on one another by Newton's method, continued as loads or a rotation grow.
 
-Unknown are coordinates, forces of links and couples that hold rotations, :eq:`eq-static-steps`:
-the force of a link that is as good as rigid comes from the balance of the bodies, and not from an
-elongation that is lost in rounding.
+Unknowns are coordinates, forces of links and couples that hold rotations, :eq:`eq-static-steps`:
+the force of a practically rigid link follows from the equilibrium of the bodies, not from its
+elongation, which is lost in rounding.
 """
 
 import math
@@ -22,49 +22,49 @@ if TYPE_CHECKING:
     from rockframe.dynamics.tied import Tied
 
 TRIES: Final = 40
-"""Newton's steps after which an equilibrium is not found."""
+"""Most steps of Newton's method."""
 CLOSE: Final = 1e-12
-"""Last change of a coordinate, over itself and its size."""
+"""Change of a coordinate in the last step, over the sum of its value and its size [1]."""
 NEAR: Final = 0.05
-"""Change of a rotation from what is foreseen, and by Newton's steps, that is too large [rad]."""
+"""Largest difference of a rotation from its prediction, and largest step of Newton's [rad]."""
 LEAST_STEP: Final = 1e-3
-"""Least share of the path, or of the size of what changes, by which equilibrium is followed."""
+"""Least step along the path, over its length, or over the size of what changes [1]."""
 LEAST_SHARE: Final = 2.0**-30
-"""Of the stretch within a step of a link that has not answered."""
+"""Least share of a step's elongation that a link without stiffness so far takes [1]."""
 ANSWERED: Final = 1e3
-"""Last change of a link's force over the weight, over that of coordinates over their sizes."""
+"""Last change of a link's force over the weight, allowed as a multiple of CLOSE [1]."""
 FAR: Final = 1e9
-"""Of its size, a coordinate's change that leads nowhere."""
+"""Change of a coordinate over its size at which a step has failed [1]."""
 RETURNS: Final = 0.25
-"""Share of the step before that a step takes back, from which on steps are halved."""
+"""Share of the last step that a step must undo for steps to be halved [1]."""
 LEAST_DAMPED: Final = 2.0**-6
-"""Share of a step to which they are halved."""
+"""Least share of a step after halving [1]."""
 SUDDEN: Final = 0.25
-"""Change of a force within a step that is too large where a link has not answered, over weight."""
+"""Largest change of force in a step of a link without stiffness so far, over the weight [1]."""
 SECANT: Final = ((1.0, 0.5),)
-"""Likewise to the second order, which is as good for a step of Newton's."""
+"""Stencil of a first derivative of second order, which is enough for a step of Newton's."""
 
 
 class HeldBodies(NamedTuple):
     """Bodies under their loads, and rotations that couples hold."""
 
     chain: "StandingChain"
-    sums: Matrix  # which rotations on bases each of those is the sum of
+    sums: Matrix  # weights of the rotations on bases in each rotation that is held
     rotations: Vector
 
 
 class Balance(NamedTuple):
-    """Rotations of bodies, from the top down, what their bases carry and how links answer."""
+    """An equilibrium: rotations of bodies, from the top down, forces of bases and of links."""
 
     rotations: Vector
-    heights: Vector  # where a base carries nothing
-    presses: Vector
-    stretches: Vector  # of links, at which their laws give their forces
-    pulls: Matrix  # to the right and up
+    heights: Vector  # used where a base carries nothing
+    presses: Vector  # normal forces of bases
+    stretches: Vector  # elongations of links at which their laws give their forces
+    pulls: Matrix  # forces of links, to the right and up
 
     @classmethod
     def of(cls, chain: "StandingChain", stands: "Sequence[Stand]") -> "Balance":
-        """Give that of bodies where they stand."""
+        """Give the forces and places of bodies as they stand."""
         tied = chain.tied(stands)
         return cls(
             np.array([one.state.rotation for one in stands]),
@@ -83,7 +83,7 @@ class Path(NamedTuple):
     before: "tuple[float, Balance] | None" = None
 
     def foreseen(self, at: float) -> Balance:
-        """Give the equilibrium further on as if the path were straight."""
+        """Give the equilibrium further on by linear extrapolation."""
         if self.before is None:
             return self.place
         share = (at - self.at) / (self.at - self.before[0])
@@ -96,7 +96,7 @@ def followed(
 ) -> Path | None:
     """Follow a stable equilibrium along a path; None where it ends.
 
-    Ends of bases part within about a `size` of the path.
+    `size` is the length of the path within which, about, an end of a base lifts off.
     """
     step = way = to - path.at
     least_to_break = LEAST_STEP * abs(way)
@@ -107,7 +107,7 @@ def followed(
         found = balanced(bodies, guess)
         if found is not None and _greatest(found.rotations - guess.rotations) > NEAR:
             found = None
-        # without a link that would have held the bodies may be in balance, too
+        # with a link broken that in truth holds the bodies may be in equilibrium, too
         breaks = found is not None and _breaks(bodies.chain, path.place, found)
         if found is None or (breaks and abs(step) >= least_to_break):
             if abs(step) < least:
@@ -123,7 +123,7 @@ def followed(
 def balanced(held: HeldBodies, guess: Balance) -> Balance | None:
     """Give a stable equilibrium near a guess, by Newton's steps.
 
-    Heights follow from what bases carry: contact that ends within a step leads no step astray.
+    Heights follow from the forces of bases, so that a loss of contact within a step does no harm.
     """
     place, stands = guess, held.chain.stands_at(guess)
     damped, before = 1.0, np.zeros(2 * len(guess.rotations))
@@ -133,7 +133,7 @@ def balanced(held: HeldBodies, guess: Balance) -> Balance | None:
             return None
         if now.is_last and count == 0:
             return guess if now.is_stable() else None
-        # contacts or links that take turns would lead to and fro
+        # alternating contacts or links would make the steps oscillate
         returns = now.move @ before < -RETURNS * (before @ before)
         damped = max(0.5 * damped, LEAST_DAMPED) if returns else min(1.0, 2.0 * damped)
         before = now.move
@@ -150,7 +150,7 @@ def of_loads(
     of_links: "Callable[[Sequence[Stand]], Vector]",
     stencil: Sequence[tuple[float, float]] = STENCIL,
 ) -> Matrix:  # fmt: skip
-    """Give minus the changes of what weights and links do, with coordinates."""
+    """Give minus the derivatives of the generalised forces of weights and links."""
     found = np.zeros((2 * len(stands), 2 * len(stands)))
     for at, size in enumerate(chain.sizes):
         step = STEP * size
@@ -166,7 +166,7 @@ def of_loads(
 def of_bases(
     chain: "StandingChain", stands: "Sequence[Stand]", *, from_rest: bool = False
 ) -> Matrix:
-    """Give minus the changes of what bases do with coordinates; of rigid ones there are none.
+    """Give minus the derivatives of the generalised forces of bases, zero for rigid ones.
 
     With loads that grow `from_rest`, variables of a base's own follow them.
     """
@@ -186,21 +186,21 @@ def _breaks(chain: "StandingChain", before: Balance, after: Balance) -> bool:
 
 
 def _greatest(values: Vector) -> float:
-    """Give the greatest size."""
+    """Give the greatest absolute value."""
     return float(np.abs(values).max())
 
 
 class _Answer(NamedTuple):
-    """A direction in which a link answers to how its point moves; its force is unknown."""
+    """A direction in which a link has stiffness, so that its force is an unknown."""
 
     link: int
     direction: Vector
     compliance: float
-    lack: float  # of its force to that of its law, as an elongation
+    lack: float  # difference of its force from that of its law, as an elongation
 
 
 class _Step:
-    """A step of Newton's from where bodies stand, :eq:`eq-static-steps`."""
+    """One step of Newton's method from a given place, :eq:`eq-static-steps`."""
 
     def __init__(self, held: HeldBodies, stands: "Sequence[Stand]", place: Balance) -> None:
         self.held, self.chain, self.stands, self.place = held, held.chain, stands, place
@@ -210,7 +210,7 @@ class _Step:
         self.pulls = place.pulls.copy()
         each = enumerate(self.tied)
         self.answers = [one for i, tied in each for one in self._answers_of(i, tied)]
-        # how coordinates go with those that are free, over the sizes of these
+        # derivatives of coordinates by the free ones, over the sizes of these
         self.following = held.chain.following(stands) * self.sizes
         self.free = self.following.any(axis=0)
         self.following = self.following[:, self.free]
@@ -226,9 +226,9 @@ class _Step:
             self._link_moves((held.chain.weight * found[self.free.sum() :]).tolist())
 
     def _link_moves(self, forces: Sequence[float]) -> None:
-        """Tell how links go on, and whether nothing is left to be found."""
+        """Set the changes of links in this step, and whether it is the last one."""
         allowed = CLOSE * (np.abs(self.coordinates) + self.sizes)
-        # no rotation is known closer than the greatest one with which it has a sum
+        # rotations are added: none is known better than the rounding of the greatest one
         known = ROUNDING * _greatest(self.coordinates[::2])
         allowed += known * self.sizes / np.repeat(self.sizes[::2], 2)
         self.is_last = bool((np.abs(self.move) <= allowed).all())
@@ -249,9 +249,9 @@ class _Step:
     def _stretched(
         self, link: "ChainLink", tied: "Tied", i: int, rounding: float
     ) -> tuple[float, bool]:
-        """Give how a link's stretch goes on, and whether its force is then the one foreseen.
+        """Give the change of a link's elongation, and whether its force is then the predicted one.
 
-        Where it begins to answer it goes on by a little at first.
+        Where the link only begins to have stiffness the change is kept small.
         """
         share, stretch, more = 1.0, float(self.place.stretches[i]), self.more_stretch[i]
 
@@ -268,7 +268,7 @@ class _Step:
         return share * more, as_foreseen
 
     def ahead(self, share: float) -> Balance:
-        """Give where a share of the step leads."""
+        """Give the place after a share of the step."""
         there = self.coordinates + share * self.move
         presses = np.array([one.press for one in self.stands])
         presses -= share * (self.of_bases @ self.move)[1::2]
@@ -277,7 +277,7 @@ class _Step:
         return Balance(there[::2], there[1::2], presses, stretches, pulls)
 
     def _answers_of(self, i: int, tied: "Tied") -> list[_Answer]:
-        """Give the directions in which a link answers; else its force is that of its law."""
+        """Give the directions in which a link has stiffness; in others its law gives its force."""
         force, hardness = self.chain.pull * tied.force, self.chain.pull * tied.stiffness
         along, pull = tied.direction, self.pulls[i].copy()
         self.pulls[i] = force * along
@@ -292,7 +292,7 @@ class _Step:
             tension = float(pull @ along)
             self.pulls[i] = tension * along
             found.append(_Answer(i, along, 1.0 / hardness, (force - tension) / hardness))
-        if force > 0.0:  # the direction answers, too
+        if force > 0.0:  # a taut link also has stiffness across
             across = np.array([-along[1], along[0]])
             beside, compliance = float(pull @ across), math.hypot(*tied.moved) / force
             self.pulls[i] += beside * across
@@ -300,7 +300,7 @@ class _Step:
         return found
 
     def _loads(self, stands: "Sequence[Stand]") -> Vector:
-        """Give the generalised forces of links that keep their force, as bodies move."""
+        """Give the generalised forces of links, of fixed sizes, as bodies move."""
         found = np.zeros(2 * len(stands))
         points = self.chain.reached(stands)
         for pull, here, there in zip(self.pulls, self.tied, points, strict=True):
@@ -311,7 +311,7 @@ class _Step:
         return found
 
     def _equations(self) -> tuple[Matrix, Vector]:
-        """Give the equations, symmetrical and over the sizes of what is in them."""
+        """Give matrix and right-hand side of the equations, symmetrical and non-dimensional."""
         chain, weight, free, sizes = self.chain, self.chain.weight, self.free, self.sizes
         energy = weight * sizes[1]
         forces = chain.loads(self.stands, self._loads(self.stands))
@@ -336,5 +336,5 @@ class _Step:
         return matrix, np.array([*(sizes * forces / energy)[free], *lacks, *off])
 
     def is_stable(self) -> bool:
-        """Whether bodies come back: as many positive eigenvalues as free coordinates."""
+        """Whether the equilibrium is stable: as many positive eigenvalues as free coordinates."""
         return bool((np.linalg.eigvalsh(self.matrix) > 0.0).sum() == self.free.sum())

@@ -41,7 +41,7 @@ class EventKind(IntEnum):
 
 
 class LinkState(IntEnum):
-    """How a restrainer is; one that yields as it is pressed is `PRESSED`."""
+    """State of a restrainer; `PRESSED` is one that yields in compression."""
 
     SLACK = 0
     TAUT = 1
@@ -55,7 +55,7 @@ LEFT: Final = int(ContactState.LEFT)
 RIGHT: Final = int(ContactState.RIGHT)
 FLIGHT: Final = int(ContactState.FLIGHT)
 
-SILENT: Final = 0  # a change that users are not shown
+SILENT: Final = 0  # a change that is not reported to users
 SEPARATION: Final = int(EventKind.SEPARATION)
 IMPACT: Final = int(EventKind.IMPACT)
 REENGAGEMENT: Final = int(EventKind.REENGAGEMENT)

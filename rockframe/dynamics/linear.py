@@ -1,7 +1,7 @@
 """Small motion of bodies on one another about rest: M q'' + C q' + K q = 0.
 
-The forces of the bases are differentiated in the contacts that they are in, as the equations of
-motion take them, and so is what the weights do.
+K and C are derivatives of the forces of bases, links and weights in the equations of motion, for
+the contacts at rest.
 """
 
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from rockframe.dynamics.trigonometry import sine_cosine
 
 
 class Linear(NamedTuple):
-    """By rotation and height of each body on its base, from the top down; per unit mass."""
+    """Matrices for rotation and height of each body on its base, top down, per unit mass."""
 
     mass: Matrix
     damping: Matrix
@@ -24,7 +24,7 @@ class Linear(NamedTuple):
 
 
 def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
-    """Give small motion about rest."""
+    """Give the matrices of small motion about rest."""
     size = 2 * len(stands)
     damping = np.zeros((size, size))
     ties = chain.tied(stands)
@@ -40,7 +40,7 @@ def linear(chain: StandingChain, stands: list[Stand]) -> Linear:
 
 
 def _mass(chain: StandingChain, stands: list[Stand]) -> Matrix:
-    """Give the mass matrix: all that stands on a base moves with its body."""
+    """Give the mass matrix: with a body all bodies above it move."""
     size = 2 * len(stands)
     ways = np.zeros((len(stands), 3, size))  # of each body: to the right, up, rotation
     places, place = np.zeros((len(stands), 2)), np.zeros(2)

@@ -1,9 +1,9 @@
-"""What pulls two points together: a law, given once and used by every link that follows it.
+"""Force laws of links between two points: ties, walls and loads, and how to write another one.
 
-A link knows itself where its points are and how they move, :eq:`eq-link`. A law says how it
-pulls. It is a named tuple of numbers per unit mass with some of the methods of
-:class:`LinkLaw`; :func:`link_law` gives it the others. It may have **states**, such as slack
-and taut, of whose end its guards tell, and **variables** of its own.
+Elongation and rate of a link follow from its points, :eq:`eq-link`; its law gives the force. A law
+is a named tuple of numbers per unit mass with some of the methods of :class:`LinkLaw`;
+:func:`link_law` gives it the others. It may have **states**, such as slack and taut, which its
+guards end, and **variables** of its own.
 """
 
 import math
@@ -27,17 +27,17 @@ Law = TypeVar("Law")
 NEEDED: Final = ("force", "energy")
 """Methods that a law must give."""
 INLINED: Final = ("force", "power", "idles", "with_numbers")
-"""Those that are compiled into what calls them."""
+"""Methods that are compiled into their callers."""
 GUARDS: Final = 2
 """Guards of every link; a law may need fewer."""
 
 
 class Stretch(NamedTuple):
-    """How a link is stretched, from the geometry in which it was given."""
+    """Elongation of a link from the geometry in which it was given [m], and its rates."""
 
     elongation: float
     rate: float  # its rate
-    acceleration: float  # that of the rate; only guards know it
+    acceleration: float  # rate of the rate, where guards are evaluated; else 0
     given: float  # length in the geometry in which it was given
     noise: float  # rounding of the elongation
 
@@ -46,8 +46,8 @@ class LinkEvent(NamedTuple):
     """What happens to a link as a guard falls through zero."""
 
     state: int
-    event: int  # its kind; 0 for one that users are not shown
-    lost: float  # energy
+    event: int  # its kind; 0 for one that is not reported to users
+    lost: float  # energy lost in the event, per unit mass
 
 
 class LinkLaw:
@@ -68,7 +68,7 @@ class LinkLaw:
 
     @inlined
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give the power that is dissipated."""
+        """Give the dissipated power."""
         return 0.0
 
     @inlined
@@ -78,7 +78,7 @@ class LinkLaw:
 
     @kernel
     def rates(self, state: int, stretch: Stretch, own: Vector, out: Vector) -> None:
-        """Write the rates of the variables; unless given they change at events alone."""
+        """Write the rates of the variables; by default they change at events only."""
         for i in range(self.variables()):
             out[i] = 0.0
 
@@ -112,16 +112,16 @@ class LinkLaw:
 
     @inlined
     def idles(self, state: int) -> bool:
-        """Whether it does nothing in a state, however it is stretched.
+        """Whether the link has no force in a state, however it is stretched.
 
-        It stores and dissipates nothing then, its variables stay, and its guards need no
-        acceleration.
+        Then it stores and dissipates nothing, its variables do not change, and its guards need
+        no acceleration.
         """
         return False
 
     @inlined
     def number_count(self) -> int:
-        """Give how many numbers it has."""
+        """Give the number of the law's numbers."""
         return len(self)  # type: ignore[arg-type]
 
     @inlined
@@ -166,7 +166,7 @@ def link_law(law: type[Law]) -> type[Law]:
 
 @link_law
 class SteadyForce(NamedTuple):
-    """A force that stays as it is, along its direction: its energy is the work against it."""
+    """A constant force along a fixed direction; its energy is the work done against it."""
 
     size: float  # per unit mass
 
@@ -179,28 +179,28 @@ class SteadyForce(NamedTuple):
         return self.size * stretch.elongation
 
 
-# states of a tie; what a tie that pushes has in place of slack is yielding as it is pressed
+# states of a tie; a tie that pushes has, in place of slack, yielding in compression
 SLACK: Final = 0
 TAUT: Final = 1
 YIELDS: Final = 2
 BROKEN: Final = 3
 YIELDS_PRESSED: Final = SLACK
-# what users see of the latter, beside the others
+# its number in the results, which differs from that of slack
 SHOWN_PRESSED: Final = 4
 
 LOWER: Final = 0
-"""The guard of the end of a state by shortening, or by its reversal."""
+"""Guard of the end of a state by shortening, or by reversal."""
 UPPER: Final = 1
-"""That of its end by lengthening."""
+"""Guard of the end of a state by lengthening."""
 CLEAR: Final = 16.0
-"""Roundings of the elongation by which a state lasts beyond its end, so that it is left once."""
+"""Margin of a state beyond its end, in roundings of the elongation: no switch to and fro."""
 TAUT_NOISE: Final = 1e3
-"""Roundings of the elongation within which a tie is taut where a run starts."""
+"""At the start a tie is taut if it is slack by less than this many roundings of elongation."""
 
 
 @link_law
 class Bumper(NamedTuple):
-    """A spring beside a dashpot behind a gap, which press while they are touched."""
+    """A spring and a dashpot in parallel behind a gap, which act only in contact."""
 
     stiffness: float  # k/m
     damping: float  # c/m
@@ -218,7 +218,7 @@ class Bumper(NamedTuple):
         return 0.5 * self.stiffness * x * x if state != SLACK else 0.0
 
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give what the dashpot dissipates."""
+        """Give the power that the dashpot dissipates."""
         return self.damping * stretch.rate * stretch.rate if state != SLACK else 0.0
 
     def states(self) -> int:
@@ -226,11 +226,11 @@ class Bumper(NamedTuple):
         return 2
 
     def starting(self, stretch: Stretch, own: Vector) -> int:
-        """Give the state by where the point is."""
+        """Give the state at the start: touched if the gap is closed."""
         return TAUT if stretch.elongation - self.gap > TAUT_NOISE * stretch.noise else SLACK
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Give how far the point is from the end of the state."""
+        """Give the distance of the point from the end of the state, and its rate."""
         x = stretch.elongation - self.gap
         if state == SLACK and which == UPPER:
             return -x, -stretch.rate
@@ -255,7 +255,7 @@ class Bumper(NamedTuple):
 
 @dataclass(frozen=True)
 class LinkNumbers:
-    """A law as the equations take it, and what a model must know of it beforehand.
+    """A law of a link, with bounds and sizes that a model needs before the run.
 
     Parameters
     ----------
@@ -277,15 +277,15 @@ class LinkNumbers:
 class Tie(NamedTuple):
     """A spring that pulls, yields or breaks, beside a dashpot, :eq:`eq-tie`, :eq:`eq-tendon`.
 
-    Its variable is the elongation that yielding has left.
+    Its variable is the permanent elongation by yielding.
     """
 
     stiffness: float  # k/m
     damping: float  # c/m
     free: float  # elongation at which it becomes taut
-    most: float  # stretch of the spring at its strength
+    most: float  # elongation of the spring at its strength
     brittle: float  # 1 where it breaks then, 0 where it yields
-    pushes: float  # 1 where it also resists being pressed
+    pushes: float  # 1 where it also resists compression
 
     def force(self, state: int, stretch: Stretch, own: Vector) -> float:
         """Give k x + c l'; k x is the strength while it yields, and zero while it is slack."""
@@ -310,7 +310,7 @@ class Tie(NamedTuple):
         return 0.5 * self.stiffness * x * x
 
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give what dashpot and yielding dissipate."""
+        """Give the power that dashpot and yielding dissipate."""
         if state == BROKEN:
             return 0.0
         lost = self.damping * stretch.rate * stretch.rate
@@ -321,7 +321,7 @@ class Tie(NamedTuple):
         return lost
 
     def variables(self) -> int:
-        """Give 1: the elongation that is left."""
+        """Give 1: the permanent elongation."""
         return 1
 
     def states(self) -> int:
@@ -347,7 +347,7 @@ class Tie(NamedTuple):
         return found
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Give how far the stretch is from where the state ends, or the rate that must not turn."""
+        """Give the elongation left until the state ends, or the rate that must not reverse."""
         x, sign = stretch.elongation - self.free - own[0], 1.0
         value, rate = 1.0, 0.0
         if which == UPPER:
@@ -357,7 +357,7 @@ class Tie(NamedTuple):
         elif state == TAUT and self.pushes != 0.0:
             value = x + self.most
         elif state == TAUT:
-            # one that has no length where it is unstretched never hangs slack
+            # a tie without unstretched length never becomes slack
             has_length = stretch.given + self.free + own[0] > stretch.noise
             value = x + CLEAR * stretch.noise if has_length else math.inf
         elif state == YIELDS and which == LOWER:
@@ -374,12 +374,12 @@ class Tie(NamedTuple):
         return value, rate
 
     def turning(self, sign: float, stretch: Stretch) -> tuple[float, float]:
-        """Give the rate that must not turn as a length, which is what guards have noise of."""
+        """Give the rate that must not reverse, times a time: guards of links are lengths."""
         time = sign / math.sqrt(self.stiffness)
         return time * stretch.rate, time * stretch.acceleration
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
-        """Give the state after the end of one; what a tie that breaks has stored is lost."""
+        """Give the next state; the stored energy of a tie that breaks is lost."""
         x = stretch.elongation - self.free
         if state == YIELDS:
             own[0] = x - self.most + CLEAR * stretch.noise

@@ -1,8 +1,8 @@
-"""A body and the base that it stands on: how it moves, and when that changes.
+"""A body on its base: equation of motion, guards, and response to impulses.
 
 One equation of motion, :eq:`eq-two-spring`, serves all contact states and all bases: the
-paper's Eqs. (12), (15), (18) and (19), corrected, are its special cases. What happens at
-events stands in :mod:`rockframe.dynamics.switching`. All quantities per unit mass.
+paper's Eqs. (12), (15), (18) and (19), corrected, are its special cases. Events are
+carried out in :mod:`rockframe.dynamics.switching`. All quantities per unit mass.
 """
 
 import math
@@ -26,25 +26,25 @@ from rockframe.dynamics.protocol import Ground
 from rockframe.dynamics.sliding import NO_LEVER
 
 # guards of a body, behind those of both ends of its base
-HOLD: Final = 0  # of an end that slides: the force that keeps it at its level
-SLIP: Final = 1  # of its slip
-PIVOT: Final = 2  # of the restraint rule
+HOLD: Final = 0  # of a sliding end: the force of the hold that keeps it at its level
+SLIP: Final = 1  # of a sliding end: its slip
+PIVOT: Final = 2  # of the rule of restraint: change of the held corner
 BODY_GUARDS: Final = 3
 
-# a mode as a whole number: the pivot in its lowest bits, whether an end slides, the contact
-PIVOT_BITS: Final = 3
-SLIDES: Final = 4
-CONTACT_BIT: Final = 3
+# a mode as an integer: the pivot in its lowest bits, then whether an end slides, then the contact
+PIVOT_BITS: Final = 3  # mask of the pivot
+SLIDES: Final = 4  # bit of sliding
+CONTACT_BIT: Final = 3  # shift to the contact
 STANDINGS: Final = 1 << CONTACT_BIT
 """Modes of each contact."""
 
 
 class Mode(NamedTuple):
-    """How a body stands on its base."""
+    """Mode of a body on its base."""
 
-    contact: int  # of the base
-    pivot: int  # the point that is held, or would be if nothing slid or flew
-    slides: bool  # whether the end that touches slides
+    contact: int  # number of the base's contact state
+    pivot: int  # the held point, or the one that would be held without sliding or flight
+    slides: bool  # whether the end in contact slides
 
 
 class Rates(NamedTuple):
@@ -59,16 +59,16 @@ class Rates(NamedTuple):
 
 
 class VelocityChange(NamedTuple):
-    """Changes of a body's velocities by impulses, and the impulse of its restraint."""
+    """Changes of a body's velocities by impulses, and the horizontal impulse of its restraint."""
 
     rotation: float
     vertical: float
     restraint: float
-    others: tuple[float, ...]  # changes of all velocities, where other bodies answer, too
+    others: tuple[float, ...]  # changes of all velocities, where other bodies respond, too
 
 
 class SlidingGuards(NamedTuple):
-    """Guards of an end that slides: of its hold, of its slip, and the rate of the latter."""
+    """Guards of a sliding end: of its hold and of its slip, and the rate of the slip's guard."""
 
     hold: float
     slip: float
@@ -76,7 +76,7 @@ class SlidingGuards(NamedTuple):
 
 
 IDLE: Final = SlidingGuards(1.0, 1.0, 0.0)
-"""Where no end slides."""
+"""The guards where no end slides."""
 
 
 class OnBase(NamedTuple):
@@ -87,7 +87,7 @@ class OnBase(NamedTuple):
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes, of which some have no meaning."""
+        """Give the number of modes; some of these numbers do not occur."""
         return STANDINGS * self.base.contacts()
 
     @kernel
@@ -112,7 +112,7 @@ class OnBase(NamedTuple):
 
     @inlined
     def is_free(self, mode: Mode) -> bool:
-        """Whether nothing holds the body horizontally."""
+        """Whether no point of the base is held horizontally."""
         return mode.slides or self.flies(mode.contact)
 
     @inlined
@@ -127,7 +127,7 @@ class OnBase(NamedTuple):
 
     @inlined
     def relaxation_in(self, mode: Mode) -> float:
-        """Give the rate at which an end that slides follows the base, 0 where none does."""
+        """Give the rate at which a sliding end follows the base, 0 where none slides [s^-1]."""
         return self.base.following_rate() if mode.slides else 0.0
 
     @kernel
@@ -145,9 +145,9 @@ class OnBase(NamedTuple):
         return Mode(contact, pivot, False)
 
     def starting_pin(self, mode: Mode, state: BodyState) -> float:
-        """Give the point of the base that starts where it is at rest, right of the middle.
+        """Give the point of the base that starts at its place at rest, as `Body.pin` [m].
 
-        That which is held; in flight the one that the rule would hold where both ends bear.
+        It is the held point; in flight the one that the rule would hold if both ends were to bear.
         """
         pivot = mode.pivot
         if self.flies(mode.contact):
@@ -157,14 +157,14 @@ class OnBase(NamedTuple):
 
     @inlined
     def contact_with_force(self, mode: Mode) -> int:
-        """Give the contact as far as forces go: an end that slides has none."""
+        """Give the contact by which the base's force is computed: a sliding end has none."""
         if mode.slides:
             return self.base.follows(mode.contact, self.base.is_held(mode.contact, True))
         return mode.contact
 
     @inlined
     def sway(self, mode: Mode, state: BodyState, attitude: Attitude) -> float:
-        """Give the horizontal velocity: about the held point, or free."""
+        """Give the horizontal velocity of the centre of mass: about the held point, or free."""
         if self.is_free(mode):
             return state.horizontal_velocity
         reach = self.body.reach(self.body.pin(mode.pivot), attitude)
@@ -191,7 +191,7 @@ class OnBase(NamedTuple):
         supplied -= ground.x * state.horizontal_velocity
         if not mode.slides:
             return Rates(0.0, vertical, -ground.x, own_rates, base.dissipated, supplied)
-        # the end follows the base, which gives way without pressing, eq-sliding-contact
+        # the end follows the base, which moves without a force, eq-sliding-contact
         left = self.base.is_held(mode.contact, True)
         on_left, on_right = body.end_accelerations(attitude, rate, vertical, 0.0)
         lever = line.left_lever if left else line.right_lever
@@ -217,7 +217,7 @@ class OnBase(NamedTuple):
         body, rate = self.body, state.angular_velocity
         if self.flies(mode.contact) or body.restraint != LEADING_CORNER:
             return 1.0, 0.0
-        if mode.pivot == PIVOT_CENTRE:  # upright and at rest: whichever corner it leans to
+        if mode.pivot == PIVOT_CENTRE:  # upright and at rest: any lean ends this mode
             departure = rate if rate != 0.0 else angular
             return -abs(state.rotation) / body.angle, -abs(departure) / body.angle
         side = (1.0 if mode.pivot == PIVOT_RIGHT else -1.0) / body.angle
@@ -248,7 +248,7 @@ class OnBase(NamedTuple):
         self, mode: Mode, state: BodyState, angular: float, horizontal: float, push: float,
         rise: float,
     ) -> SlidingGuards:  # fmt: skip
-        """Give the guards of the hold that lifts and of the slip.
+        """Give the guards of a sliding end: of the hold, which lifts it, and of the slip.
 
         `angular` and `horizontal` are the accelerations of rotation and horizontal coordinate,
         `push` is the force of the hold, `rise` the speed at which the end rises per unit of slip.
@@ -258,7 +258,7 @@ class OnBase(NamedTuple):
         upwards = 1.0 if rise < 0.0 else -1.0
         hold = -upwards * push / body.gravity
         if abs(rise) < NO_LEVER:
-            # with the held point beneath the centre of mass to hold it is not to lift it
+            # held beneath the centre of mass the body is not lifted by the hold
             return SlidingGuards(hold, -1.0, 0.0)
         slip = state.horizontal_velocity - reach.rate * rate
         change = horizontal - reach.rate * angular - reach.bend * rate * rate
@@ -276,27 +276,27 @@ class OnBase(NamedTuple):
     def horizontal_place(
         self, mode: Mode, state: BodyState, attitude: Attitude, held_at: float
     ) -> float:
-        """Give x of the centre of mass: about the held point, or free."""
+        """Give x of the centre of mass: about the held point, or free [m]."""
         if self.is_free(mode):
             return state.horizontal
         return held_at + self.body.about_pin(self.body.pin(mode.pivot), attitude)
 
     @kernel
     def end_rises(self, state: BodyState, vertical: float, angular: float) -> tuple[float, float]:
-        """Give the accelerations of the base's ends, upwards, from those of the body."""
+        """Give the upward accelerations of the base's ends, from those of the body."""
         attitude = self.body.attitude(state.rotation)
         return self.body.end_accelerations(attitude, state.angular_velocity, vertical, angular)
 
     @kernel
     def elastic_energy(self, state: BodyState, own: Any) -> tuple[float, float]:
-        """Give the energy that the base stores, and that less the energy at rest."""
+        """Give the energy that the base stores, and the energy less that at rest."""
         return self.base.energy(self.body.base_line_at(state), own)
 
     @kernel
     def observed_base(
         self, mode: Mode, state: BodyState, attitude: Attitude, own: Any
     ) -> tuple[float, ...]:
-        """Give what users see of the base."""
+        """Give the base's columns in the results."""
         line = self.body.base_line(state, attitude)
         return self.base.observed(self.contact_with_force(mode), line, own)
 
@@ -304,7 +304,7 @@ class OnBase(NamedTuple):
     def response_in(
         self, mode: Mode, attitude: Attitude, press: float, moment: float, slip: float
     ) -> VelocityChange:
-        """Give how velocities change by an impulse of the base, or as the hold stops a slip."""
+        """Give changes of velocities by an impulse of the base, or by a hold that stops a slip."""
         if self.is_free(mode):
             return VelocityChange(moment / self.body.inertia, press, 0.0, ())
         reach = self.body.reach(self.body.pin(mode.pivot), attitude).rate

@@ -1,6 +1,6 @@
-"""Pads, one under each corner, over any law of a point: reaction, guards, the corners' contacts.
+"""Pads, one under each corner, with any force law: reactions, guards and contacts of corners.
 
-Guards :eq:`eq-guards`, energies :eq:`eq-energy`. Elastic pads are those over the
+Guards :eq:`eq-guards`, energies :eq:`eq-energy`. Elastic pads follow the
 :class:`~rockframe.dynamics.point_law.Viscoelastic` law.
 """
 
@@ -21,32 +21,32 @@ from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import IMPACT, REENGAGEMENT, SEPARATION, SILENT
 from rockframe.dynamics.point_law import FREE, Point
 
-# contact of a corner; it is held, and counts as bearing, below RELAXING
+# contact of a corner; numbers below RELAXING are held, and count as bearing
 TOUCHING: Final = 0
-ENGAGING: Final = 1  # held again, but the pad has not caught up with the corner
-RELAXING: Final = 2  # free, but still below the pad's unloaded level
-CLEAR: Final = 3  # free, above it
-LEAVING: Final = 4  # free, though the re-pinning of its separation left it pressing
+ENGAGING: Final = 1  # held again, but without force: the pad has not caught up with it yet
+RELAXING: Final = 2  # lifted off without force, still below the pad's unloaded level
+CLEAR: Final = 3  # lifted off, above that level
+LEAVING: Final = 4  # lifted off, though the change of the held point left its pad pressing
 
 # two corners' contacts in one integer: that of the left one in its lowest bits; behind them the
 # states of the laws of both, the left one first
-CORNER_BITS: Final = 7
-RIGHT_BIT: Final = 3
+CORNER_BITS: Final = 7  # mask of one corner
+RIGHT_BIT: Final = 3  # shift to the right corner
 CORNER: Final = 1 << RIGHT_BIT
 CONTACTS: Final = CORNER * CORNER
 
-# guards of a corner; those of its law's state stand behind them
-LEAVE: Final = 0  # the reaction of a touching corner; the gap of a free one
-# a relaxing pad catches up with its corner, a leaving corner outruns its pad, an engaging one is
-# pressed
+# guards of a corner, before those of its law's state
+LEAVE: Final = 0  # reaction of a touching corner; gap of one that has lifted off
+# a relaxing pad reaches its corner, the pad of a leaving corner loses its force, or that of an
+# engaging one gets one
 REENGAGE: Final = 1
 REVERSE: Final = 2  # a leaving corner stops rising
 CORNER_GUARDS: Final = 3
 
 LEVEL_ROUNDING: Final = 1e-12
-"""Share of the settlement within which a corner is at the pad's unloaded level."""
+"""Distance from the unloaded level, over the settlement, at which a corner is on it [1]."""
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
-"""Rounding noise of a guard that is no difference of large terms."""
+"""Rounding noise of a guard that is no difference of large terms [1]."""
 
 
 @inlined
@@ -59,12 +59,12 @@ class PadNumbers(NamedTuple):
     """Two pads, per unit mass of the body on them."""
 
     law: Any  # of each pad, a rockframe.dynamics.point_law.PointLaw
-    left_settlement: float  # of the unloaded level above the corner's place at rest
+    left_settlement: float  # height of the unloaded level above the corner's place at rest [m]
     right_settlement: float
-    rest: float  # settlement under half the weight
-    rest_energy: float  # of one pad
-    frequency: float  # of vertical vibration
-    least: float  # speed of a landing below which a dashpot's answer is rounding noise
+    rest: float  # settlement under half the weight [m]
+    rest_energy: float  # of one pad under half the weight [m^2 s^-2]
+    frequency: float  # angular frequency of vertical vibration [s^-1]
+    least: float  # speed of a landing below which a dashpot's force is rounding noise [m s^-1]
     left_restitution: float  # eps, of an impact on the left pad
     right_restitution: float
     gravity: float  # g
@@ -78,7 +78,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def contacts(self) -> int:
-        """Give the number of both corners' contacts, with the states of their laws."""
+        """Give the number of contacts of both corners, with the states of their laws."""
         return CONTACTS * self.law.states() * self.law.states()
 
     @kernel
@@ -115,7 +115,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def with_corner(self, contact: int, left: bool, corner: int) -> int:
-        """Give both corners' contacts with another one of one corner, its law in its state 0."""
+        """Give both corners' contacts with a new one of one corner, its law in state 0."""
         step = 1 if left else CORNER
         new = contact + step * (corner - corner_contact(contact, left))
         return self.with_state(new, left, 0)
@@ -132,18 +132,18 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def tilt(self, contact: int) -> float:
-        """Give the side that the pad of the corner that touches raises."""
+        """Give the sign of the rotation that begins if one corner alone touches, or 0."""
         return float(corner_contact(contact, False) - corner_contact(contact, True))
 
     @inlined
     def level(self, left: bool, line: BaseLine, own: Any) -> float:
-        """Give how much higher than its corner a pad's unloaded level is."""
+        """Give how far below the unloaded level of its pad a corner is [m]."""
         point = self.corner(left, line)
         return point.settlement - self.law.sunk(self.of_corner(own, left)) - point.rise
 
     @inlined
     def corner(self, left: bool, line: BaseLine) -> Point:
-        """Give one corner as its law sees it."""
+        """Give the compression and motion of one corner, for its law."""
         settlement = self.left_settlement if left else self.right_settlement
         rise = line.left if left else line.right
         speed = line.left_speed if left else line.right_speed
@@ -162,19 +162,19 @@ class Pads(Base, PadNumbers):
     def reaction_and_power(
         self, contact: int, left: bool, line: BaseLine, own: Any
     ) -> tuple[float, float]:
-        """Give a pad's reaction and what it dissipates, in its corner's contact."""
+        """Give a pad's reaction and dissipated power in its corner's contact."""
         corner, point = corner_contact(contact, left), self.corner(left, line)
         mine = self.of_corner(own, left)
         if corner == TOUCHING:
             state = self.law_state(contact, left)
             return self.law.force(state, point, mine), self.law.power(state, point, mine)
-        if corner != CLEAR:  # the pad follows its corner, and its spring feeds the dashpot
+        if corner != CLEAR:  # the pad follows its corner: its spring relaxes against the dashpot
             return 0.0, -self.law.spring(point, mine) * point.speed
         return 0.0, 0.0
 
     @inlined
     def force(self, contact: int, line: BaseLine, own: Any) -> BaseForce:
-        """Give the reactions of both pads together."""
+        """Give force, moment and dissipated power of both pads together."""
         left, by_left = self.reaction_and_power(contact, True, line, own)
         right, by_right = self.reaction_and_power(contact, False, line, own)
         moment = left * line.left_lever + right * line.right_lever
@@ -182,7 +182,7 @@ class Pads(Base, PadNumbers):
 
     @inlined
     def state_if_touching(self, contact: int, left: bool) -> int:
-        """Give the state of a corner's law, or that of a point that does not touch."""
+        """Give the state of a corner's law; FREE if the corner does not touch."""
         touches = corner_contact(contact, left) == TOUCHING
         return self.law_state(contact, left) if touches else FREE
 
@@ -199,7 +199,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def pad_energy(self, left: bool, line: BaseLine, own: Any) -> tuple[float, float]:
-        """Give the energy of a pad, and that less the energy at rest."""
+        """Give the energy of a pad, and the energy less that at rest."""
         if self.level(left, line, own) <= 0.0:
             return 0.0, -self.rest_energy
         return self.law.energies(
@@ -208,7 +208,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def energy(self, line: BaseLine, own: Any) -> tuple[float, float]:
-        """Give the energy of both pads, and that less the energy at rest."""
+        """Give the energy of both pads, and the energy less that at rest."""
         left, left_change = self.pad_energy(True, line, own)
         right, right_change = self.pad_energy(False, line, own)
         return left + right, left_change + right_change
@@ -225,15 +225,15 @@ class Pads(Base, PadNumbers):
         change = self.law.force_rate(state, point, mine) * per_weight
         if corner == TOUCHING:
             leave, leave_rate = reaction, change
-        elif corner == ENGAGING:  # until it is pressed, only its height can take it off again
+        elif corner == ENGAGING:  # until pressed, only its height ends its contact
             again, again_rate = -reaction, -change
         elif corner == CLEAR:
             leave, leave_rate = -leave, -leave_rate
             if leave_rate < 0.0 and point.speed <= self.least and point.acceleration < 0.0:
-                leave_rate = 0.0  # it rises: rounding has left it a speed downwards
+                leave_rate = 0.0  # its downward speed is rounding
         elif corner == RELAXING:  # the pad presses again at a positive force
             again, again_rate = -reaction, -change
-        else:  # after its separation the pad must have let go before
+        else:  # LEAVING: it becomes relaxing once the pad has lost its force
             again, again_rate = reaction, change
             scale = 1.0 / (self.rest * self.frequency)
             reverse, reverse_rate = -scale * point.speed, -scale * point.acceleration
@@ -247,7 +247,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def released_corner(self, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact of a corner that has just left: relaxing, or clear at once."""
+        """Give the contact of a corner that has just lifted off: RELAXING, or CLEAR."""
         pressed = self.level(left, line, own)
         if self.law.return_rate() > 0.0 and pressed > LEVEL_ROUNDING * self.rest:
             return RELAXING
@@ -255,7 +255,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def switch(self, contact: int, left: bool, which: int, line: BaseLine, own: Any) -> EndEvent:
-        """Give the contacts and the event after a guard of a corner; settle the laws."""
+        """Give contacts and event after a guard of a corner; correct the laws' variables."""
         if which == CORNER_GUARDS:
             state = (self.law_state(contact, left) + 1) % self.law.states()
             found = EndEvent(self.with_state(contact, left, state), SILENT, False)
@@ -266,7 +266,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def settle(self, contact: int, line: BaseLine, own: Any) -> None:
-        """Settle the variables of both laws."""
+        """Correct the variables of both laws to what they can be."""
         left, right = self.law_state(contact, True), self.law_state(contact, False)
         self.law.settle(left, self.corner(True, line), self.of_corner(own, True))
         self.law.settle(right, self.corner(False, line), self.of_corner(own, False))
@@ -277,8 +277,7 @@ class Pads(Base, PadNumbers):
     ) -> EndEvent:
         """Give the contacts and the event after a guard of a corner's contact.
 
-        A corner that lands together with the other one, or leaves together with it, takes it
-        along.
+        Where both corners land, or leave, at the same instant one event switches both.
         """
         corner, other = corner_contact(contact, left), corner_contact(contact, not left)
         if corner in (RELAXING, LEAVING) and which == LEAVE:
@@ -299,7 +298,7 @@ class Pads(Base, PadNumbers):
             ):
                 other = self.released_corner(not left, line, own)
             elif other in (ENGAGING, LEAVING):
-                other = RELAXING  # nothing is held any more; what waited is judged anew
+                other = RELAXING  # no corner holds the body any more
             corner = self.released_corner(left, line, own)
             event, crossed = SEPARATION, corner == CLEAR
         else:
@@ -319,39 +318,39 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def is_level(self, left: bool, line: BaseLine, own: Any) -> bool:
-        """Whether a corner that follows its pad has come to the unloaded level."""
+        """Whether a relaxing or sliding corner has come to the unloaded level, but for rounding."""
         return self.level(left, line, own) < SIMULTANEOUS * self.rest
 
     @inlined
     def follows(self, contact: int, left: bool) -> int:
-        """Give the contact with a corner that its pad follows."""
+        """Give the contact with a corner that its pad follows without a force."""
         return self.with_corner(contact, left, RELAXING)
 
     @inlined
     def following_rate(self) -> float:
-        """Give the rate at which an unloaded pad returns; 0 without a dashpot."""
+        """Give the rate at which an unloaded pad returns [s^-1]; 0 without a dashpot."""
         return self.law.return_rate()
 
     @inlined
     def least_landing(self) -> float:
-        """Give the speed of a landing below which a dashpot's answer is rounding noise."""
+        """Give the speed of a landing below which a dashpot's force is rounding noise."""
         return self.least
 
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact after a corner that slid has left."""
+        """Give the contact after a sliding corner has lifted off."""
         return self.with_corner(contact, left, self.released_corner(left, line, own))
 
     @kernel
     def presses(self, contact: int, left: bool, line: BaseLine, own: Any) -> bool:
-        """Whether the pad still presses a corner that has just left and follows it."""
+        """Whether the pad still presses a corner that has just lifted off."""
         if corner_contact(contact, left) != RELAXING:
             return False
         return self.reaction(contact, left, line, own) >= -self.noise * self.gravity
 
     @kernel
     def will_press(self, left: bool, line: BaseLine, own: Any) -> bool:
-        """Whether the pad force would rise."""
+        """Whether the force of the pad would rise with the line's accelerations."""
         return self.law.force_rate(0, self.corner(left, line), self.of_corner(own, left)) > 0.0
 
     @kernel
@@ -361,25 +360,25 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def waiting(self, contact: int, left: bool) -> int:
-        """Give the contact of a corner that has left while its pad still presses it."""
+        """Give the contact of a corner that has lifted off while its pad still presses it."""
         return self.with_corner(contact, left, LEAVING)
 
     @kernel
     def unpressed(self, contact: int, left: bool) -> int:
-        """Give the contact of a corner that stays held though its pad has ceased to press it."""
+        """Give the contact of a corner that stays held though its pad no longer presses it."""
         return self.with_corner(contact, left, ENGAGING)
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Any) -> int:
-        """Give the contact after a corner has come back to its pad and been held."""
+        """Give the contact after a corner has come back to its pad and its body been held."""
         if self.reaction(contact, left, line, own) < 0.0:
-            # re-pinning sped the corner up beyond its pad: let go, it would come back without end
+            # the hold made the corner faster than its pad; released, it would come back endlessly
             return self.with_corner(contact, left, ENGAGING)
         return contact
 
     @kernel
     def disturbed(self, contact: int) -> int:
-        """Give the contact after something else changed the corners' speeds."""
+        """Give the contact after an event elsewhere has changed the corners' speeds."""
         if corner_contact(contact, True) == LEAVING:
             contact = self.with_corner(contact, True, RELAXING)
         if corner_contact(contact, False) == LEAVING:
@@ -388,7 +387,7 @@ class Pads(Base, PadNumbers):
 
     @kernel
     def rebound(self, left: bool) -> float:
-        """Give the restitution of a corner that lands."""
+        """Give the coefficient of restitution of a corner that lands [1]."""
         return self.left_restitution if left else self.right_restitution
 
     @kernel
@@ -407,12 +406,12 @@ class Pads(Base, PadNumbers):
         return self.starting_corner(True, line, own) + CORNER * right
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
-        """Give the height at which the pads carry the weight."""
+        """Give the height at which the pads carry the weight [m], found numerically."""
         return height_under(self, self.gravity, 2.0 * self.rest, (left, right), own)
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Any) -> Variables:
-        """Give the reactions of the left and of the right pad, and what their laws show."""
+        """Give the reactions of the left and right pad, and the columns of their laws."""
         left, _ = self.reaction_and_power(contact, True, line, own)
         right, _ = self.reaction_and_power(contact, False, line, own)
         on_left, on_right = (
@@ -427,13 +426,13 @@ class Pads(Base, PadNumbers):
 
 
 class ElasticPads(Pads):
-    """Two pads of linear springs and dashpots, of which the rest is known in closed form."""
+    """Two pads of linear springs and dashpots, whose equilibrium is known in closed form."""
 
     __slots__ = ()
 
     @kernel
     def resting_height(self, left: float, right: float, own: Any) -> float:
-        """Give the height at which both pads, or only the lower one, carry the weight."""
+        """Give the height at which both pads, or only the lower one, carry the weight [m]."""
         sunk = (self.left_settlement - self.rest) + (self.right_settlement - self.rest)
         middle = 0.5 * (sunk - left - right)
         if middle + left > self.left_settlement:

@@ -1,13 +1,13 @@
-"""What a base does to one of its points: a law, given once and used wherever the base has points.
+"""Force laws of a point of a base, for pads and springs, and how to write another one.
 
-A base of points, be it two pads or a bed of many springs, knows itself when a point touches,
-follows its base without a force, or is clear of it. A law says what a point that touches is
-pressed by. It is a named tuple of numbers per unit mass with some of the methods of
-:class:`PointLaw`; :func:`point_law` gives it the others.
+Two pads, or a bed of many springs, decide when a point touches the base, is followed by it without
+a force, or is clear of it. A law gives the force on a point that touches. It is a named tuple of
+numbers per unit mass with some of the methods of :class:`PointLaw`; :func:`point_law` gives it the
+others.
 
-All is told by the **compression** of the point: how far it is below the level of the base that
-has not been loaded yet. A law may have **states**, such as elastic and yielding, of which a
-guard tells the end, and **variables** of its own, all zero at the start.
+The force depends on the **compression** of the point: its depth below the level of the base before
+it was ever loaded. A law may have **states**, such as elastic and yielding, which its guard ends,
+and **variables** of its own, all zero at the start.
 """
 
 import inspect
@@ -29,20 +29,20 @@ NEEDED: Final = ("spring", "force_rate", "energy")
 
 
 class Point(NamedTuple):
-    """A point of a base line, and the motion of all of that."""
+    """A point of a base line, and the motion of the whole line."""
 
-    pressed: float  # compression
-    speed: float  # its rate
-    acceleration: float  # that of the rate; 0 where it is not known yet
+    pressed: float  # compression [m]
+    speed: float  # rate of the compression [m s^-1]
+    acceleration: float  # its second rate [m s^-2]; 0 where it is not known yet
     rise: float  # height above the place at rest
     settlement: float  # compression at that place
-    place: float  # share of the way from the left end of the base to the right one
+    place: float  # coordinate along the base, 0 at its left end, 1 at its right end
     line: BaseLine
 
 
 @inlined
 def point_at(line: BaseLine, place: float, settlement: float) -> Point:
-    """Give the point at a place between the ends."""
+    """Give compression and motion of the point at a place between the ends."""
     rise = line.left + place * (line.right - line.left)
     speed = line.left_speed + place * (line.right_speed - line.left_speed)
     change = line.left_acceleration + place * (line.right_acceleration - line.left_acceleration)
@@ -71,7 +71,7 @@ class PointLaw:
 
     @inlined
     def force(self, state: int, point: Point, own: Any) -> float:
-        """Give the force on a point that touches; unless given, that of the spring alone."""
+        """Give the force on a point that touches; by default the elastic force alone."""
         return self.spring(point, own)
 
     @inlined
@@ -81,12 +81,12 @@ class PointLaw:
 
     @inlined
     def sunk(self, own: Any) -> float:
-        """Give how far the unloaded level has sunk for good."""
+        """Give the permanent compression: how far the unloaded level has sunk [m]."""
         return 0.0
 
     @inlined
     def return_rate(self) -> float:
-        """Give the rate at which the base returns without a force; 0 if at once [s^-1]."""
+        """Give the rate at which the base returns without a force; 0 if immediately [s^-1]."""
         return 0.0
 
     @inlined
@@ -108,38 +108,37 @@ class PointLaw:
     def guard(self, state: int, point: Point, own: Any) -> tuple[float, float]:
         """Give a function that falls through zero where the law goes on to its next state.
 
-        With its rate; asked of points that touch. Whatever else happens to a point puts it into
-        state 0.
+        And its rate. It is evaluated for points that touch; any other event of a point sets the
+        law to state 0.
         """
         return 1.0, 0.0
 
     @kernel
     def settle(self, state: int, point: Point, own: Any) -> None:
-        """Set variables that a switch, or the start of a run, finds beside what they can be."""
+        """Correct variables that are out of range at a switch, or at the start of a run."""
 
     @inlined
     def seen(self, state: int, point: Point, own: Any) -> Variables:
-        """Give what users see of the law besides the force."""
+        """Give the law's columns in the results, besides the force."""
         return ()
 
     @inlined
     def energies(self, point: Point, rest: float, at_rest: float, own: Any) -> tuple[float, float]:
-        """Give the stored energy, and that less the energy at rest, `at_rest`.
+        """Give the stored energy, and the energy less that at rest, `at_rest`.
 
-        To be given where the difference can be had to all digits; `rest` is the compression at
-        rest.
+        A law may give the difference without cancellation; `rest` is the compression at rest.
         """
         stored = self.energy(point, own)
         return stored, stored - at_rest
 
     @inlined
     def read(self, state: Vector, first: int, points: int) -> Any:
-        """Read the variables of some points from a state, from an index on."""
+        """Read the variables of some points from a state, from index `first` on."""
         return ()
 
     @inlined
     def of_point(self, own: Any, i: int) -> Any:
-        """Give the variables of one of these points."""
+        """Give the variables of point `i` among those read."""
         return ()
 
     @kernel
@@ -153,7 +152,7 @@ class PointLaw:
 
 
 class _WithVariables:
-    """For laws with variables."""
+    """Methods of laws with variables."""
 
     @inlined
     def read(self: Any, state: Vector, first: int, points: int) -> Any:
@@ -170,7 +169,7 @@ class _WithVariables:
 
 
 class _WithGuard:
-    """For laws with states."""
+    """Methods of laws with states."""
 
     @inlined
     def guards(self: Any, state: int, point: Point, own: Any) -> Guards:
@@ -252,7 +251,7 @@ class Viscoelastic(NamedTuple):
         return self.stiffness * point.speed + self.damping * point.acceleration
 
     def power(self, state: int, point: Point, own: Variables) -> float:
-        """Give what the dashpot dissipates."""
+        """Give the power that the dashpot dissipates."""
         return self.damping * point.speed * point.speed
 
     def energy(self, point: Point, own: Variables) -> float:
@@ -262,7 +261,7 @@ class Viscoelastic(NamedTuple):
     def energies(
         self, point: Point, rest: float, at_rest: float, own: Variables
     ) -> tuple[float, float]:
-        """Give the energy of the spring, and that less the energy at rest, as products."""
+        """Give the energy of the spring, and the energy less that at rest, as products."""
         change = point.rise * (0.5 * point.rise - point.settlement)
         change += 0.5 * (point.settlement - rest) * (point.settlement + rest)
         return self.energy(point, own), self.stiffness * change

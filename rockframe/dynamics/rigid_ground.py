@@ -49,7 +49,7 @@ COLUMNS: Final = (
 )
 
 
-# columns beside which others may stand
+# indices of columns that systems built on this one change
 _NAMES: Final = [one.name for one in COLUMNS]
 BASE_SHEAR: Final = _NAMES.index("base_shear")
 THRUST: Final = _NAMES.index("horizontal_reaction")
@@ -62,8 +62,8 @@ class RockingCorner(NamedTuple):
     """A corner that a block rotates about, seen from its centre of mass."""
 
     angle: float  # theta, of the line to the corner with the vertical
-    radius: float  # R0
-    inertia: float  # I_O/m + R0^2
+    radius: float  # R0 [m]
+    inertia: float  # I_O/m + R0^2 [m^2]
     tangent: float  # tan theta; theta for small rotation
     restitution: float  # eps, of the angular velocity in an impact on it
 
@@ -107,7 +107,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give which corner bears, or that both do."""
+        """Give the contact state: which corner bears, or both."""
         if mode == RESTING:
             return FULL
         return RIGHT if mode == ON_RIGHT else LEFT
@@ -151,7 +151,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the powers of :meth:`accelerate` alone."""
+        """Give the two powers of :meth:`accelerate`."""
         found = self.accelerate(mode, state, ground)
         return found[1], found[2]
 
@@ -176,7 +176,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
     def switch_held(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector, held: float
     ) -> int:
-        """Do so under an angular acceleration towards rest, beside that of the weight."""
+        """Carry out :meth:`switch`, with an angular acceleration `held` towards rest besides."""
         if mode == RESTING:
             memory[LAST_EVENT] = UPLIFT
             if self.wall != 0.0:
@@ -187,12 +187,12 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
         before = state[1]
         new = ON_LEFT if mode == ON_RIGHT else ON_RIGHT
         after = self.corner(new).restitution * before
-        if self.wall != 0.0:  # it rocks on about the same corner, away from the wall
+        if self.wall != 0.0:  # it goes on rocking about the same corner, away from the wall
             new, after = mode, self.rebound * before
         state[0] = 0.0
         restoring = held - self.side(new) * self.angular_acceleration(new, 0.0, ground)
         rebound = after * after / (2.0 * restoring) if restoring > 0.0 else math.inf
-        # a ground that tips the block back over the corner that it has left allows no rest
+        # no rest where the ground acceleration tips the block back over the corner it has left
         rests = self.side(mode) * self.angular_acceleration(mode, 0.0, ground) <= held
         memory[LAST_EVENT] = IMPACT
         if rests and rebound < REST_AMPLITUDE * self.corner(new).angle:
@@ -205,9 +205,9 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @inlined
     def leaning(self, tilt: float, weight: float, ground: Ground) -> tuple[float, float]:
-        """Give the base's difference of reactions and its shear, of a block that may lean.
+        """Give the difference of the corners' reactions, and the base shear, with a wall behind.
 
-        A ground that would tip it into the wall presses it on, at the top.
+        A ground acceleration that would tip the block into the wall presses its top against it.
         """
         shear = ground.x
         if self.wall < 0.0 and tilt > weight:
@@ -220,7 +220,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
 
     @kernel
     def centre_rise(self, mode: int, rotation: float) -> float:
-        """Give the rise of the centre of mass, R0 [cos(theta - a) - cos theta], to all digits."""
+        """Give the rise of the centre of mass, R0 [cos(theta - a) - cos theta] [m]."""
         corner, angle = self.corner(mode), abs(rotation)
         if self.small:
             return corner.radius * angle * (corner.angle - 0.5 * angle)
@@ -238,7 +238,7 @@ class BlockOnRigidGround(RockingNumbers, OnRigidGround):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of the centre of mass, and the reactions, of both corners together too."""
+        """Give motion of the centre of mass, resultant reactions, and those of both corners."""
         rotation, rate = state[0], state[1]
         weight = self.gravity + ground.y
         height = self.centre_rise(mode, rotation)
@@ -273,14 +273,14 @@ def corner_of(
     restitution: float,
     small_rotation: bool,
 ) -> RockingCorner:
-    """Give a corner that a block rotates about.
+    """Give a corner about which a block rotates.
 
     Parameters
     ----------
     distance, height : float
-        Of the centre of mass, beside the corner and above it [m].
+        Horizontal distance and height of the centre of mass from the corner [m].
     inertia : float
-        Of the block about the corner, over its mass [m^2].
+        Moment of inertia of the block about the corner, over its mass [m^2].
     restitution : float
         Ratio of the angular velocities after and before an impact on this corner [1].
     small_rotation : bool
@@ -303,7 +303,7 @@ def rigid_ground(
     Parameters
     ----------
     left, right : RockingCorner
-        Of the block.
+        The corners of the block.
     mass : float
         Mass of the block [kg].
     small_rotation : bool

@@ -1,4 +1,4 @@
-"""Links of several laws in one scene, each of which follows its own."""
+"""Links of several laws in one scene: a law that stands for one of several."""
 
 from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
@@ -16,7 +16,7 @@ from rockframe.dynamics.links import (
 
 @link_law
 class OneOfTwo(NamedTuple):
-    """One of two laws: what links of several laws follow, each its own."""
+    """A law that is one of two; nested, one of several. Each link follows one of them."""
 
     which: float  # 0 for the first
     first: Any
@@ -29,23 +29,23 @@ class OneOfTwo(NamedTuple):
         return self.second.force(state, stretch, own)
 
     def energy(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give its energy."""
+        """Give the stored energy."""
         if self.which == 0.0:
             return self.first.energy(state, stretch, own)
         return self.second.energy(state, stretch, own)
 
     def power(self, state: int, stretch: Stretch, own: Vector) -> float:
-        """Give what it dissipates."""
+        """Give the dissipated power."""
         if self.which == 0.0:
             return self.first.power(state, stretch, own)
         return self.second.power(state, stretch, own)
 
     def variables(self) -> int:
-        """Give the number of variables, of either law."""
+        """Give the number of variables, the larger of both laws."""
         return max(self.first.variables(), self.second.variables())
 
     def rates(self, state: int, stretch: Stretch, own: Vector, out: Vector) -> None:
-        """Write the rates of its variables; what it has not stays."""
+        """Write the rates of its variables; zero for those that the law does not have."""
         for i in range(len(out)):
             out[i] = 0.0
         if self.which == 0.0:
@@ -54,29 +54,29 @@ class OneOfTwo(NamedTuple):
             self.second.rates(state, stretch, own, out)
 
     def states(self) -> int:
-        """Give the number of states, of either law."""
+        """Give the number of states, the larger of both laws."""
         return max(self.first.states(), self.second.states())
 
     def starting(self, stretch: Stretch, own: Vector) -> int:
-        """Give its state at the start."""
+        """Give the state at the start of a run; sets the variables."""
         if self.which == 0.0:
             return self.first.starting(stretch, own)
         return self.second.starting(stretch, own)
 
     def guard(self, which: int, state: int, stretch: Stretch, own: Vector) -> tuple[float, float]:
-        """Give its guard."""
+        """Give a guard of the law, and its rate."""
         if self.which == 0.0:
             return self.first.guard(which, state, stretch, own)
         return self.second.guard(which, state, stretch, own)
 
     def switch(self, which: int, state: int, stretch: Stretch, own: Vector) -> LinkEvent:
-        """Give what happens to it."""
+        """Give the event as a guard falls through zero; sets the variables."""
         if self.which == 0.0:
             return self.first.switch(which, state, stretch, own)
         return self.second.switch(which, state, stretch, own)
 
     def shown(self, state: int) -> int:
-        """Give the state of it that users see."""
+        """Give the state that users see."""
         if self.which == 0.0:
             return self.first.shown(state)
         return self.second.shown(state)
@@ -86,7 +86,7 @@ class OneOfTwo(NamedTuple):
         return self.first.idles(state) if self.which == 0.0 else self.second.idles(state)
 
     def number_count(self) -> int:
-        """Give how many numbers both have."""
+        """Give the number of numbers of both laws, and of `which`."""
         return 1 + self.first.number_count() + self.second.number_count()
 
     def with_numbers(self, numbers: Vector) -> Any:
@@ -100,7 +100,7 @@ class OneOfTwo(NamedTuple):
 
 
 def one_of(laws: Sequence[Any], own: Any) -> Any:
-    """Give a law that may be any of several, of different classes, and is one's own."""
+    """Give a law that may be any of `laws`, of different classes, and here is `own`."""
     first, *others = laws
     if not others:
         return own
@@ -116,8 +116,8 @@ SHIPPED: Final = (Tie(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Bumper(0.0, 0.0, 0.0), Stea
 def kinds_of(laws: Sequence[Any]) -> list[Any]:
     """Give a law of each class that links of these laws may follow.
 
-    All that parts follow are there as soon as one of them is, so that links of any of them run by
-    the same machine code.
+    If one class of `SHIPPED` is among them all of these are given, so that any mixture of them runs
+    by the same machine code.
     """
     found = {type(law): law for law in laws}
     if any(type(law) in found for law in SHIPPED):

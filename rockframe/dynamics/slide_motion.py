@@ -22,7 +22,7 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.dynamics.trigonometry import sine_cosine
 
-# what bears: both corners, one, or none; a mode is three times this, and the slip
+# what bears: both corners, one, or none; the number of a mode is three times this plus the slip
 FULL: Final = 0
 ON_RIGHT: Final = 1
 ON_LEFT: Final = 2
@@ -35,16 +35,16 @@ TO_LEFT: Final = 2
 SLIPS: Final = 3
 MODES: Final = BEARINGS * SLIPS
 
-# the state: the rotation, and slip and rise of the corner that bears, from its place at rest
+# the state: rotation [rad], slip and rise of the bearing corner from its place at rest [m]
 ROTATION: Final = 0
 SLIP: Final = 1
 RISE: Final = 2
 SIZE: Final = 3
 
 # guards
-LANDING: Final = 0  # of the other corner while one bears, of the own one in flight
-STOPPING: Final = 1  # of the slip; in flight landing of the other corner
-PRESSING: Final = 2  # on the right corner: at rest, it tips over it; of the corner that slips
+LANDING: Final = 0  # while one corner bears, of the other one; in flight of the mode's own one
+STOPPING: Final = 1  # end of the slip; in flight landing of the other corner
+PRESSING: Final = 2  # force on the corner that bears; on the whole base, tipping to the right
 TIPS_LEFT: Final = 3
 SLIPS_RIGHT: Final = 4
 SLIPS_LEFT: Final = 5
@@ -53,10 +53,10 @@ GUARDS: Final = 6
 PEAK_LEFT: Final = len(MEMORY)
 PEAK_RIGHT: Final = PEAK_LEFT + 1
 REMEMBERED: Final = (*MEMORY, "peak_slip_left", "peak_slip_right")
-"""Behind what every system keeps: the largest slips. A slip turns round at events alone."""
+"""The memory: that of every system, then the largest slips. A slip reverses at events only."""
 
 ROUNDING: Final = 1e-12
-"""Accelerations over gravity, and heights over the block's size, that are rounding."""
+"""Rounding noise of accelerations over gravity, and of heights over the block's size [1]."""
 
 COLUMNS: Final = (
     *BODY_COLUMNS,
@@ -78,18 +78,18 @@ class Contact(NamedTuple):
 
 
 class Loads(NamedTuple):
-    """What acts on the block beside the ground's forces: seen from the moving ground."""
+    """Loads but the ground's reactions, with inertia forces of the ground's motion, over mass."""
 
-    across: float  # force along the ground that keeps the block from sliding, if it stands
-    weight: float  # force normal to it that keeps the block from sinking
-    turning: float  # moment about the centre of mass, over the mass
+    across: float  # load along the ground, as the reaction that balances it [m s^-2]
+    weight: float  # load normal to the ground, downwards [m s^-2]
+    turning: float  # moment about the centre of mass [m^2 s^-2]
 
 
 class SlideMotion(OnRigidGround):
     """Motion, guards, energies and columns of a block. A mixin of named tuples."""
 
     __slots__ = ()
-    left: float  # from the foot of the centre of mass to both corners
+    left: float  # from the foot of the centre of mass to the left corner
     right: float
     height: float  # of the centre of mass
     inertia: float  # about the centre of mass
@@ -114,7 +114,7 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give how many of rotation, slip and rise change, in this order."""
+        """Give the number of coordinates that move: the first of rotation, slip, rise."""
         bears, slips = self.bears_in(mode), 0 if mode % SLIPS == HELD else 1
         if bears >= FLIES_RIGHT:
             return SIZE
@@ -122,7 +122,7 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give which corner bears."""
+        """Give the contact state: which corner bears, both, or none."""
         bears = self.bears_in(mode)
         if bears == FULL:
             return events.FULL
@@ -132,12 +132,12 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def bears_in(self, mode: int) -> int:
-        """Give what bears in a mode, in which may stand more than that and the slip."""
+        """Give what bears in a mode, whose number may include more, such as states of links."""
         return mode // SLIPS % BEARINGS
 
     @inlined
     def with_contact(self, mode: int, contact: int) -> int:
-        """Give the mode in which bearing and slip are others."""
+        """Give the mode with another bearing and slip, in one number `contact`."""
         return mode - mode % MODES + contact
 
     @inlined
@@ -153,26 +153,26 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def distance(self, side: float) -> float:
-        """Give how far a corner is from the foot of the centre of mass."""
+        """Give the distance of a corner from the foot of the centre of mass [m]."""
         return self.right if side > 0.0 else self.left
 
     @inlined
     def reach(self, side: float, rotation: float) -> tuple[float, float]:
-        """Give the place of the centre of mass to the right of a corner, and above it."""
+        """Give the place of the centre of mass to the right of a corner, and above it [m]."""
         sine, cosine = sine_cosine(rotation)
         away = side * self.distance(side)
         return self.height * sine - away * cosine, self.height * cosine + away * sine
 
     @inlined
     def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
-        """Give what acts on the block: weight and inertia, whatever its state."""
+        """Give the loads on the block: weight and inertia forces of the ground's motion."""
         return Loads(ground.x, self.gravity + ground.y, 0.0)
 
     @inlined
     def contact(self, mode: int, state: Vector, loads: Loads) -> Contact:
         """Give the motion in a mode, :eq:`eq-slide-planar` under its constraints.
 
-        Of a corner that slips it is :eq:`eq-slide-rocking`.
+        For a corner that slips this is :eq:`eq-slide-rocking`.
         """
         bears, sense = self.bears_in(mode), self.sense(mode)
         across, weight, turning = loads
@@ -200,7 +200,7 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def free_rise(self, bears: int, state: Vector, loads: Loads) -> float:
-        """Give the acceleration away from the ground of a corner that is let go."""
+        """Give the upward acceleration of a corner if the ground did not act on it."""
         flies = bears + FLIES_RIGHT - ON_RIGHT
         return self.contact(SLIPS * flies, state, loads).rise
 
@@ -213,7 +213,7 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Numbers:
-        """Give accelerations, what friction dissipates, and what the ground puts in."""
+        """Give accelerations, the power that friction dissipates, and that of the ground."""
         if mode == HELD:
             return 0.0, 0.0, 0.0, 0.0, 0.0
         return self.accelerations(mode, state, ground, self.loads(mode, state, ground))
@@ -222,7 +222,7 @@ class SlideMotion(OnRigidGround):
     def accelerations(
         self, mode: int, state: Vector, ground: Ground, loads: Loads
     ) -> tuple[float, float, float, float, float]:
-        """Give the same under loads that are known."""
+        """Give what :meth:`accelerate` gives, under given loads."""
         found = self.contact(mode, state, loads)
         across, up = self.speeds(mode, state)
         supplied = -ground.x * across - ground.y * up
@@ -231,7 +231,7 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the powers of :meth:`accelerate` alone, which the compiler merges with it."""
+        """Give the two powers of :meth:`accelerate`; the compiler merges both evaluations."""
         found = self.accelerate(mode, state, ground)
         return found[SIZE], found[SIZE + 1]
 
@@ -242,7 +242,7 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def guards_under(self, mode: int, state: Vector, slope: Slope, loads: Loads) -> Guards:
-        """Give the same under loads that are known."""
+        """Give the guards, :eq:`eq-slide-guards`, under given loads."""
         scale, size = 1.0 / self.gravity, 1.0 / (self.left + self.right)
         bears, sense, rate = self.bears_in(mode), self.sense(mode), state[SIZE + ROTATION]
         side = self.side(bears)
@@ -257,14 +257,14 @@ class SlideMotion(OnRigidGround):
             found = self.contact(mode, state, loads)
             if sense != 0.0:
                 speed = 1.0 / math.sqrt(self.gravity * self.height)
-                # a slip that starts is not stopped by rounding
+                # rounding must not stop a slip that starts
                 slowing = speed * (sense * slope[SLIP] + ROUNDING * self.gravity)
                 stopping = speed * sense * state[SIZE + SLIP]
                 pressing = scale * found.normal
             elif self.static < math.inf:
                 most = self.static * found.normal
                 to_right, to_left = scale * (most + found.along), scale * (most - found.along)
-            elif bears != FULL:  # one that would come back at once is held, and pulled
+            elif bears != FULL:  # one that would fall back is held, in tension
                 pressing = scale * max(found.normal, -self.free_rise(bears, state, loads))
             if bears == FULL:
                 tips = found.along - loads.turning / self.height
@@ -282,7 +282,7 @@ class SlideMotion(OnRigidGround):
 
     @kernel
     def centre_rise(self, mode: int, state: Vector) -> float:
-        """Give the rise of the centre of mass, to all digits."""
+        """Give the rise of the centre of mass, without cancellation [m]."""
         sine, _ = sine_cosine(state[ROTATION])
         half, _ = sine_cosine(0.5 * state[ROTATION])
         side = self.side(self.bears_in(mode))
@@ -295,7 +295,7 @@ class SlideMotion(OnRigidGround):
 
     @inlined
     def energies_alone(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of the block by itself."""
+        """Give the energies of the block without links."""
         kinetic = self.kinetic_energy(mode, state)
         return Energies(kinetic, self.gravity * self.centre_rise(mode, state), 0.0, 0.0)
 
@@ -318,7 +318,7 @@ class SlideMotion(OnRigidGround):
     def columns_under(
         self, mode: int, state: Vector, slope: Slope, loads: Loads
     ) -> tuple[float, ...]:
-        """Give the same under loads that are known."""
+        """Give the columns of :meth:`observe` under given loads."""
         bears, rotation, rate = self.bears_in(mode), state[ROTATION], state[SIZE + ROTATION]
         side = self.side(bears)
         beside, _ = self.reach(side, rotation)

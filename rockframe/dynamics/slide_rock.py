@@ -1,7 +1,7 @@
 """A block that slides, rocks and flies on rigid ground with friction: its events, page "Sliding".
 
-What follows where a guard falls: another mode of :mod:`rockframe.dynamics.slide_motion`, after an
-impact with other rates, :eq:`eq-slide-impact`.
+As a guard falls to zero another mode of :mod:`rockframe.dynamics.slide_motion` follows; an impact
+also changes the rates, :eq:`eq-slide-impact`.
 """
 
 import math
@@ -43,11 +43,11 @@ from rockframe.dynamics.trigonometry import sine_cosine
 
 
 class SlideSwitches(SlideMotion):
-    """How a block goes on after events. A mixin of named tuples."""
+    """Switches of mode, and impacts, of a block. A mixin of named tuples."""
 
     __slots__ = ()
-    impulsive: float  # coefficient of impacts; infinite where they hold the corner that strikes
-    left_lever: float  # of the impulse of a block that rolls over, eq-slide-lever, by its corner
+    impulsive: float  # coefficient of friction in impacts; infinite: no slip of the striking corner
+    left_lever: float  # of the impulse on the left corner as it strikes, eq-slide-lever [1]
     right_lever: float
 
     @kernel
@@ -59,7 +59,7 @@ class SlideSwitches(SlideMotion):
     def switch_contact(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Give the same of a guard of bearing and slip."""
+        """Give the mode after a guard of bearing or slip has fallen."""
         bears = self.bears_in(mode)
         if bears >= FLIES_RIGHT:
             new = self.come_down(mode, guard, state, ground, memory)
@@ -74,7 +74,7 @@ class SlideSwitches(SlideMotion):
         tips = FULL
         if bears == FULL:
             tips = ON_RIGHT if guard == PRESSING else ON_LEFT if guard == TIPS_LEFT else FULL
-        if bears != FULL and guard == PRESSING:  # of its force there is but rounding left
+        if bears != FULL and guard == PRESSING:  # its force is zero but for rounding
             new = self.with_contact(mode, SLIPS * (bears + FLIES_RIGHT - ON_RIGHT))
         else:
             new = self.go_on(mode, state, ground, guard in (SLIPS_RIGHT, SLIPS_LEFT), tips)
@@ -83,15 +83,15 @@ class SlideSwitches(SlideMotion):
 
     @inlined
     def keep_slip(self, state: Vector, memory: Vector) -> None:
-        """Keep the largest slips to either side."""
+        """Update the largest slips to either side."""
         memory[PEAK_LEFT] = max(memory[PEAK_LEFT], -state[SLIP])
         memory[PEAK_RIGHT] = max(memory[PEAK_RIGHT], state[SLIP])
 
     @kernel
     def go_on(self, mode: int, state: Vector, ground: Ground, lets_go: bool, tips: int) -> int:
-        """Give the mode in which a block goes on without an impact, under the forces on it.
+        """Give the mode that follows without an impact, from the forces on the block.
 
-        Friction that `lets_go` does not hold; `tips` is the corner over which it tips, if known.
+        With `lets_go` friction holds no longer; `tips` is the corner over which it tips, if known.
         """
         bears, loads = self.bears_in(mode), self.loads(mode, state, ground)
         if bears >= FLIES_RIGHT:
@@ -116,9 +116,9 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def standing(self, state: Vector, loads: Loads, lets_go: bool, tips: int) -> int:
-        """Give how a block upright on its base goes on, :eq:`eq-slide-start`.
+        """Give bearing and slip that follow for a block upright on its base, :eq:`eq-slide-start`.
 
-        Friction that `lets_go` does not hold the base; `tips` is the corner over which it tips.
+        With `lets_go` friction holds no longer; `tips` is the corner over which it tips.
         """
         across, weight, slip = loads.across, loads.weight, state[SIZE + SLIP]
         if weight <= ROUNDING * self.gravity:
@@ -149,7 +149,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def leaning(self, bears: int, state: Vector, loads: Loads, lets_go: bool) -> int:
-        """Give how a block on one corner goes on: held, slipping, or in flight."""
+        """Give bearing and slip that follow for a block on one corner: held, slipping, flight."""
         slip, corner = state[SIZE + SLIP], SLIPS * bears
         flies = corner + SLIPS * (FLIES_RIGHT - ON_RIGHT)
         held = self.contact(corner + HELD, state, loads)
@@ -166,7 +166,7 @@ class SlideSwitches(SlideMotion):
         first, second = (TO_LEFT, TO_RIGHT) if held.along > 0.0 else (TO_RIGHT, TO_LEFT)
         if self.starts(corner + first, state, loads):
             return corner + first
-        # found too early, it would stick again
+        # where neither grows the event came too early, and the corner stays held
         return corner + (second if self.starts(corner + second, state, loads) else HELD)
 
     @inlined
@@ -180,7 +180,7 @@ class SlideSwitches(SlideMotion):
     ) -> tuple[float, float]:
         """Give the impulses along and normal to the ground that stop a corner.
 
-        The normal one acts at `lever` times `beside` from the centre of mass.
+        The normal one acts at a distance of `lever` times `beside` from the centre of mass.
         """
         inertia, friction = self.inertia, self.impulsive
         mixed, along = -beside * above / inertia, 1.0 + above * above / inertia
@@ -188,19 +188,19 @@ class SlideSwitches(SlideMotion):
             1.0 + lever * beside * beside / inertia, mixed, lever * mixed, along
         )
         if friction == math.inf and slip * mixed < sinking * along:
-            friction = self.kinetic  # to hold the corner the ground would have to pull
+            friction = self.kinetic  # holding the corner would take tension of the ground
         return coulomb_impulse(answers, slip, sinking, friction)
 
     @kernel
     def struck(self, bears: int, state: Vector, speeds: tuple[float, float], lever: float) -> None:
-        """Give the state the rates after an impact on a corner, and its slip the place of that."""
+        """Write the rates after an impact on a corner: slip and rise become those of it."""
         side, rate = self.side(bears), state[SIZE + ROTATION]
         beside, above = self.reach(side, state[ROTATION])
         across, up = speeds
         along, normal = self.strike(beside, above, lever, across - above * rate, up + beside * rate)
         rate += (lever * beside * normal - above * along) / self.inertia
         slip = across + along - above * rate
-        # what rounding leaves of a slip that has ended
+        # rounding noise of a slip that has ended
         noise = ROUNDING * (abs(across) + abs(along) + abs(above * rate))
         state[SIZE + SLIP] = slip if abs(slip) > noise else 0.0
         state[SIZE + ROTATION] = rate
@@ -208,7 +208,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def lie_flat(self, state: Vector, across: float, up: float) -> None:
-        """Stop a block that lands on its whole base, which slips as far as friction lets it."""
+        """Stop a block that lands on its whole base; the slip that friction leaves goes on."""
         left = abs(across) - self.impulsive * -up if self.impulsive < math.inf else 0.0
         lasts = left > 0.0 and not self.creeps(left)
         state[SIZE + SLIP] = math.copysign(left, across) if lasts else 0.0
@@ -216,7 +216,7 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def roll_over(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Strike the ground with the other corner, and go on about it or on the whole base.
+        """Strike the ground with the other corner; go on rocking about it, or on the whole base.
 
         From rocking about a held corner the corner that strikes slips as in :eq:`eq-slide-through`.
         """
@@ -228,7 +228,7 @@ class SlideSwitches(SlideMotion):
         lever = self.right_lever if new == ON_RIGHT else self.left_lever
         self.struck(new, state, (across, up), lever)
         memory[LAST_EVENT] = IMPACT
-        if self.side(bore) * state[SIZE + ROTATION] >= 0.0:  # so wide that it lands flat
+        if self.side(bore) * state[SIZE + ROTATION] >= 0.0:  # a block so wide lands flat
             self.lie_flat(state, across, up)
             after = self.standing(state, self.loads(turned, state, ground), False, FULL)
         else:
@@ -244,7 +244,7 @@ class SlideSwitches(SlideMotion):
                 if state[SIZE + SLIP] != 0.0:  # the bounces end with the momentum across the ground
                     self.lie_flat(state, across, up)
                 base = self.standing(state, self.loads(turned, state, ground), False, FULL)
-                # a ground that tips the block over either corner allows no rest
+                # no rest where the ground acceleration tips the block over a corner
                 if base // SLIPS == FULL:
                     memory[LAST_EVENT] = REST
                 bounces = self.bears_in(after) >= FLIES_RIGHT
@@ -257,14 +257,14 @@ class SlideSwitches(SlideMotion):
 
     @inlined
     def creeps(self, slip: float) -> bool:
-        """Whether the rate of a slip after an impact is too low to be told."""
+        """Whether the rate of a slip after an impact is negligible."""
         return slip * slip < REST_AMPLITUDE * self.gravity * self.height
 
     @inlined
     def rebounds_little(self, mode: int, state: Vector, loads: Loads) -> bool:
-        """Whether the corner that has borne rises too little to be told before it comes back.
+        """Whether the rise of the corner that has borne, until it comes back, is negligible.
 
-        Links may lift the other one meanwhile.
+        Links may lift the other corner meanwhile.
         """
         bears, rate = self.bears_in(mode), state[SIZE + ROTATION]
         if bears == FULL:
@@ -311,10 +311,9 @@ class SlideSwitches(SlideMotion):
 
     @kernel
     def stays_if_small(self, bears: int, mode: int, state: Vector, ground: Ground) -> bool:
-        """Stop a corner that the impulse that holds it throws up, only to come back at once.
+        """Stop a corner that has struck and rises negligibly; give whether it was stopped.
 
-        It does where the ground holds whatever that takes, the corner falls where it is free, and
-        the other one is clear of the ground.
+        It is stopped if, free, it would fall back, and if the other corner is clear of the ground.
         """
         rise, side = state[SIZE + RISE], self.side(bears)
         fall = -self.free_rise(bears, state, self.loads(mode, state, ground))

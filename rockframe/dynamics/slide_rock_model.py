@@ -1,4 +1,4 @@
-"""The model of a block that slides and rocks on rigid ground, and the numbers that it needs."""
+"""Assembly of the model of a block that slides and rocks on rigid ground with friction."""
 
 import numpy as np
 
@@ -20,17 +20,17 @@ from rockframe.many import atan2, hypot, sqrt
 def ill_posed_friction(inertia: float, square: float) -> float:
     """Give the least coefficient at which a slipping corner may jam, :eq:`eq-slide-painleve`.
 
-    From the inertia about the centre of mass over the mass, and the square of the distance of
-    that from the corner [m^2].
+    `inertia` is that about the centre of mass over the mass [m^2]; `square` is the square of the
+    distance between the centre of mass and the corner [m^2].
     """
     ratio = inertia / square
     return 2.0 * sqrt(ratio * (1.0 + ratio))
 
 
 def impulse_lever(*, restitution: float, own: float, width: float, about_foot: float) -> float:
-    """Give where the impulse of a block that rolls over acts, :eq:`eq-slide-lever`.
+    """Give the lever of the impulse as a block rocks onto its other corner, :eq:`eq-slide-lever`.
 
-    Over the distance `own` of the corner that strikes from the foot of the centre of mass [m];
+    It is over the distance `own` of the striking corner from the foot of the centre of mass [m];
     `about_foot` is the inertia about that foot over the mass [m^2].
     """
     lost = 1.0 - restitution
@@ -38,7 +38,7 @@ def impulse_lever(*, restitution: float, own: float, width: float, about_foot: f
 
 
 def slide_rock(system: SlideRock, *, mass: float) -> ContactModel:
-    """Assemble the model of a block that slides and rocks, of some mass [kg]."""
+    """Assemble the model of a block that slides and rocks, from its mass [kg]."""
     gravity = system.gravity
     least = min(system.left, system.right)
     angle, radius = atan2(least, system.height), hypot(least, system.height)

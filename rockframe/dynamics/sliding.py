@@ -1,9 +1,9 @@
-"""Sliding contact: an end that touches without bearing, held only as far as it stays so.
+"""Sliding contact: an end that touches its base without a normal force while the body slips.
 
-An end can come down while the hold that its contact brings would lift it off again. Then
-neither contact nor flight is a motion: held, the end leaves; free, it comes back. The hold
-can act only while the end presses, so its impulse ends when the end's speed has come to that
-of the base beneath it, :eq:`eq-partial-hold`. What is left of the slip makes the end *slide*:
+An end can come down while the horizontal hold that its contact causes would lift it off again.
+Then neither contact nor flight is a solution: held, the end leaves; free, it comes back. The
+hold can act only while the end presses, so its impulse ends when the end's speed has come to
+that of the base beneath it, :eq:`eq-partial-hold`. With the rest of its slip the end *slides*:
 it stays at its level with no reaction, and the held point slips against a force that is just
 enough to keep it there, :eq:`eq-sliding-contact`.
 """
@@ -14,11 +14,11 @@ from typing import Final
 from rockframe.compiled import inlined
 
 NOISE: Final = 16.0 * sys.float_info.epsilon
-"""Share of its parts by which the speed of an end may differ from zero."""
+"""Rounding noise of an end's speed, over the sum of the sizes of its two parts [1]."""
 NO_LEVER: Final = 1e-7
-"""Lever of the hold, as a share of the body's size, below which it cannot lift."""
+"""Speed at which a hold lifts an end, over that of the slip, that counts as none [1]."""
 DISTURBED: Final = 1e3
-"""Speed of a sliding end beside its own, over its rounding noise, from which on it flies."""
+"""Excess speed of a sliding end over its rounding noise above which it flies [1]."""
 
 
 @inlined
@@ -29,9 +29,9 @@ def speed_noise(speed: float, lever: float, angular_velocity: float) -> float:
 
 @inlined
 def is_lifted(before: float, after: float, noise: float) -> bool:
-    """Whether a hold would stop or lift an end that comes down.
+    """Whether a hold would stop or lift an end that comes down, by its speeds before and after.
 
-    One that rises, though it stands a rounding below its level, is about to leave anyway.
+    An end that rises, though by rounding below its level, is about to leave anyway.
     """
     return before <= noise and after >= -noise
 
@@ -55,5 +55,5 @@ def blend(before: float, after: float, share: float) -> float:
 
 @inlined
 def share_of_loss(share: float) -> float:
-    """Give the loss of a share of a plastic impulse, over that of the whole impulse."""
+    """Give the energy loss of a share of a plastic impulse, over that of the whole one [1]."""
     return share * (2.0 - share)

@@ -1,9 +1,9 @@
-"""A bed of springs that stand side by side under a straight base, over any law of a point.
+"""A bed of separate springs side by side under a straight base, with any force law.
 
-Each spring touches the base, follows it without a force, or is clear of it. That, with the
-state of its law, is a variable of the bed that changes at events alone: as many springs as one
-likes make no more contacts. An end is held as long as the outermost spring on its side is below
-its unloaded level; where only springs between them are, both are.
+Each spring touches the base, follows it without a force, or is clear of it. This contact, with the
+state of its law, is a variable of the bed that changes at events only, so that the number of
+contact states does not grow with the springs. An end is held as long as the outermost spring on its
+side is not clear; both ends are held where only springs between the outermost ones are not clear.
 """
 
 from typing import Any, Final, NamedTuple
@@ -22,21 +22,21 @@ from rockframe.dynamics.body import BaseLine
 from rockframe.dynamics.events import REENGAGEMENT, SEPARATION, SILENT
 from rockframe.dynamics.point_law import FREE, Point, point_at
 
-# a spring, and behind it, SPRING times larger, the state of its law
+# contact of a spring; its variable is this plus SPRING times the state of its law
 TOUCHING: Final = 0
 RELAXING: Final = 1  # pulled by its dashpot alone, it follows the base without a force
 CLEAR: Final = 2
 SPRING: Final = 3
 
-# contacts: a bit for each end that is raised, or springs between the ends alone
+# contacts of the bed: a bit for each raised end (1 the left one), or BETWEEN: inner springs only
 RIGHT_RAISED: Final = 2
 FLIGHT: Final = 3
 BETWEEN: Final = 4
 CONTACTS: Final = 5
 
 # guards of a spring
-CONTACT: Final = 0
-OTHER: Final = 1  # of the law's state where it touches, of its force where it relaxes
+CONTACT: Final = 0  # its contact ends, or begins
+OTHER: Final = 1  # end of its law's state where it touches; return of its force where it relaxes
 GUARDS: Final = 2
 
 
@@ -44,12 +44,12 @@ class SpringNumbers(NamedTuple):
     """Springs, per unit mass of the body on them."""
 
     law: Any  # of each, per unit length, a rockframe.dynamics.point_law.PointLaw
-    places: tuple[float, ...]  # from the left, as shares of the way from end to end
-    lengths: tuple[float, ...]  # of the base that each carries
-    settlement: float
+    places: tuple[float, ...]  # coordinates along the base from 0 (left end) to 1, ascending
+    lengths: tuple[float, ...]  # length of base that each carries [m]
+    settlement: float  # under the weight [m]
     rest_energy: float  # per unit length
-    weight: float
-    pressure: float  # under the weight
+    weight: float  # of the body [m s^-2]
+    pressure: float  # under the weight, per unit length [s^-2]
     idle: tuple[float, ...]  # guards of one end, all 1
     steady: tuple[float, ...]  # rates of all variables, all 0
 
@@ -97,12 +97,12 @@ class Springs(Base, SpringNumbers):
 
     @inlined
     def point(self, i: int, line: BaseLine) -> Point:
-        """Give the base above one spring."""
+        """Give compression and motion of the base at one spring."""
         return point_at(line, self.places[i], self.settlement)
 
     @kernel
     def contact_of(self, own: Vector) -> int:
-        """Give the contact by those of the springs."""
+        """Give the contact of the bed from the contacts of its springs."""
         last = len(self.places) - 1
         contact = 1 if int(own[0]) % SPRING == CLEAR else 0
         contact += RIGHT_RAISED if int(own[last]) % SPRING == CLEAR else 0
@@ -127,13 +127,13 @@ class Springs(Base, SpringNumbers):
                 lever = line.left_lever + point.place * (line.right_lever - line.left_lever)
                 moment += force * lever
                 dissipated += length * self.law.power(state, point, mine)
-            elif spring == RELAXING:  # the spring feeds the dashpot
+            elif spring == RELAXING:  # the spring relaxes against its dashpot
                 dissipated -= length * self.law.spring(point, mine) * point.speed
         return BaseForce(upward, moment, dissipated)
 
     @inlined
     def flow(self, contact: int, line: BaseLine, own: Vector) -> Variables:
-        """Give the rates of the laws' variables; contacts change at events alone."""
+        """Give the rates of the laws' variables; contacts change at events only."""
         rates = self.steady
         each = self.law.variables()
         for i in range(len(self.places)):
@@ -144,7 +144,7 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def energy(self, line: BaseLine, own: Vector) -> tuple[float, float]:
-        """Give the energy of all springs, and that less the energy at rest."""
+        """Give the energy of all springs, and the energy less that at rest."""
         stored = change = 0.0
         for i in range(len(self.places)):
             point, mine = self.point(i, line), self.of_law(own, i)
@@ -157,7 +157,7 @@ class Springs(Base, SpringNumbers):
 
     @inlined
     def spring_of(self, left: bool, which: int) -> int:
-        """Give the spring of a guard of an end; both ends count from the outside."""
+        """Give the number of the spring of a guard; guards of an end count from the outside."""
         return which // GUARDS if left else len(self.places) - 1 - which // GUARDS
 
     @inlined
@@ -189,7 +189,7 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def switch(self, contact: int, left: bool, which: int, line: BaseLine, own: Vector) -> EndEvent:
-        """Switch a spring, with all others that go the same way at the same instant."""
+        """Switch a spring, with all others that make the same switch at the same instant."""
         i = self.spring_of(left, which)
         was, here = int(own[i]), self.point(i, line)
         for j in range(len(self.places)):
@@ -210,7 +210,7 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def after(self, was: int, guard: int, point: Point, own: Any) -> float:
-        """Give a spring after one of its guards has fallen."""
+        """Give the variable of a spring after one of its guards has fallen."""
         spring, state = was % SPRING, was // SPRING
         if spring == TOUCHING and guard == OTHER:
             return float(TOUCHING + SPRING * ((state + 1) % self.law.states()))
@@ -221,7 +221,7 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def level(self, left: bool, line: BaseLine, own: Vector) -> float:
-        """Give how much higher than an end the outermost spring's unloaded level is."""
+        """Give how far below its unloaded level the outermost spring on a side is [m]."""
         i = 0 if left else len(self.places) - 1
         return self.point(i, line).pressed - self.law.sunk(self.of_law(own, i))
 
@@ -248,12 +248,12 @@ class Springs(Base, SpringNumbers):
         return self.contact_of(own)
 
     def resting_height(self, left: float, right: float, own: Any) -> float:
-        """Give the height at which the springs carry the weight."""
+        """Give the height at which the springs carry the weight [m], found numerically."""
         return height_under(self, self.weight, 2.0 * self.settlement, (left, right), own)
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Vector) -> Variables:
-        """Give reaction, length in contact, greatest pressure, and what the outermost laws show."""
+        """Give reaction, length in contact, greatest pressure, columns of the outermost springs."""
         length = greatest = 0.0
         last = len(self.places) - 1
         for i in range(last + 1):
@@ -266,6 +266,6 @@ class Springs(Base, SpringNumbers):
 
     @kernel
     def seen(self, i: int, line: BaseLine, own: Vector) -> Variables:
-        """Give what the law of one spring shows."""
+        """Give the columns of the law of one spring."""
         state = int(own[i]) // SPRING if int(own[i]) % SPRING == TOUCHING else FREE
         return self.law.seen(state, self.point(i, line), self.of_law(own, i))

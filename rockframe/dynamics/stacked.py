@@ -1,7 +1,7 @@
-"""Two bodies, one on the other: what all equations of stacks share.
+"""Two bodies, one on the other: their modes, states and guards.
 
-The upper body stands on a base on the lower one, the lower one on a base on the ground. A mode
-is that of the upper body and, behind it, that of the lower one.
+The upper body stands on a base on the lower one, the lower one on a base on the ground. The number
+of a mode is that of the upper body plus its number of modes times that of the lower body.
 """
 
 from typing import Any, Final, NamedTuple
@@ -25,7 +25,7 @@ UPPER: Final = 0
 LOWER: Final = 1
 """Numbers of the bodies."""
 
-# places in the state behind rotation and height of the upper body, see rockframe.dynamics.bodies
+# indices in the state after rotation and height of the upper body, see rockframe.dynamics.bodies
 LOWER_ROTATION: Final = 2
 LOWER_VERTICAL: Final = 3
 HORIZONTAL: Final = 4
@@ -48,7 +48,7 @@ CONTACTS: Final = ("contact_state", "soil_contact_state")
 
 
 class Modes(NamedTuple):
-    """How both bodies stand."""
+    """Modes of both bodies."""
 
     upper: Mode
     lower: Mode
@@ -62,7 +62,7 @@ class States(NamedTuple):
 
 
 class Stacked(InState):
-    """What both systems of a stack share. A mixin of named tuples with both bodies."""
+    """Access to modes, states and guards of two bodies. A mixin of named tuples with both."""
 
     __slots__ = ()
     upper: OnBase
@@ -98,7 +98,7 @@ class Stacked(InState):
 
     @inlined
     def relaxation_in(self, mode: int) -> float:
-        """Give the rate at which an end that slides follows its base, of the faster one."""
+        """Give the rate at which a sliding end follows its base, of the faster base [s^-1]."""
         modes = self.modes_in(mode)
         return max(self.upper.relaxation_in(modes.upper), self.lower.relaxation_in(modes.lower))
 
@@ -115,7 +115,7 @@ class Stacked(InState):
 
     @inlined
     def own_place(self, k: int) -> int:
-        """Give the place of the variables of a base's own in the state."""
+        """Give the index in the state of a base's own variables."""
         return 2 * COORDINATES + (0 if k == UPPER else self.upper.base.variables())
 
     @inlined
@@ -130,13 +130,13 @@ class Stacked(InState):
 
     @kernel
     def part_mode(self, mode: int, k: int) -> Mode:
-        """Give how a body stands."""
+        """Give contact, held point and sliding of a body in a mode."""
         modes = self.modes_in(mode)
         return modes.upper if k == UPPER else modes.lower
 
     @kernel
     def with_part(self, mode: int, k: int, part: Mode) -> int:
-        """Give the mode in which a body stands otherwise."""
+        """Give the mode of both bodies with another mode of one."""
         count = self.upper.modes()
         if k == UPPER:
             return mode - mode % count + self.upper.number_of(part)
@@ -150,7 +150,7 @@ class Stacked(InState):
 
     @kernel
     def some_end_slides(self, mode: int) -> bool:
-        """Whether an end slides, of the block or of the cap."""
+        """Whether an end of either body slides."""
         modes = self.modes_in(mode)
         return modes.upper.slides or modes.lower.slides
 
@@ -182,7 +182,7 @@ class Stacked(InState):
 
     @kernel
     def bases_observed(self, mode: int, state: Vector) -> tuple[float, ...]:
-        """Give what both bases show."""
+        """Give the columns of both bases."""
         modes, states = self.modes_in(mode), self.states_in(state)
         return self.upper.observed_base(
             modes.upper, states.upper, self.upper.body.attitude(states.upper.rotation),
@@ -195,7 +195,7 @@ class Stacked(InState):
 
 @kernel
 def tell_of_soil(memory: Vector) -> None:
-    """Call the last event by its name for the lower body."""
+    """Rename the last event to the kind that it has for the lower body, on soil."""
     event = int(memory[LAST_EVENT])
     if event == PIVOT_CHANGE:
         memory[LAST_EVENT] = SOIL_PIVOT_CHANGE

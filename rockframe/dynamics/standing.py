@@ -1,7 +1,7 @@
-"""How one body stands at rest on its base, or on a corner of a rigid one.
+"""Statics of one body on its base, or on a corner of a rigid base, at a given rotation.
 
-At a rotation, with a force that its base carries or at a height: the forces are those of its
-equations of motion, :eq:`eq-static-chain`. All is per unit mass.
+The force that the base carries, or the height, is given too. Forces are those of the equations of
+motion, :eq:`eq-static-chain`. All is per unit mass.
 """
 
 import math
@@ -24,46 +24,46 @@ from rockframe.dynamics.on_base import Mode, OnBase
 from rockframe.many import asin, sqrt
 
 ROUNDING: Final = 4.0 * sys.float_info.epsilon
-"""Share of the sizes of heights that is rounding."""
+"""Rounding noise of heights over their sizes [1]."""
 TRIES: Final = 200
-"""Heights that are tried at most."""
+"""Most iterations for a height."""
 SECANTS: Final = 8
-"""Of them by secants alone; where contact ends between two, each second one halves what is left."""
+"""Iterations by secants only; after them every second one bisects, as contact may end between."""
 SHARP: Final = 1e-9
-"""Share of the uplift angle by which contact is full before it and partial beyond."""
+"""Accuracy of the uplift angle: full contact before it less this share, partial beyond [1]."""
 HALVINGS: Final = 60
-"""Of the rotation at which contact is first lost, where the levels of the ends do not tell it."""
+"""Most iterations for the uplift angle, and bisections where these do not find it."""
 STEP: Final = 1e-3
-"""By which coordinates are moved, over their sizes, to see how forces change."""
+"""Step of a coordinate, over its size, for derivatives of forces [1]."""
 STENCIL: Final = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
-"""Steps to both sides, and weights of a first derivative that is exact to the fourth order."""
+"""Steps to both sides, and weights, of a finite difference of fourth order."""
 PLACES: Final = ("rotation", "vertical")
 RATES: Final = ("angular_velocity", "vertical_velocity")
 
 
 class StandingBody(NamedTuple):
-    """A body on its base, in a chain of bodies."""
+    """A body on its base in a chain of bodies, with what is fixed for statics."""
 
     part: OnBase
-    mass: float  # over the mass that all is measured by
-    top: float  # height of its deck above its centre of mass
-    beside: float  # of its centre of mass to the right of that beneath, upright
-    settlement: float  # of its base, a typical size
+    mass: float  # over the reference mass [1]
+    top: float  # height of its deck above its centre of mass [m]
+    beside: float  # centre of mass to the right of that of the body beneath, upright [m]
+    settlement: float  # of its base, a typical size [m]
     own: Any  # variables of its base's own, as they are before any run
-    # by which it has lifted from a rigid base: 1 bears on its right corner, -1 on its left one
+    # on a rigid base: 1 if it has lifted and bears on its right corner, -1 on its left one, else 0
     corner: int = 0
 
     @property
     def allowed_rotation(self) -> float:
-        """The rotation that the settlement allows before an end of the base lifts, about."""
+        """Rotation at which an end of the base lifts, about: settlement over half the width."""
         return 2.0 * self.settlement / (self.part.body.left + self.part.body.right)
 
     def corner_lever(self, stand: "Stand") -> float:
-        """Give by how much its corner rises with its rotation."""
+        """Give the derivative of the height of its bearing corner by the rotation [m]."""
         return stand.line.right_lever if self.corner > 0 else stand.line.left_lever
 
     def way(self, attitude: Attitude, pivot: int) -> tuple[Reach, float]:
-        """Give how the centre of mass moves along the deck beneath, and where it is there."""
+        """Give derivatives of the centre of mass's place along the deck beneath, and this place."""
         body = self.part.body
         pin = body.pin(pivot)
         across = self.beside + pin + (body.height * attitude.sine - pin * attitude.cosine)
@@ -80,23 +80,23 @@ class StandingBody(NamedTuple):
 
 
 class Stand(NamedTuple):
-    """A body at a rotation on its base, which carries what is on it."""
+    """Equilibrium of a body at a rotation on its base, which carries the load on it."""
 
     state: BodyState
     mode: Mode
     reach: Reach
-    across: float  # of its centre of mass along the deck beneath, from the one beneath
+    across: float  # centre of mass from that of the body beneath, along the deck [m]
     line: BaseLine
     force: BaseForce
-    press: float  # what stands on its base, along the normal of that
+    press: float  # load on its base, normal to it
     own: Any  # variables of its base's own, as at a start there
-    arm: float = 0.0  # of its centre of mass normal to the deck beneath, from the one beneath
+    arm: float = 0.0  # centre of mass from that of the body beneath, normal to the deck [m]
 
 
 def standing_body(
     part: OnBase, mass: float = 1.0, top: float = 0.0, beside: float = 0.0, own: Any = None
 ) -> StandingBody:
-    """Give a body on its base, which without variables of its own is as before any run."""
+    """Give a body on its base; `own` are the base's variables, by default those before any run."""
     body, base = part
     if own is None:
         own = base.read(np.zeros(base.variables()), 0)
@@ -105,7 +105,7 @@ def standing_body(
 
 
 def settled(standing: StandingBody, rotation: float, press: float) -> Stand:
-    """Give how a body stands at a rotation on its base, which carries a force.
+    """Give the equilibrium of a body at a rotation on its base, which carries a force `press`.
 
     The force of a base falls with the height of the body on it. The height at which the base
     carries the weight is a first guess, which a secant between bounds refines.
@@ -143,7 +143,7 @@ def settled(standing: StandingBody, rotation: float, press: float) -> Stand:
 
 
 def lifted(standing: StandingBody, rotation: float, height: float) -> Stand:
-    """Give how a body stands that links may have lifted off its base."""
+    """Give a body at a rotation and a height, at which links may have lifted it off its base."""
     body, base = standing.part
     own = standing.own if isinstance(standing.own, tuple) else np.array(standing.own)
     state, attitude = BodyState(rotation, height, 0.0, 0.0, 0.0, 0.0), body.attitude(rotation)
@@ -154,7 +154,7 @@ def lifted(standing: StandingBody, rotation: float, height: float) -> Stand:
 
 
 def on_corner(standing: StandingBody, rotation: float, press: float) -> Stand:
-    """Give how a body stands on a corner of a rigid base."""
+    """Give a body at a rotation on a corner of a rigid base, which carries a force."""
     body, right = standing.part.body, standing.corner > 0
     attitude = body.attitude(rotation)
     level = attitude.rise + (-body.right if right else body.left) * attitude.sine
@@ -167,9 +167,9 @@ def on_corner(standing: StandingBody, rotation: float, press: float) -> Stand:
 
 
 def uplift_rotation(standing: StandingBody, press: float) -> float:
-    """Give the least rotation to the right at which a base is no longer in full contact.
+    """Give the least rotation to the right at which a base is no longer in full contact [rad].
 
-    NaN where it is up to a right angle.
+    NaN if contact is full up to a right angle.
     """
     body, base = standing.part
 
@@ -180,13 +180,13 @@ def uplift_rotation(standing: StandingBody, press: float) -> float:
     most = math.inf if body.small else 0.5 * math.pi
     if not body.small and is_full(most):
         return math.nan
-    # where the end has risen by the settlement, and on from there by secants
+    # first guess: the end has risen by the settlement; then secants
     guess = standing.allowed_rotation
     guess = guess if body.small else asin(min(guess, 1.0))
     last, left, slope = math.nan, math.nan, 1.0 / guess
     for _ in range(HALVINGS):
         stand = settled(standing, guess, press)
-        # how much lower the higher end is than where it parts, over the settlement
+        # depth of the higher end below its level of separation, over the settlement
         now = base.level(True, stand.line, stand.own) / standing.settlement
         if not abs(now) > ROUNDING or guess == last:
             break
@@ -208,10 +208,10 @@ def uplift_rotation(standing: StandingBody, press: float) -> float:
 def of_base(
     standing: StandingBody, stand: Stand, name: str, *, from_rest: bool = False
 ) -> tuple[float, float]:
-    """Give minus the change of a base's moment and force with a coordinate or rate of its body.
+    """Give minus the derivatives of a base's moment and force by a coordinate or rate of its body.
 
-    Rates are moved over those of a vibration that settles as much as the body does. Variables of
-    the base's own keep their values, or are those of a load that has grown `from_rest`.
+    The size of rates is that of a vibration with the settlement as its amplitude. The base's own
+    variables keep their values, or are those of a load that has grown `from_rest`.
     """
     body, base = standing.part
     size = standing.allowed_rotation if name in (PLACES[0], RATES[0]) else standing.settlement

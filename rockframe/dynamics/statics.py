@@ -1,8 +1,8 @@
-"""Bodies on one another at rest and held: the forces are those of their equations of motion.
+"""Statics of bodies on one another, with the forces of their equations of motion.
 
-Each body stands on the deck of the one beneath it. Given how each is rotated on its base, what
-stands above a base gives the force that it carries, its law the height at which it does, and
-what is left are moments, :eq:`eq-static-chain`. All is per unit mass.
+Each body stands on the deck of the one beneath it. For given rotations on the bases, the load above
+a base gives the force that it carries, its law the height at which it does; unbalanced moments
+remain, :eq:`eq-static-chain`. All is per unit mass.
 """
 
 import math
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
     from rockframe.dynamics.tied import Reached, Tied
 
 FAR: Final = 10.0
-"""Of the size of a body, a change of its height that leads to no balance."""
+"""Change of a body's height over its size beyond which no equilibrium is searched [1]."""
 TINY: Final = 1e-30
-"""Height that is nothing [m]."""
+"""Absolute tolerance of a height, practically zero [m]."""
 LEFT: Final = 1e-6
-"""Share of the weight that may be left where a link is as stiff as rounding shows."""
+"""Unbalanced force over the weight that is allowed, for links as stiff as rounding permits [1]."""
 
 
 class StandingChain(NamedTuple):
     """Bodies that stand on one another, from the top down, and gravity along the lowest base.
 
-    Of what links them a share pulls.
+    The forces of links are multiplied by `pull`.
     """
 
     bodies: tuple[StandingBody, ...]
@@ -49,7 +49,7 @@ class StandingChain(NamedTuple):
 
     @property
     def upright(self) -> bool:
-        """Whether nothing turns the bodies from where they stand upright."""
+        """Whether no load turns the bodies away from upright."""
         level = self.along_gravity == 0.0 and not self.ties
         return level and all(one.beside == 0.0 for one in self.bodies)
 
@@ -81,7 +81,7 @@ class StandingChain(NamedTuple):
         return np.ravel([(one.allowed_rotation, one.settlement) for one in self.bodies])
 
     def settled(self, rotations: Sequence[float]) -> list[Stand] | None:
-        """Give how the bodies stand at rotations on their bases; None where one would pull."""
+        """Give the bodies at rotations on their bases; None where a base would be in tension."""
         if len(rotations) == 1:
             return self.curve(rotations)[0]
         stands = self._under_weight(rotations)
@@ -90,14 +90,14 @@ class StandingChain(NamedTuple):
         return self._at(self._loaded(stands, np.eye(len(rotations)).tolist()))
 
     def _has_broken(self, stands: Sequence[Stand]) -> bool:
-        """Whether a link is broken where bodies stand."""
+        """Whether a link is broken with the bodies where they are."""
         from rockframe.dynamics.tied import is_broken
 
         tied = self.tied(stands) if stands and self.ties else []
         return any(is_broken(one, of.elongation) for one, of in zip(self.ties, tied, strict=False))
 
     def _alone_at(self, rotation: float) -> list[Stand] | None:
-        """Give how one body stands at a rotation, whatever links it had there."""
+        """Give a single body at a rotation, with links as after slow loading up to there."""
         stands = self._under_weight([rotation])
         if stands is None or not self.ties:
             return stands
@@ -106,9 +106,9 @@ class StandingChain(NamedTuple):
         return self._at_height(stands[0])
 
     def _at_height(self, stand: Stand) -> list[Stand] | None:
-        """Give how one body stands at its rotation, between heights at which it rises and falls.
+        """Give a single body at its rotation, its height found by bracketing.
 
-        Links that yield or break leave steps of Newton's nothing to go by.
+        Newton's method fails where links yield or break, as these have no stiffness then.
         """
         from scipy.optimize import brentq
 
@@ -135,9 +135,9 @@ class StandingChain(NamedTuple):
         return found if abs(lack) <= LEFT * self.weight else None
 
     def uplift_rotation(self, side: float) -> float:
-        """Give the rotation to a side at which an end of one body with links is about to part.
+        """Give the rotation to a side at which an end of a single body with links lifts off [rad].
 
-        NaN where it is up to a right angle.
+        NaN if there is none up to a right angle.
         """
         from scipy.optimize import brentq
 
@@ -158,7 +158,7 @@ class StandingChain(NamedTuple):
         return cast("float", brentq(lack, 0.0, far))
 
     def _under_weight(self, rotations: Sequence[float]) -> list[Stand] | None:
-        """Give how the bodies stand at rotations on their bases without what links them."""
+        """Give the bodies at rotations on their bases, without their links."""
         mass, found = 0.0, list[Stand]()
         frames = self.frames(rotations)
         for standing, rotation, (normal, _) in zip(self.bodies, rotations, frames, strict=True):
@@ -169,7 +169,7 @@ class StandingChain(NamedTuple):
         return self._with_arms(found)
 
     def _with_arms(self, stands: Sequence[Stand]) -> list[Stand]:
-        """Give the bodies with where they are over what they stand on."""
+        """Give the bodies with their heights over the bodies beneath them."""
         decks = [*(one.top for one in self.bodies[1:]), 0.0]
         return [
             one._replace(arm=deck + standing.part.body.height + one.state.vertical)
@@ -177,7 +177,7 @@ class StandingChain(NamedTuple):
         ]
 
     def stands_at(self, balance: Balance) -> list[Stand]:
-        """Give how the bodies stand on bases that carry some forces, or above them."""
+        """Give the bodies on bases that carry the forces of a balance, or lifted off them."""
         places = zip(self.bodies, *(each.tolist() for each in balance[:3]), strict=True)
         return self._with_arms([
             settled(one, rotation, press) if press > 0.0 else lifted(one, rotation, height)
@@ -185,7 +185,7 @@ class StandingChain(NamedTuple):
         ])  # fmt: skip
 
     def moved(self, stands: Sequence[Stand], at: int, by: float) -> list[Stand]:
-        """Give the bodies with one coordinate moved, without what their bases do then."""
+        """Give the bodies with one coordinate moved, the forces of their bases unchanged."""
         k, found = at // 2, [*stands]
         standing, now = self.bodies[k], stands[k]
         state = now.state._replace(**{PLACES[at % 2]: now.state[at % 2] + by})
@@ -198,7 +198,7 @@ class StandingChain(NamedTuple):
         return self._with_arms(found)
 
     def following(self, stands: Sequence[Stand]) -> Matrix:
-        """Give how coordinates go with those that are free: on a corner no height is."""
+        """Give derivatives of coordinates by the free ones: on a corner no height is free."""
         found = np.eye(2 * len(stands))
         for k, (standing, stand) in enumerate(zip(self.bodies, stands, strict=True)):
             if standing.corner:
@@ -219,7 +219,7 @@ class StandingChain(NamedTuple):
         return found
 
     def _at(self, path: Path | None) -> list[Stand] | None:
-        """Give how the bodies stand where a path has come to; corners bear what is left."""
+        """Give the bodies at the end of a path; corners of rigid bases carry the rest."""
         if path is None:
             return None
         stands = self.stands_at(path.place)
@@ -233,7 +233,7 @@ class StandingChain(NamedTuple):
         return self._with_arms(stands) if bears else None
 
     def reached(self, stands: Sequence[Stand]) -> "list[Reached]":
-        """Give where the points of what links the bodies are."""
+        """Give displacements of the points of the links."""
         from rockframe.dynamics.tied import reached
 
         return reached(self.bodies, stands, self.ties)
@@ -242,7 +242,7 @@ class StandingChain(NamedTuple):
         self, stands: Sequence[Stand], states: Sequence[int] | None = None,
         stretches: Sequence[float] | None = None,
     ) -> "list[Tied]":  # fmt: skip
-        """Give how what links the bodies is stretched."""
+        """Give elongations and forces of the links."""
         from rockframe.dynamics.tied import tied
 
         return tied(self.bodies, stands, self.ties, states, stretches)
@@ -281,7 +281,7 @@ class StandingChain(NamedTuple):
         return found
 
     def rise(self, stands: Sequence[Stand]) -> float:
-        """Give the rise of the highest centre of mass from where it is upright and at rest."""
+        """Give the rise of the highest centre of mass from upright rest [m]."""
         found = turned = top = 0.0
         for standing, stand in zip(self.bodies[::-1], stands[::-1], strict=True):
             sine, cosine = sine_cosine(turned)
@@ -293,10 +293,10 @@ class StandingChain(NamedTuple):
         return found
 
     def rest(self) -> list[Stand] | None:
-        """Give how the bodies rest under their weight, :eq:`eq-tilted-rest`; None if they fall.
+        """Give the bodies at rest under their weight, :eq:`eq-tilted-rest`; None if they fall.
 
-        Eccentricity and slope grow from zero, and rest is followed from upright: a chain that
-        leans has a second equilibrium, farther out, from which it falls.
+        Eccentricity and slope grow from zero, and the equilibrium is followed from upright: a chain
+        that leans has a second equilibrium, farther out, which is unstable.
         """
         upright = self._under_weight([0.0] * len(self.bodies))
         if upright is None or self.upright:
@@ -304,13 +304,13 @@ class StandingChain(NamedTuple):
         return self._at(self._loaded(upright, []))
 
     def curve(self, rotations: Sequence[float]) -> list[list[Stand] | None]:
-        """Give how the bodies stand while a couple holds the highest one at each of rotations.
+        """Give the bodies while a couple holds the highest one at each of some rotations.
 
-        Followed from upright to either side; None from where the bases cannot carry it.
+        Equilibrium is followed from upright to either side; None from where it ends.
         """
         one, every = len(self.bodies) == 1, range(len(rotations))
         found = [self._alone_at(rotation) if one else None for rotation in rotations]
-        # a link that is broken at one height of a body may hold it at another
+        # a link that is broken at one height of a body may be whole at another
         sought = [i for i in every if not one or self._has_broken(found[i] or [])]
         for side in (1.0, -1.0):
             here = [i for i in sought if math.copysign(1.0, rotations[i]) == side]
@@ -323,13 +323,13 @@ class StandingChain(NamedTuple):
         return found
 
     def _upright_path(self) -> Path | None:
-        """Give where the curve begins: under all loads, the highest body upright."""
+        """Give the start of the curve: equilibrium under all loads, the highest body upright."""
         upright = self._under_weight([0.0] * len(self.bodies))
         loaded = None if upright is None else self._loaded(upright, [len(self.bodies) * [1.0]])
         return None if loaded is None else Path(0.0, loaded.place)
 
     def held(self, path: Path, rotation: float) -> tuple[Path | None, list[Stand] | None]:
-        """Give how the bodies stand at a rotation of the highest one, followed along a path."""
+        """Give path and bodies at a rotation of the highest one, followed from a path so far."""
         highest, size = np.ones((1, len(self.bodies))), float(self.sizes[::2].min())
         further = followed(
             lambda at: HeldBodies(self, highest, np.array([at])), path, rotation, size

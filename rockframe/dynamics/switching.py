@@ -1,9 +1,9 @@
-"""What happens to a body and its base at an event: separation, landing, re-pinning, sliding.
+"""Events of a body on its base: separation, landing, change of the held point, sliding.
 
-Written once for all scenes. `system` is the whole of bodies, which knows how the velocities of
-all of them answer an impulse; `part` is the body in question with its base, and `k` its number
-in the system. Re-pinning :eq:`eq-repinning`, impact :eq:`eq-impact`, partial hold
-:eq:`eq-partial-hold`, leaving :eq:`eq-leaving-into-flight`.
+Written once for all scenes. `system` is all bodies together, which gives the response of their
+velocities to an impulse; `part` is the body in question with its base, and `k` its number in the
+system. Re-pinning, the impulse of a new held point: :eq:`eq-repinning`; impact :eq:`eq-impact`,
+partial hold :eq:`eq-partial-hold`, leaving :eq:`eq-leaving-into-flight`.
 """
 
 from rockframe.compiled import Vector, kernel
@@ -43,7 +43,7 @@ from rockframe.dynamics.sliding import (
 
 @kernel
 def has_same_hold(part: OnBase, one: Mode, other: Mode) -> bool:
-    """Whether two modes hold a body at the same point, or both do not."""
+    """Whether two modes hold a body at the same point, or both at none."""
     if part.is_free(one) or part.is_free(other):
         return part.is_free(one) and part.is_free(other)
     return one.pivot == other.pivot
@@ -62,7 +62,7 @@ def end_speed(part: OnBase, left: bool, state: BodyState) -> tuple[float, float]
 def set_end_speed(
     system: Bodies, part: OnBase, k: int, left: bool, speed: float, direction: float, state: Vector
 ) -> None:
-    """Give an end a speed, or one on the side of it that rounding cannot leave."""
+    """Set the speed of an end, beside `speed` by rounding noise in the sense of `direction`."""
     now, noise = end_speed(part, left, system.state_of(k, state))
     beside = direction * max(noise, part.base.least_landing())
     system.change(k, 0.0, speed + beside - now, state)
@@ -70,7 +70,7 @@ def set_end_speed(
 
 @kernel
 def following_speed(system: Bodies, part: OnBase, k: int, left: bool, state: Vector) -> float:
-    """Give the speed at which an end rises with its base without a force between them."""
+    """Give the upward speed of an end that moves with its base without a force [m s^-1]."""
     line = part.body.base_line_at(system.state_of(k, state))
     return part.base.following_speed(left, line, part.base.read(state, system.own_place(k)))
 
@@ -81,8 +81,8 @@ def repin(
 ) -> float:
     """Project the momentum on the horizontal restraint of a new mode, :eq:`eq-repinning`.
 
-    The restraint's impulse, which is given, does no work on what it lets through: the loss is
-    that of the slip between the old velocity and the new one.
+    Gives the impulse of the restraint. The energy lost is half its product with the slip that it
+    stops.
     """
     body = system.state_of(k, state)
     attitude = part.body.attitude(body.rotation)
@@ -103,7 +103,7 @@ def repin(
 
 @kernel
 def lift_by_slip(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> float:
-    """Give the speed at which the end that slides rises where its hold lets a slip of 1 go."""
+    """Give the upward speed of a sliding end by a hold's impulse that adds a slip of 1 [1]."""
     was = system.part_mode(mode, k)
     held = system.with_part(mode, k, Mode(was.contact, was.pivot, False))
     line = part.body.base_line_at(system.state_of(k, state))
@@ -118,11 +118,11 @@ def strike(
     system: Bodies, part: OnBase, k: int, mode: int, left: bool, right: bool, state: Vector,
     memory: Vector,
 ) -> None:  # fmt: skip
-    """Reduce the speeds of the landing ends to eps times what they were, :eq:`eq-impact`."""
+    """Reduce the speeds of the landing ends by the factors eps, :eq:`eq-impact`."""
     line = part.body.base_line_at(system.state_of(k, state))
     gain_left = -(1.0 - part.base.rebound(True)) * min(line.left_speed, 0.0)
     gain_right = -(1.0 - part.base.rebound(False)) * min(line.right_speed, 0.0)
-    # what unit impulses at either end do to the speeds of the ends
+    # changes of the ends' speeds by unit impulses at either end
     at_left = system.response(k, mode, 1.0, line.left_lever, 0.0, state)
     at_right = system.response(k, mode, 1.0, line.right_lever, 0.0, state)
     left_left = at_left.vertical + line.left_lever * at_left.rotation
@@ -154,9 +154,9 @@ def repin_landing(
     system: Bodies, part: OnBase, k: int, old: int, new: int, left: bool, target: float,
     state: Vector, memory: Vector,
 ) -> bool:  # fmt: skip
-    """Hold a body out of flight that has come down on one end; give whether it slides.
+    """Hold a body that lands on one end after flight; give whether it slides.
 
-    The hold's impulse ends where the end has got the speed `target`, at which the base no
+    The hold's impulse ends where the end has reached the speed `target`, at which the base no
     longer presses, :eq:`eq-partial-hold`.
     """
     speed, _ = end_speed(part, left, system.state_of(k, state))
@@ -190,7 +190,7 @@ def comes_back(
     system: Bodies, part: OnBase, k: int, left: bool, speed: float, mode: int, state: Vector,
     ground: Ground,
 ) -> bool:  # fmt: skip
-    """Whether an end that rises so fast comes back before its rise can be told."""
+    """Whether an end with this upward speed comes back after a negligible rise."""
     rises = system.end_accelerations(k, mode, state, ground)
     return part.body.returns_at_once(speed, -(rises[0] if left else rises[1]))
 
@@ -200,7 +200,7 @@ def stay_if_small(
     system: Bodies, part: OnBase, k: int, left: bool, mode: int, state: Vector, ground: Ground,
     memory: Vector,
 ) -> None:  # fmt: skip
-    """Stop an end that has landed, and that leaves only to come back at once."""
+    """Stop an end that has landed and whose rebound is negligible, by an impulse."""
     line = part.body.base_line_at(system.state_of(k, state))
     speed, lever = line.left_speed, line.left_lever
     if not left:
@@ -219,12 +219,12 @@ def after_separation(
     system: Bodies, part: OnBase, k: int, left: bool, mode: int, new: int, state: Vector,
     ground: Ground, memory: Vector,
 ) -> int:  # fmt: skip
-    """Give the mode after an end has left, and re-pin.
+    """Give the mode after an end has lifted off, with its new held point.
 
-    An end that its base would press at once in flight slides, :eq:`eq-leaving-into-flight`.
-    One that the re-pinning of its own separation leaves pressed waits until it is let go. One
-    whose rise it would end altogether would be held again at the same instant, without end: it
-    stays held where its base presses, but is not pressed; else it rises, and the held point stays.
+    An end that its base would press again in flight slides, :eq:`eq-leaving-into-flight`. If the
+    impulse of the new held point leaves it pressed, it lifts off once its base has lost its force.
+    If this impulse would end its rise it would be held again at the same instant, endlessly: it
+    stays held, without a force, if its base presses, and else rises with the old held point.
     """
     was, now = system.part_mode(mode, k), system.part_mode(new, k)
     repins = not has_same_hold(part, was, now)
@@ -267,7 +267,7 @@ def switch_end(
     system: Bodies, part: OnBase, k: int, left: bool, which: int, mode: int, state: Vector,
     ground: Ground, memory: Vector,
 ) -> int:  # fmt: skip
-    """Carry out the switch of an end's contact with its base."""
+    """Carry out the switch of an end's contact with its base; give the new mode."""
     was = system.part_mode(mode, k)
     line = part.body.base_line_at(system.state_of(k, state))
     own = part.base.read(state, system.own_place(k))
@@ -306,7 +306,7 @@ def switch_end(
 def next_pivot(
     system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground
 ) -> int:
-    """Give the corner that leads from now on; upright and at rest, the first lean decides."""
+    """Give the next leading corner, to which the body leans or, from upright rest, will lean."""
     was = system.part_mode(mode, k)
     if was.pivot != PIVOT_CENTRE:
         return PIVOT_LEFT if was.pivot == PIVOT_RIGHT else PIVOT_RIGHT
@@ -325,7 +325,7 @@ def next_pivot(
 def change_pivot(
     system: Bodies, part: OnBase, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
 ) -> int:
-    """Change the corner that leads."""
+    """Change the leading corner, and with it the held point; give the new mode."""
     was, pivot = system.part_mode(mode, k), next_pivot(system, part, k, mode, state, ground)
     memory[LAST_EVENT] = SILENT
     if was.pivot != PIVOT_CENTRE:
@@ -341,7 +341,7 @@ def change_pivot(
 def end_sliding(
     system: Bodies, part: OnBase, k: int, flies: bool, mode: int, state: Vector, memory: Vector
 ) -> int:
-    """Let an end that slides fly, or hold it as its slip has come to zero."""
+    """Let a sliding end lift off, or hold it as its slip has come to zero; give the new mode."""
     was = system.part_mode(mode, k)
     left = part.base.is_held(was.contact, True)
     line = part.body.base_line_at(system.state_of(k, state))
@@ -362,7 +362,7 @@ def end_sliding(
 
 @kernel
 def fly(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
-    """Give the mode after an end that slid has left."""
+    """Give the mode after a sliding end has lifted off."""
     was = system.part_mode(mode, k)
     left = part.base.is_held(was.contact, True)
     line = part.body.base_line_at(system.state_of(k, state))
@@ -374,10 +374,9 @@ def fly(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
 
 @kernel
 def checked_sliding(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
-    """Give the mode after an event that may have disturbed an end that slides.
+    """Give the mode after an event that may have changed the speed of a sliding end.
 
-    An end that has got another speed than its base flies, and lands again at once if it comes
-    down.
+    If it differs from that of its base the end flies; it lands again at once if it moves down.
     """
     was = system.part_mode(mode, k)
     if not was.slides:
@@ -393,7 +392,7 @@ def checked_sliding(system: Bodies, part: OnBase, k: int, mode: int, state: Vect
 
 @kernel
 def disturbed(system: Bodies, part: OnBase, k: int, mode: int, state: Vector) -> int:
-    """Give the mode after an event of another body, which changed the speeds of this one."""
+    """Give the mode after an event of another body has changed the speeds of this one."""
     was = system.part_mode(mode, k)
     if was.slides:
         return checked_sliding(system, part, k, mode, state)

@@ -1,7 +1,7 @@
 """Columns under a beam with tendons along their axes, :eq:`eq-rocking-frame-tendon`.
 
-The columns rock as without tendons; these are stretched by the gaps below and above each column
-together, and pull it upright. All per unit mass of columns and beam.
+The columns rock as without tendons. The gaps below and above each column together stretch its
+tendons, which pull it upright. All per unit mass of columns and beam.
 """
 
 import math
@@ -32,9 +32,10 @@ from rockframe.dynamics.protocol import (
 )
 from rockframe.dynamics.trigonometry import sine_cosine
 
-STORED: Final = 0  # energy at rest
-PLACE_VALUE: Final = 1  # of its state in the mode
-NUMBERS: Final = 2  # of its law, from here on
+# columns of the row of a tendon
+STORED: Final = 0  # elastic energy at rest [m^2 s^-2]
+PLACE_VALUE: Final = 1  # factor of its state in the number of the mode
+NUMBERS: Final = 2  # first of the numbers of its law
 LINK_COLUMNS: Final = ("restrainer_force", "restrainer_elongation", "restrainer_state")
 OWN_COLUMNS: Final = len(bare.COLUMNS)
 EACH_COLUMNS: Final = len(LINK_COLUMNS)
@@ -46,11 +47,11 @@ class FrameNumbers(NamedTuple):
     """The numbers of columns under a beam with tendons."""
 
     rocking: bare.BlockOnRigidGround
-    half_width: float  # of a column
-    columns: float  # each has all tendons
+    half_width: float  # b, of a column [m]
+    columns: float  # number of columns; each has all tendons
     law: Any  # of the class of all tendons
     link_count: int
-    rows: Vector  # of the tendons, then room to work in
+    rows: Vector  # rows of the tendons, then the workspace
 
 
 class TiedFrame(FrameNumbers, OnRigidGround):
@@ -85,7 +86,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @inlined
     def contact_state_of(self, mode: int, k: int) -> int:
-        """Give which corner bears, or that both do."""
+        """Give the contact state: which corner bears, or both."""
         return self.rocking.contact_state_of(mode % bare.MODES, k)
 
     @inlined
@@ -96,7 +97,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @inlined
     def room(self, first: int, count: int) -> Vector:
-        """Give room behind the rows."""
+        """Give a part of the workspace behind the rows."""
         return stretch(
             self.rows, self.link_count * (NUMBERS + self.law.number_count()) + first, count
         )
@@ -131,12 +132,12 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @inlined
     def lever(self, rotation: float) -> float:
-        """Give the elongation per rotation, 2 b cos(a/2), without its sign."""
+        """Give the derivative of the elongation by the rotation, 2 b cos(a/2), without sign [m]."""
         return 2.0 * self.half_width * sine_cosine(0.5 * rotation)[1]
 
     @inlined
     def stretched(self, mode: int, state: Vector, turning: float) -> Stretch:
-        """Give how the tendons are stretched: by 4 b sin(|a|/2)."""
+        """Give the elongation 4 b sin(|a|/2) of the tendons, and its rates."""
         side, rate = self.rocking.side(mode % bare.MODES), state[1]
         half = sine_cosine(0.5 * state[0])[0]
         length, lever = 4.0 * self.half_width, self.lever(state[0])
@@ -148,7 +149,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def pull(self, mode: int, state: Vector) -> float:
-        """Give what all tendons of all columns pull with."""
+        """Give the force of all tendons of all columns together."""
         link, force = self.stretched(mode, state, 0.0), 0.0
         for i in range(self.link_count):
             row = self.row_of_link(i)
@@ -181,7 +182,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the powers of :meth:`accelerate` alone."""
+        """Give the two powers of :meth:`accelerate`."""
         rocks = mode % bare.MODES
         if rocks == bare.RESTING:
             return 0.0, 0.0
@@ -218,7 +219,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def switch(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Lift off, land, or change the state of a tendon."""
+        """Let the columns lift off or land, or change the state of a tendon; give the new mode."""
         rocks = mode % bare.MODES
         memory[LINK_PLACE] = 0.0
         if guard < bare.GUARDS:
@@ -237,7 +238,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 
     @kernel
     def energies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of columns and beam, and what the tendons store."""
+        """Give the energies of columns, beam and tendons."""
         found = self.rocking.energies(mode % bare.MODES, state)
         link, stored, at_rest = self.stretched(mode, state, 0.0), 0.0, 0.0
         for i in range(self.link_count):
@@ -252,10 +253,10 @@ class TiedFrame(FrameNumbers, OnRigidGround):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Give what columns and beam show, then force and elongation of each tendon."""
+        """Give the columns without tendons, then force, elongation and state of each tendon."""
         out, rocks = self.column_room(), mode % bare.MODES
         put(self.rocking.observe(rocks, state, slope, ground, memory), 0, out)
-        # the columns press the ground with what the tendons pull it up with
+        # the tendons pull the ground up, and the columns press it down by as much
         sine, cosine = sine_cosine(0.5 * state[0])
         pull = self.pull(mode, state)
         out[bare.BASE_SHEAR] += pull * sine
@@ -266,7 +267,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
         elif rocks == bare.ON_RIGHT:
             out[bare.RIGHT_REACTION] += pull * cosine
         else:
-            # the corners bear as far apart as rocking is, which the tendons put off
+            # reactions differ as the moment does, over the one at which rocking starts with tendons
             left, right, corner = (
                 out[bare.LEFT_REACTION],
                 out[bare.RIGHT_REACTION],
@@ -291,7 +292,7 @@ class TiedFrame(FrameNumbers, OnRigidGround):
 def tied_frame(
     model: ContactModel, links: Sequence[LinkNumbers], *, half_width: float, columns: int
 ) -> ContactModel:
-    """Give the model of a frame with tendons, by that without them."""
+    """Give the model of a frame with tendons from the model without them."""
     rows, value = list[Vector](), bare.MODES
     for one in links:
         rows.append(np.array([0.0, value, *numbers_in(one.law)]))

@@ -1,7 +1,7 @@
-"""Links of bodies at rest and held: how they are stretched, and what they do to coordinates.
+"""Statics of links between bodies: elongations, forces, and generalised forces on the bodies.
 
-A link is in the state that slow loading up to there brings it into. Its force does work on
-every rotation and height between its points, :eq:`eq-link-statics`.
+A link is in the state that slow loading up to its elongation brings it into. Its force does work
+on every rotation and height between its points, :eq:`eq-link-statics`.
 """
 
 import math
@@ -20,26 +20,26 @@ if TYPE_CHECKING:
     from rockframe.dynamics.standing import Stand, StandingBody
 
 Ends = tuple[tuple[float, float], tuple[float, float]]
-"""Both points of a link."""
+"""Both points of a link (x, y) [m]."""
 
 STEP = 1e-3
-"""Rate by which the force's change with the rate is found [m s^-1]."""
+"""Step of the rate for the derivative of a link's force by it [m s^-1]."""
 SMALL = 1e-6
-"""Elongation by which that with the elongation is found, over the sizes of what is linked."""
+"""Step of the elongation for the derivative of a link's force, over the size of bodies [1]."""
 
 
 class Tied(NamedTuple):
-    """A link of bodies that are at rest."""
+    """Force and geometry of a link between bodies at rest."""
 
     force: float  # with which it pulls
     state: int
-    stiffness: float  # change of the force with the elongation
-    damping: float  # likewise with its rate
+    stiffness: float  # derivative of the force by the elongation
+    damping: float  # derivative of the force by the rate of elongation
     elongation: float
-    way: Matrix  # how its first point moves from its second, by all coordinates
-    direction: Vector  # from the second to the first; zero where they meet without force
-    moved: Vector  # how its first point has moved from its second
-    meets: bool  # whether both points are one as it is given
+    way: Matrix  # derivatives of `moved` by all coordinates
+    direction: Vector  # unit, from the second to the first; zero where they meet without force
+    moved: Vector  # displacement of its first point relative to its second [m]
+    meets: bool  # whether both points coincide as it is given
 
     @property
     def loads(self) -> Vector:
@@ -49,7 +49,7 @@ class Tied(NamedTuple):
 
     @property
     def damping_matrix(self) -> Matrix:
-        """What its dashpot does in small motion, along the link or wherever its points go."""
+        """Damping matrix of its dashpot, along the link or, where points meet, in any direction."""
         along = self.direction @ self.way
         if self.direction.any():
             return self.damping * np.outer(along, along)
@@ -57,7 +57,7 @@ class Tied(NamedTuple):
 
 
 class _Frame(NamedTuple):
-    """Where a body is, and the axes of what it stands on."""
+    """Displacement and rotation of a body, and the axes of the deck beneath it."""
 
     place: Vector
     sine: float  # of its rotation
@@ -67,17 +67,17 @@ class _Frame(NamedTuple):
 
 
 class Reached(NamedTuple):
-    """Where the first point of a link is from its second."""
+    """Motion of the first point of a link relative to its second."""
 
-    moved: Vector  # from where it is given
-    way: Matrix  # how it moves, by all coordinates
-    direction: Vector  # in which the link pulls it back; zero where both meet
+    moved: Vector  # displacement from where it is given [m]
+    way: Matrix  # derivatives of this by all coordinates
+    direction: Vector  # unit vector away from the second point; zero where both meet
 
 
 def reached(
     bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]", ties: Sequence[ChainLink]
 ) -> list[Reached]:
-    """Give where the points of links are, of bodies that stand."""
+    """Give the relative displacements of the points of links, for given places of bodies."""
     frames, found = _frames(bodies, stands) if ties else [], list[Reached]()
     for one in ties:
         on, on_way = _point(one.on, one.on_point, stands, frames)
@@ -93,9 +93,9 @@ def tied(
     states: Sequence[int] | None = None,
     stretches: Sequence[float] | None = None,
 ) -> list[Tied]:
-    """Give how links are stretched between bodies that stand.
+    """Give elongations and forces of links, for given places of bodies.
 
-    Their forces are those of other stretches where these are told.
+    With `stretches` the forces are those of these elongations instead.
     """
     none = [None] * len(ties)
     points = reached(bodies, stands, ties)
@@ -106,7 +106,7 @@ def tied(
 def pulled(
     tie: ChainLink, point: Reached, state: int | None = None, stretch: float | None = None
 ) -> Tied:
-    """Give how a link is stretched, and what it pulls."""
+    """Give elongation and force of a link; `stretch` is an elongation for the force alone."""
     moved, way, direction = point
     apart, along, meets = np.array(tie.apart), any(tie.along), False
     if along:
@@ -121,12 +121,12 @@ def pulled(
 
 
 def force_at(tie: ChainLink, elongation: float) -> float:
-    """Give what a link pulls that is stretched slowly."""
+    """Give the force of a link after slow loading to an elongation."""
     return _answer(tie, elongation, None)[0]
 
 
 def is_broken(tie: ChainLink, elongation: float) -> bool:
-    """Whether a link is broken that is stretched slowly."""
+    """Whether a link is broken after slow loading to an elongation."""
     law: Any = tie.numbers.law
     return bool(law.shown(_answer(tie, elongation, None)[1]) == LinkState.BROKEN)
 
@@ -134,7 +134,7 @@ def is_broken(tie: ChainLink, elongation: float) -> bool:
 def _answer(
     tie: ChainLink, elongation: float, state: int | None
 ) -> tuple[float, int, float, float]:
-    """Give a link's force, its state, and how the force changes with elongation and rate."""
+    """Give a link's force, its state, and the force's derivatives by elongation and rate."""
     law: Any = tie.numbers.law
     given = math.hypot(*tie.apart)
     reach = given + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
@@ -154,7 +154,7 @@ def _answer(
 
 
 def _reached(tie: ChainLink, moved: Vector, way: Matrix) -> Reached:
-    """Give where a point is that has moved."""
+    """Give relative displacement, its derivatives and the direction of a link."""
     if any(tie.along):
         return Reached(moved, way, np.array(tie.along))
     now = np.array(tie.apart) + moved
@@ -163,7 +163,7 @@ def _reached(tie: ChainLink, moved: Vector, way: Matrix) -> Reached:
 
 
 def at_rest(ties: Sequence[ChainLink]) -> list[Tied]:
-    """Give how links are stretched as they are given."""
+    """Give elongations and forces of links in the geometry in which they are given."""
     return [pulled(one, _reached(one, np.zeros(2), np.zeros((2, 1)))) for one in ties]
 
 
@@ -171,9 +171,9 @@ def rocked(
     ties: Sequence[ChainLink], ends: Sequence[Ends], upper: int, pivot: tuple[float, float],
     rotation: float,
 ) -> list[Tied]:  # fmt: skip
-    """Give how links are stretched as some bodies rotate as one about a fixed point.
+    """Give elongations and forces of links as some bodies rotate as one about a fixed point.
 
-    Those from the top down to `upper`. `ends` are both points of each link, upright.
+    These are the bodies from the top down to `upper`. `ends` are both points of each link, upright.
     """
     sine, lacks = math.sin(rotation), 2.0 * math.sin(0.5 * rotation) ** 2
     found = list[Tied]()
@@ -190,7 +190,7 @@ def rocked(
 
 
 def _frames(bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list[_Frame]:
-    """Give where bodies are, from where they are given."""
+    """Give displacements of bodies from where they are given, and their axes."""
     found, place, turned = list[_Frame](), np.zeros(2), 0.0
     sine, cosine = 0.0, 1.0
     for k in range(len(stands) - 1, -1, -1):
@@ -211,7 +211,7 @@ def _frames(bodies: "Sequence[StandingBody]", stands: "Sequence[Stand]") -> list
 def _point(
     k: int, point: tuple[float, float], stands: "Sequence[Stand]", frames: Sequence[_Frame]
 ) -> tuple[Vector, Matrix]:
-    """Give how a point has moved, and how it moves with all coordinates."""
+    """Give the displacement of a point of a body, and its derivatives by all coordinates."""
     way = np.zeros((2, 2 * len(stands)))
     if k == GROUND:
         return np.zeros(2), way

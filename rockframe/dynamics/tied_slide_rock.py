@@ -1,8 +1,8 @@
 """A block that slides, rocks and flies on rigid ground, with links: its equations and its model.
 
 Links act on the block as weight and inertia do, :eq:`eq-slide-tied`: motion and switches are those
-of :mod:`rockframe.dynamics.slide_motion` and :mod:`rockframe.dynamics.slide_rock`. The state of
-each link stands in the mode beside bearing and slip.
+of :mod:`rockframe.dynamics.slide_motion` and :mod:`rockframe.dynamics.slide_rock`. The
+number of the mode includes the state of each link beside bearing and slip.
 """
 
 import math
@@ -71,9 +71,9 @@ class TiedNumbers(NamedTuple):
     gravity: float
     body_count: int  # 1
     link_count: int
-    begins_idle: float  # 1 where no link does anything while all are in their first state
-    law: Any  # of the class of all links; its numbers are those of one of them
-    rows: Vector  # room for the block; then rows of the links, and room to work in
+    begins_idle: float  # 1 where no link has a force while all are in their first state, else 0
+    law: Any  # of the class of all links; its numbers are replaced by those of each link's row
+    rows: Vector  # workspace of the block; then rows of the links and their workspace
 
 
 class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[reportGeneralTypeIssues]
@@ -88,7 +88,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @inlined
     def behind_bodies(self) -> int:
-        """Give the place behind the room of the block."""
+        """Give the index behind the workspace of the block."""
         return PLACES
 
     @inlined
@@ -103,21 +103,21 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @inlined
     def link_place(self) -> int:
-        """Give the place of the last event's link in the memory."""
+        """Give the index in the memory of the last event's link."""
         return LINK_PLACE
 
     @inlined
     def begin_event(self, memory: Vector) -> None:
-        """Forget what the last event left: nothing but its link."""
+        """Reset the memory of the last event: nothing but its link, which is set elsewhere."""
 
     @inlined
     def all_idle(self, mode: int) -> bool:
-        """Whether it is known at once that no link does anything in a mode."""
+        """Whether no link acts in a mode, as far as that is known without asking each."""
         return mode < MODES and self.begins_idle != 0.0
 
     @kernel
     def lay(self, mode: int, state: Vector, room: Vector) -> None:
-        """Write where the block is, from where it is given, and how it moves."""
+        """Write displacement, rotation and velocity of the block."""
         lies, side = self.lies(), self.side(self.bears_in(mode))
         sine, cosine = sine_cosine(state[ROTATION])
         lacks = versine(sine, cosine)
@@ -130,12 +130,12 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @inlined
     def set_out(self, mode: int, state: Vector, room: Vector) -> None:
-        """Write the same: all of it follows from the state."""
+        """Write displacement, rotation and velocity of the block, as :meth:`lay`."""
         self.lay(mode, state, room)
 
     @inlined
     def pulled(self, mode: int, state: Vector, ground: Ground) -> tuple[Loads, float]:
-        """Give what acts on the block, :eq:`eq-slide-tied`, and what links dissipate."""
+        """Give the loads on the block, :eq:`eq-slide-tied`, and the power that links dissipate."""
         if self.all_idle(mode):
             return Loads(ground.x, self.gravity + ground.y, 0.0), 0.0
         room = self.places()
@@ -146,7 +146,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @kernel
     def loads(self, mode: int, state: Vector, ground: Ground) -> Loads:
-        """Give what acts on the block: weight, inertia, and the forces of links."""
+        """Give the loads on the block: weight, inertia, and the forces of links."""
         return self.pulled(mode, state, ground)[0]
 
     @kernel
@@ -167,7 +167,7 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the power dissipated at the rates of the slope, and that put in at those given."""
+        """Give the power dissipated, of the slope, and that of the ground at the state's rates."""
         across, up = self.speeds(mode, state)
         return slope[SIZE + self.variables()], -ground.x * across - ground.y * up
 
@@ -204,15 +204,15 @@ class TiedSlideRock(TiedNumbers, Linked, SlideSwitches):  # pyright: ignore[repo
     def observe_bodies(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Write motion, reactions and slip of the block, and where it is."""
-        self.set_out(mode, state, self.places())  # links that do nothing are shown, too
+        """Write motion, reactions and slip of the block, and its displacement for links."""
+        self.set_out(mode, state, self.places())  # links without force are observed, too
         out = self.column_room()
         put(self.columns_under(mode, state, slope, self.loads(mode, state, ground)), 0, out)
         return out
 
 
 def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) -> ContactModel:
-    """Assemble the model of a block that slides and rocks with links, of some mass [kg]."""
+    """Assemble the model of a block that slides and rocks with links, from its mass [kg]."""
     alone = slide_rock(bare, mass=mass)
     law, rows = rows_of_links(ties, MODES, 1)
     filled = np.concatenate([np.zeros(PLACES), *rows])
@@ -233,7 +233,7 @@ def tied_slide_rock(bare: SlideRock, ties: Sequence[ChainLink], *, mass: float) 
     forces = own_tolerance[PRESSING:]
     own_tolerance[PRESSING:] = np.maximum(forces, rounding_of_ties(ties) / bare.gravity)
     tied, own = links_shown(ties), alone.columns
-    if bare.static == math.inf:  # users do not see a slip that there is not
+    if bare.static == math.inf:  # no columns of slip where there cannot be any
         own = tuple(
             replace(one, name=f"unused_{one.name}") if one.name in SLIP_COLUMNS else one
             for one in own

@@ -1,6 +1,6 @@
 """Sine and cosine as polynomials: the same bits on every machine.
 
-An angle is reduced to a quarter turn about the nearest multiple of half a turn; there the
+An angle is reduced to at most a quarter turn from the nearest multiple of half a turn; there the
 Taylor polynomials of degree 19 and 20 are exact to the last bit or two.
 """
 
@@ -19,7 +19,7 @@ PER_HALF_TURN: Final = 1.0 / math.pi
 HALF_TURN: Final = math.pi
 REST_OF_HALF_TURN: Final = 1.2246467991473532e-16  # pi less its double, sin(math.pi)
 TO_WHOLE: Final = 6755399441055744.0
-"""1.5 * 2^52: what is added and taken away again is rounded to a whole number."""
+"""1.5 * 2^52: adding and subtracting it rounds a number to an integer."""
 
 
 @inlined
@@ -48,5 +48,5 @@ def sine_cosine(angle: float) -> tuple[float, float]:
 
 @inlined
 def versine(sine: float, cosine: float) -> float:
-    """Give 1 - cos to all digits, from sine and cosine."""
+    """Give 1 - cos without cancellation, from sine and cosine."""
     return sine * sine / (1.0 + cosine) if cosine > 0.0 else 1.0 - cosine

@@ -1,4 +1,4 @@
-"""Bodies upon one another with their bases, and how fast they vibrate at most."""
+"""Bodies upon one another with their bases: bounds of natural frequencies and damping rates."""
 
 import math
 from collections.abc import Sequence
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 
 class ChainBody(NamedTuple):
-    """A body upon others, and the base under it, per unit of the mass that all is measured by."""
+    """A body upon others, and the base under it, per unit of the reference mass."""
 
     body: Body
     base: BaseNumbers
-    mass: float
-    top: float  # of the body above its centre of mass
-    beside: float  # of its centre of mass to the right of that of the body below, upright
+    mass: float  # over the reference mass [1]
+    top: float  # height of the body's top above its centre of mass [m]
+    beside: float  # its centre of mass to the right of that of the body below, upright [m]
 
 
 def is_rigid(base: BaseNumbers) -> bool:
@@ -39,9 +39,9 @@ def per_own_mass(link: ChainBody) -> Body:
 def fastest_vibration(
     links: Sequence[ChainBody], ties: Sequence["ChainLink"] = ()
 ) -> tuple[float, float]:
-    """Give bounds of angular frequency and damping rate, whichever of the bodies fly.
+    """Give upper bounds of angular frequency and damping rate, whichever of the bodies fly [s^-1].
 
-    Gravity, and a base that is left, make no vibration faster.
+    Neither gravity nor a loss of contact makes a vibration faster.
     """
     fastest = damping = 0.0
     for first in range(len(links)):
@@ -50,8 +50,7 @@ def fastest_vibration(
         root, stiffness, damped = small_motion_matrices(some)
         fastest = max(fastest, greatest_share(stiffness + pulled, root))
         damping = max(damping, greatest_share(damped + slowed, root))
-    # a body that stands still on a rigid base makes no vibration faster; one that rocks is a
-    # pendulum of its own
+    # a body at rest on a rigid base makes no vibration faster; a rocking one has a rate of its own
     rocking = sum(rocking_rate(per_own_mass(one)) ** 2 for one in links if is_rigid(one.base))
     return math.sqrt(max(fastest, rocking)), damping
 
@@ -59,9 +58,9 @@ def fastest_vibration(
 def _of_ties(
     links: Sequence[ChainBody], ties: Sequence["ChainLink"], first: int
 ) -> tuple[Matrix, Matrix]:
-    """Give what links add to stiffness and damping, whichever way they are directed.
+    """Give bounds of the stiffness and damping of links, whatever their directions.
 
-    Bodies above the first of some do not move.
+    Bodies before number `first` do not move.
     """
     size = 2 * len(links)
     stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
@@ -78,9 +77,9 @@ def _of_ties(
 
 
 def greatest_share(matrix: Matrix, root: Matrix) -> float:
-    """Give the greatest eigenvalue of a matrix over that of the masses, which is R^T R of a root.
+    """Give the greatest eigenvalue of a matrix relative to the mass matrix R^T R, R the `root`.
 
-    The root is never singular to rounding, as the masses of unlike bodies are.
+    With very unlike masses the mass matrix may be singular within rounding; its root is not.
     """
     inverse = np.linalg.inv(root)
     return float(np.linalg.eigvalsh(inverse.T @ matrix @ inverse).max())
@@ -105,7 +104,7 @@ def small_motion_matrices(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, M
 
 
 def small_ways(links: Sequence[ChainBody]) -> tuple[Matrix, Matrix, Matrix]:
-    """Give how the centres of mass move, and the bodies turn, with these coordinates."""
+    """Give derivatives of x, y and rotation of each body by all coordinates, upright."""
     count = len(links)
     x, y, turn = (np.zeros((count, 2 * count)) for _ in range(3))
     below_x, below_y, below_turn = (np.zeros(2 * count) for _ in range(3))

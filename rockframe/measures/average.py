@@ -39,20 +39,20 @@ def average_spectral_acceleration(
     motion : GroundMotion or HorizontalPair, or mapping of str to one of these
         The motion or the pair, or several by their labels.
     periods : (sequence, unit), Quantity or sequence of str
-        All of equal weight, such as 57 from 0.2 to 3 times the first period of a building;
+        Periods, all of equal weight, such as 57 from 0.2 to 3 times the first period of a building;
         increasing, and above zero [s].
     damping_ratio : float, optional
-        Of the oscillators [1].
+        Damping ratio of the oscillators [1].
     component : {"horizontal", "vertical"}, optional
-        Which acceleration of a motion.
+        Component of a motion.
 
     Returns
     -------
     xarray.Dataset
         Scalars, of several over ``motion`` [m s^-2]: of motions
         ``average_spectral_acceleration``, :eq:`eq-average-acceleration`; of pairs
-        ``average_geometric_mean_acceleration`` and ``average_median_rotated_acceleration``, the
-        same of the spectra of :func:`rockframe.rotated_spectrum`.
+        ``average_geometric_mean_acceleration`` and ``average_median_rotated_acceleration``, these
+        averages of the spectra of :func:`rockframe.rotated_spectrum`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What measures have in common: the motions and components they look at, and labels of answers."""
+"""Inputs and outputs of measures: motions and their components, and labels of the results."""
 
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class GroundComponent(StrEnum):
-    """Which acceleration of a motion is looked at."""
+    """The component of a motion that a measure is of."""
 
     HORIZONTAL = "horizontal"
     VERTICAL = "vertical"
@@ -55,19 +55,19 @@ _LABEL: Final = {"long_name": "ground motion"}
 
 @dataclass(frozen=True)
 class Inputs(Generic[Thing]):
-    """What is looked at: one thing, or several with their labels."""
+    """Inputs of a measure: one signal or pair, or several with their labels."""
 
     things: list[Thing]  # signals, or pairs of motions
-    labels: list[str] | None  # of several; None where it is one
-    attributes: dict[str, str | float | int]  # what the answer says of them
+    labels: list[str] | None  # of several; None for a single one
+    attributes: dict[str, str | float | int]  # attributes of the result on them
 
     @property
     def over(self) -> tuple[str, ...]:
-        """The dimension of several."""
+        """The dimension of several inputs; none for a single one."""
         return () if self.labels is None else (MOTION,)
 
     def each(self, function: Callable[[Thing], Answer]) -> list[Answer]:
-        """Ask for the answer of each, in threads where compiled code lets them run together."""
+        """Give the function of each input, computed in threads where compiled code permits."""
         workers = min(cpu_count() or 1, len(self.things))
         if not COMPILED or workers < 2:
             return [function(thing) for thing in self.things]
@@ -76,14 +76,14 @@ class Inputs(Generic[Thing]):
             return [first, *pool.map(function, self.things[1:])]
 
     def joined(self, answers: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-        """Put the values of all answers into arrays, or give those of the one."""
+        """Give the values of all results as arrays, or those of the single one."""
         rows = list(answers)
         if self.labels is None:
             return dict(rows[0])
         return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
     def labelled(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Name several along their dimension."""
+        """Label several inputs along their dimension."""
         if self.labels is None:
             return dataset
         return without_fill_values(dataset.assign_coords({MOTION: (MOTION, self.labels, _LABEL)}))
@@ -114,7 +114,7 @@ REFERENCES: Final = (
     "Nigam and Jennings (1969), Bull. Seism. Soc. Am. 59, 909-922; Arias (1970), in Seismic Design "
     "for Nuclear Power Plants; Rathje et al. (2004), Earthquake Spectra 20, 119-144"
 )
-"""Where spectra and intensity measures come from; page "Response spectra" has them all."""
+"""References of spectra and intensity measures; all are on the page "Response spectra"."""
 
 
 def component_attributes(
@@ -141,7 +141,7 @@ def build_over(
     title: str,
     source: str,
 ) -> xr.Dataset:
-    """Label values, and give their dimensions coordinates.
+    """Give a labelled dataset of values, with coordinates of their dimensions.
 
     The axes have the names and units of the schema's rows for a system's modes, where
     these are variables over ``mode``.

@@ -61,7 +61,7 @@ def rotated_spectrum(
     periods, damping_ratios : optional
         As for :func:`rockframe.response_spectrum` [s], [1].
     directions : int, optional
-        Directions over half a circle, evenly spaced; an even number.
+        Number of directions, even, evenly spaced over half a circle.
 
     Returns
     -------
@@ -86,12 +86,12 @@ def rotated_spectrum(
     Warns
     -----
     RecordWarning
-        Periods asked for are shorter than ten time steps of a record.
+        Some periods are shorter than ten time steps of a record.
 
     Notes
     -----
     As exact as :func:`rockframe.response_spectrum`: in the direction of a component it gives
-    that component's spectrum. Of several records the vertical one is given if all have it.
+    that component's spectrum. Of several records vertical spectra are given if all have them.
 
     Examples
     --------
@@ -167,8 +167,8 @@ def principal_axes(pair: HorizontalPair | Mapping[str, HorizontalPair]) -> xr.Da
 
     Notes
     -----
-    :eq:`eq-principal-axes`, after Penzien and Watabe (1975), over the whole motion. Of two
-    components of equal intensity that are uncorrelated any axes are principal ones.
+    :eq:`eq-principal-axes`, after Penzien and Watabe (1975), over the whole motion. If both
+    components are uncorrelated and of equal intensity any axes are principal ones.
 
     Examples
     --------
@@ -225,7 +225,7 @@ def _axes(pair: HorizontalPair) -> dict[str, float]:
 
 
 def _pairs(given: object, *, owner: str) -> Inputs[HorizontalPair]:
-    """Take one pair or several."""
+    """Read one pair or several."""
     if isinstance(given, HorizontalPair):
         return Inputs([given], None, {"motion": given.name, "references": _REFERENCES})
     if not isinstance(given, Mapping):

@@ -31,7 +31,7 @@ def velocity_and_displacement(motion: GroundMotion, *, component: str = "horizon
     motion : GroundMotion
         The motion. The ground starts from rest.
     component : {"horizontal", "vertical"}, optional
-        Which acceleration.
+        Component of the motion.
 
     Returns
     -------
@@ -97,10 +97,10 @@ def fourier_spectrum(
     motion : GroundMotion
         The motion.
     resolution : str or Quantity, optional
-        Greatest distance between frequencies: zeros are appended until it is reached. One
-        over the motion's length unless given [Hz].
+        Greatest distance between frequencies, reached by appending zeros; by default one over
+        the motion's duration [Hz].
     component : {"horizontal", "vertical"}, optional
-        Which acceleration.
+        Component of the motion.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Intensity measures of a motion, and what it is to a given block."""
+"""Intensity measures of a motion, also relative to a given block."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -56,16 +56,16 @@ def intensity_measures(
     motion : GroundMotion, or mapping of str to GroundMotion
         The motion, or several by their labels, such as a suite.
     block : Block, optional
-        The block, or FrameEquivalent, that the motion is to rock; adds the measures that
-        depend on it.
+        The block, or FrameEquivalent; adds the measures that depend on it.
     component : {"horizontal", "vertical"}, optional
-        Which acceleration.
+        Component of the motion.
     threshold : str or Quantity, optional
-        Of the bracketed duration [m s^-2].
+        Threshold of the bracketed duration [m s^-2].
     damping_ratio : float, optional
-        Of the velocity spectrum behind the Housner intensity and its predominant period [1].
+        Damping ratio of the velocity spectrum behind the Housner intensity and its predominant
+        period [1].
     gravity : str or Quantity, optional
-        Standard gravity unless given [m s^-2].
+        Acceleration of gravity, the standard one unless given [m s^-2].
 
     Returns
     -------
@@ -93,9 +93,8 @@ def intensity_measures(
     Peaks and durations are those of the motion that a simulation sees, between the samples
     too. Squares and absolute values of a record are summed over its samples by the
     trapezoidal rule. The ground starts from rest and nothing is corrected: an offset of the
-    acceleration spoils ``peak_ground_velocity`` and all the more
-    ``peak_ground_displacement``. The measures of the block hold on rigid ground,
-    :eq:`eq-rocking-measures`.
+    acceleration distorts ``peak_ground_velocity``, and ``peak_ground_displacement`` even more.
+    The measures of the block hold on rigid ground, :eq:`eq-rocking-measures`.
 
     Examples
     --------
@@ -145,7 +144,7 @@ def intensity_measures(
 
 
 def measure_of_ground(motion: GroundMotion, name: str) -> float:
-    """Give one of these measures alone, of the horizontal component by the usual arguments."""
+    """Give one measure of the ground, of the horizontal component with default arguments."""
     if name in ("housner_spectrum_intensity", "predominant_velocity_period"):
         check_cost(motion.si.horizontal, _PERIODS, owner=_OWNER)
     level = to_si(_THRESHOLD, ACCELERATION, owner=_OWNER, name="threshold", condition=POSITIVE)
@@ -158,7 +157,7 @@ def measure_of_ground(motion: GroundMotion, name: str) -> float:
 def _of_ground(
     signal: Signal, *, threshold: float, damping_ratio: float, gravity: float
 ) -> dict[str, Callable[[], float]]:
-    """Give what computes each measure: some take a hundred times as long as others."""
+    """Give a function for each measure: some take a hundred times as long as others."""
     velocity, displacement = ground_path(signal)
     arias = arias_history(signal, gravity)
     step = signal.time_step

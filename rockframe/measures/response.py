@@ -22,7 +22,7 @@ from rockframe.signals.spectra import DAMPING_RATIO, check_cost, pseudo_spectra,
 from rockframe.units import PERIOD, QuantityLike, RatioLike, to_ratio, to_si_values
 
 SAMPLES_PER_PERIOD: Final = 25
-"""Samples of the shortest period of a band-limited motion: lines between them lower it by 0.5 %."""
+"""Samples in the shortest period of a band-limited motion: straight lines lower it by 0.5 %."""
 
 _PERIODS_PER_DECADE: Final = 100
 _OWNER: Final = "response_spectrum"
@@ -49,12 +49,12 @@ def response_spectrum(
         Undamped natural periods, increasing; 0 stands for a rigid oscillator. 100 per
         decade from 0.01 s to 10 s unless given [s].
     damping_ratios : sequence of float, or float, optional
-        Shares of critical damping, from 0 to 1 [1].
+        Damping over critical damping, from 0 to 1 [1].
     component : {"horizontal", "vertical"}, optional
-        Which acceleration.
+        Component of the motion.
     interpolation : {"linear", "band-limited"}, optional
-        What a record is between its samples: straight lines, as a simulation sees it, or the
-        motion with these samples and nothing beyond their Nyquist frequency. The lines lower
+        A record between its samples: straight lines, as in simulations, or the band-limited
+        motion with these samples and no content above their Nyquist frequency. The lines lower
         the ordinates at periods shorter than about ten time steps.
 
     Returns
@@ -78,8 +78,8 @@ def response_spectrum(
     Warns
     -----
     RecordWarning
-        Periods asked for are shorter than ten time steps of a record, and its samples are
-        joined by straight lines.
+        Some periods are shorter than ten time steps of a record, whose samples are joined by
+        straight lines.
 
     Notes
     -----
@@ -111,7 +111,7 @@ def spectra_of(
     ratios: Array,
     between: Interpolation = Interpolation.LINEAR,
 ) -> xr.Dataset:
-    """Give spectra of what is looked at, at checked periods, as :func:`response_spectrum` does."""
+    """Give spectra of signals at checked periods, as :func:`response_spectrum` does."""
     if between is Interpolation.BAND_LIMITED:
         looked = replace(looked, things=[_refined(one, seconds) for one in looked.things])
     for signal in looked.things:
@@ -134,7 +134,7 @@ def shortest_of(seconds: Array) -> float:
 
 
 def oscillator_axes(ratios: Array, seconds: Array) -> dict[str, tuple[Array, str]]:
-    """Give the axes of spectra and their meanings, for :func:`build_over`."""
+    """Give the axes of spectra, values and schema rows, for :func:`build_over`."""
     return {
         "damping_ratio": (ratios, "damping ratio of the oscillator"),
         "period": (seconds, "undamped period of the oscillator"),
@@ -142,7 +142,7 @@ def oscillator_axes(ratios: Array, seconds: Array) -> dict[str, tuple[Array, str
 
 
 def _refined(signal: Signal, seconds: Array) -> Signal:
-    """Sample a record so finely that straight lines hold all of it, :eq:`eq-straight-lines`."""
+    """Resample a record so that straight lines represent it well, :eq:`eq-straight-lines`."""
     if signal.analytic:
         return signal
     shortest = float(seconds.min(initial=np.inf))

@@ -1,4 +1,4 @@
-"""Cloud analysis: a straight line in logarithms, with runs that overturn apart."""
+"""Cloud analysis: a straight line in logarithms, runs that overturn being treated separately."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -47,12 +47,12 @@ from rockframe.units import POSITIVE, RatioLike
 
 _OWNER: Final = "cloud_analysis"
 _FEWEST: Final = 4
-"""Runs of a regression, below which nothing is left for its dispersion."""
+"""Least number of runs in a regression, so that its dispersion can be estimated."""
 _POINTS: Final = 101
 _DRAWS: Final = 4000
-"""Of the coefficients, for bounds."""
+"""Random draws of the coefficients, for bounds."""
 _BEYOND: Final = 3.0
-"""Logarithm of the intensity by which medians are looked for beyond the runs."""
+"""Range beyond the intensities of the runs in which medians are searched, as a logarithm."""
 _WIDE: Final = 601
 _ENDS: Final = ("", "_lower_bound", "_upper_bound")
 _OF_INTENSITY: Final = (
@@ -91,7 +91,7 @@ class Line:
         )  # fmt: skip
 
     def drawn(self, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
-        """Draw intercepts, slopes and dispersions that are as likely, :eq:`eq-cloud-posterior`."""
+        """Draw intercepts, slopes and dispersions of the posterior, :eq:`eq-cloud-posterior`."""
         scale = np.sqrt(self.freedom / rng.chisquare(self.freedom, count))
         root = np.linalg.cholesky(self.covariance)
         about = rng.standard_normal((count, 2)) @ root.T * scale[:, None]
@@ -100,17 +100,17 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Cloud:
-    """Runs, each under a motion, with what is fitted to them."""
+    """Runs, each under one motion, and the line and logistic curves fitted to them."""
 
     logs: Array  # of the intensity
     responses: Array  # infinite where the block overturned, zero where it stayed at rest
-    line: Line | None  # of the runs between these; None of too few
+    line: Line | None  # of the runs in between; None if these are too few
     overturning: Logistic
     moving: Logistic  # of runs that did not overturn: whether anything moved
 
     @classmethod
     def of(cls, logs: Array, responses: Array) -> "Cloud":
-        """Fit a line, and what parts runs that overturn, or stay at rest, from the others."""
+        """Fit a line, and logistic curves for overturning and for staying at rest."""
         fell, moved = np.isinf(responses), responses > 0.0
         between = moved & ~fell
         several = between.sum() >= _FEWEST and np.ptp(logs[between]) > 0.0
@@ -146,7 +146,7 @@ class Cloud:
         return _beyond(self.overturning.at(logs), self.moving.at(logs), of_line, logs, level)
 
     def drawn(self, logs: Array, level: float, rng: np.random.Generator, count: int) -> Array:
-        """Draw curves that are as likely; shape (count, intensities)."""
+        """Draw fragility curves from the posterior; shape (count, intensities)."""
         falls, moves = self.overturning.drawn(logs, rng, count), self.moving.drawn(logs, rng, count)
         of_line = None
         if self.line is not None and not math.isinf(level):
@@ -157,7 +157,7 @@ class Cloud:
 def _beyond(
     falls: Array, moves: Array, of_line: Sequence[Any] | None, logs: Array, level: float
 ) -> Array:
-    """Give the probability beyond a level from those to overturn and to move, and the line."""
+    """Give the probability beyond a level: of overturning, of moving, and by the line."""
     from scipy.special import ndtr
 
     if math.isinf(level):
@@ -189,28 +189,28 @@ def cloud_analysis(
     Parameters
     ----------
     runs : xarray.Dataset
-        Of a sweep over many motions, usually as they were recorded.
+        Result of a sweep over many motions, usually as they were recorded.
     intensity : str or DataArray, optional
         Measure, as for :func:`rockframe.fragility`.
     response : str, optional
-        Which scalar of the runs.
+        The scalar of the runs that is the response.
     label : str, optional
-        Of points, bodies or restrainers which one.
+        Which point, body or restrainer, where the response is of one of several.
     limits : iterable, optional
         Levels of the response, with a unit where it has one: limit states beside overturning.
     least : float, str or Quantity, optional
         Response below which a run counts as one in which nothing moved, with a unit where it has
         one; zero unless given.
     period : str or Quantity, or several, optional
-        Of a spectral intensity [s].
+        Period of a spectral intensity [s].
     motions : GroundMotion, or sequence or mapping of them, optional
         The records, where neither the dataset nor this process has them.
     pooled : iterable of str, optional
-        Axes of which all values are taken for one structure, as for :func:`rockframe.fragility`.
+        Axes whose values all count as one structure, as for :func:`rockframe.fragility`.
     confidence : float, optional
-        Of all bounds [1].
+        Confidence level of all bounds [1].
     seed : int, optional
-        Of the random numbers that bounds are found by.
+        Seed of the random numbers for the bounds.
 
     Returns
     -------
@@ -219,7 +219,7 @@ def cloud_analysis(
         ``determination`` of the runs that moved and did not overturn; ``logistic_intercept`` and
         ``logistic_slope`` of overturning; over ``limit_state`` what a fragility has:
         ``median_intensity``, ``dispersion``, ``exceedance_probability``, with bounds; and over
-        ``run`` ``cloud_intensity`` and ``cloud_response``, infinite of those that overturned. The
+        ``run`` ``cloud_intensity`` and ``cloud_response``, infinite where a run overturned. The
         attribute ``verdict`` says it in words.
 
     Raises
@@ -236,16 +236,15 @@ def cloud_analysis(
     The modified cloud analysis of Jalayer et al. (2017): the logarithm of the response is normal
     about a straight line in that of the intensity, :eq:`eq-cloud-line`, for runs that do not
     overturn, and overturning is logistic, :eq:`eq-cloud-fragility`. Blocks on rigid ground that
-    stay at rest have no logarithm, and those that hardly rise have one that tells nothing of the
-    others, so that `least` had best be given; whether a block that stands has moved is logistic
-    too. Where
-    the intensity parts one from the other without overlap, the probability is a step in the middle
-    of the gap. The median is where the probability is one half, the dispersion half the
-    logarithm of the ratio of the intensities at 84 and 16 %; of the line alone the curve is
-    lognormal, and both are its parameters.
+    stay at rest have no logarithm, and the logarithm of those that hardly rise says nothing of
+    the others, so that `least` had best be given; the probability that a standing block has moved
+    is logistic too. Where the intensity separates both kinds of runs without overlap, the
+    probability is a step in the middle of the gap. The median is where the probability is one
+    half, the dispersion half the logarithm of the ratio of the intensities at 84 and 16 %; if no
+    run overturns or rests the curve is lognormal, and both are its parameters.
 
-    Bounds are those between which curves lie whose coefficients are drawn from what the runs leave
-    possible (the robust fragility of Jalayer et al., 2015), :eq:`eq-cloud-posterior`. Where
+    Bounds are quantiles of curves whose coefficients are drawn from their posterior distribution
+    (the robust fragility of Jalayer et al., 2015), :eq:`eq-cloud-posterior`. Where
     motions were run more than once the runs depend on one another, and there are none.
 
     Examples
@@ -285,17 +284,17 @@ def cloud_analysis(
 
 
 class CloudOfRuns(NamedTuple):
-    """A cloud, and which runs it is of."""
+    """A cloud, and the runs that are in it."""
 
     cloud: Cloud
-    kept: Generic  # whether each run is one of it, in the order of the dimensions
+    kept: Generic  # whether each run is in it, in the order of the dimensions
     repeated: bool  # whether motions were run more than once
 
 
 def cloud_of(
     runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray, *, least: float, owner: str
 ) -> CloudOfRuns:
-    """Fit a cloud to runs that have a verdict, an intensity and a response."""
+    """Fit a cloud to the runs that have a verdict, an intensity and a response."""
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without motions; expected those of many motions"
         raise StudyError(msg)
@@ -317,7 +316,7 @@ def cloud_of(
 
 
 def read_least(given: Any, values: xr.DataArray, *, owner: str) -> float:
-    """Read the response below which nothing is taken to have moved, in its own unit."""
+    """Read the response below which a run counts as one at rest, in the response's unit."""
     return 0.0 if given is None else _read_level(given, values, owner, "least")
 
 
@@ -350,7 +349,7 @@ def _curve(
         drawn = cloud.drawn(np.concatenate([along, wide]), level, rng, _DRAWS)
         points[1:] = np.quantile(drawn[:, : len(along)], tails, axis=0)
         each = _parameters(drawn[:, len(along) :], wide)
-        # beyond what was looked at a median is anywhere: it counts as infinite
+        # a median beyond the searched range counts as infinite
         every = [np.where(np.isnan(one), np.inf, one) for one in each]
         medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
         spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
@@ -358,7 +357,7 @@ def _curve(
 
 
 def _status(cloud: Cloud, level: float) -> FragilityStatus:
-    """Tell whether a limit state has a fragility, or why not."""
+    """Give whether a limit state has a fragility, or why not."""
     if math.isinf(level):
         rises = cloud.overturning.status is not FragilityStatus.FITTED
         rises = rises or cloud.overturning.coefficients[1] > 0.0
@@ -450,7 +449,7 @@ def _labelled(
 
 
 def _sentence(found: xr.Dataset, repeated: bool) -> str:
-    """Tell the line, and how many runs overturned."""
+    """Give the verdict in words: the line, and how many runs overturned."""
     words = measure_words(str(found.attrs["intensity"]), found.attrs.get(PERIOD_OF))
     count, fell = found.sizes["run"], int(found["cloud_overturned_count"])
     rest = int(found["resting_count"])

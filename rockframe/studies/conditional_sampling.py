@@ -1,6 +1,6 @@
-"""Subset simulation: a small probability as a product of probabilities that are not small.
+"""Subset simulation: a small probability as a product of conditional ones that are not small.
 
-Samples are standard normal numbers; whoever calls makes parameters of them.
+Samples are standard normal numbers; the caller transforms them to parameters.
 """
 
 import math
@@ -15,27 +15,27 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import clopper_pearson
 
 Demand = Callable[[str, Array], Array]
-"""Runs samples, a row each, of a part of the whole that has a name; gives what each demands, NaN of
-one without an answer."""
+"""Function of the name of a level and its samples, a row each, that runs them; gives the demand of
+each, NaN where a run has no verdict."""
 
 _FIRST_STEP: Final = 0.6
-"""Step of the first chains (Papaioannou et al., 2015)."""
+"""Step size of the first chains (Papaioannou et al., 2015)."""
 _ACCEPTED: Final = 0.44
 """Share of accepted candidates at which chains mix best (Papaioannou et al., 2015)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """A sample given that the threshold before is exceeded."""
+    """One level: samples drawn given that the threshold of the level before is exceeded."""
 
-    demands: Array  # NaN where a run told none, which is so at the first level alone
-    origins: Generic  # which run each is, counted from the first one of all
-    families: Generic  # from which sample of the first level each descends
-    threshold: float  # demand from which on a sample exceeds
-    chains: int  # how many there are
-    acceptance: float  # share of candidates that were taken; NaN at the first level [1]
+    demands: Array  # NaN where a run has none, which occurs at the first level only
+    origins: Generic  # number of each one's run, counted over all levels
+    families: Generic  # number of the sample of the first level from which each descends
+    threshold: float  # demand from which on a sample counts as exceeding
+    chains: int  # number of chains
+    acceptance: float  # share of accepted candidates; NaN at the first level [1]
     runs: int
-    left_out: int  # runs without an answer
+    left_out: int  # runs without a verdict
 
     @property
     def exceeds(self) -> Generic:
@@ -44,7 +44,7 @@ class Level:
 
     @property
     def known(self) -> int:
-        """How many samples have a demand."""
+        """Number of samples that have a demand."""
         return int((~np.isnan(self.demands)).sum())
 
     @property
@@ -63,12 +63,11 @@ def subset_levels(
     most: int,
     rng: np.random.Generator,
 ) -> Iterator[Level]:
-    """Sample level by level, until the limit is exceeded by a share that can be counted.
+    """Sample level by level, until a sufficient share of the samples exceeds the limit.
 
-    By chains of samples, :eq:`eq-conditional-candidate`, from those that exceed a threshold.
-    The last level has the limit for its threshold, whether or not it is exceeded: it is that at
-    which the share is reached, the one of greatest number, or one whose samples all demand the
-    same.
+    Each level has chains, :eq:`eq-conditional-candidate`, that start at the samples beyond the last
+    threshold. The last level has the limit for its threshold, exceeded or not: it is the one in
+    which the share is reached, the last that is allowed, or one whose samples all have one demand.
     """
     scores = rng.standard_normal((count, size))
     demands = demand("level 01", scores)
@@ -85,7 +84,7 @@ def subset_levels(
         (seeds,) = np.nonzero(level.exceeds)
         chains, length = len(seeds), max(2, round(count / len(seeds)))
         runs, left_out = chains * (length - 1), 0
-        # all chains make a step at once, so that their runs go side by side
+        # all chains make a step together, so that their runs are made in parallel
         states = [(scores[seeds], demands[seeds], origins[seeds])]
         accepted: list[float] = []
         for place in range(1, length):
@@ -111,8 +110,8 @@ def subset_levels(
 def _threshold(demands: Array, share: float, limit: float) -> float:
     """Give the demand that a share of the samples reaches, halfway between two of them.
 
-    Demands that are the same stay together, so that the share is that which is nearest by its
-    logarithm. Where nothing parts the samples it is the limit.
+    Equal demands are not separated, so that the share nearest by its logarithm is taken. Where all
+    demands are equal the limit is given.
     """
     values, counts = np.unique(demands[~np.isnan(demands)], return_counts=True)
     if len(values) < 2:
@@ -129,7 +128,7 @@ def probability_of(levels: Sequence[Level]) -> float:
 
 
 def family_shares(levels: Sequence[Level]) -> Array:
-    """Give the share that each first sample has in those that exceed the last threshold [1]."""
+    """Give the share of each first sample's descendants in those beyond the last threshold [1]."""
     last = levels[-1]
     count = np.bincount(last.families[last.exceeds], minlength=len(levels[0].demands))
     return count[~np.isnan(levels[0].demands)] / max(int(count.sum()), 1)
@@ -147,8 +146,8 @@ def variation_of(levels: Sequence[Level]) -> float:
 def bounds_of(levels: Sequence[Level], confidence: float) -> tuple[float, float]:
     """Give bounds of the probability, :eq:`eq-subset-bounds` [1].
 
-    Of a single level they are those of independent cases. Where nothing exceeds the last threshold
-    the probability is below that of the threshold before.
+    For a single level they are those of independent cases. Where no sample exceeds the last
+    threshold the upper bound comes from the probability of the threshold before.
     """
     from scipy.stats import t
 
@@ -168,9 +167,9 @@ def bounds_of(levels: Sequence[Level], confidence: float) -> tuple[float, float]
 
 
 def weights_of(levels: Sequence[Level]) -> list[Array]:
-    """Give each sample the probability that it stands for, :eq:`eq-subset-weights` [1].
+    """Give the probability that each sample represents, :eq:`eq-subset-weights` [1].
 
-    Samples that exceed a threshold are those in whose place the next level stands.
+    Samples beyond a threshold have none: the next level represents them.
     """
     found: list[Array] = []
     before = 1.0

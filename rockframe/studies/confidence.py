@@ -1,4 +1,4 @@
-"""Shares and chances: their range, the confidence that is asked for, and exact bounds."""
+"""Probabilities as arguments, and exact confidence bounds of shares."""
 
 from typing import Final
 

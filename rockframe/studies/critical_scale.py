@@ -1,4 +1,4 @@
-"""How much of a motion it takes to overturn a block."""
+"""The critical scale: the least factor of a motion that overturns a block."""
 
 import itertools
 import math
@@ -76,17 +76,17 @@ def critical_scale(
     bracket_width : float, optional
         Width of a bracket, over its upper scale [1].
     intensity : str, optional
-        Intensity measure whose value at the critical scale is wanted: ``"PGA"`` and other
+        Intensity measure whose value at the critical scale is given: ``"PGA"`` and other
         abbreviations of :func:`rockframe.fragility`, or a name of
         :func:`rockframe.intensity_measures`, such as ``"peak_ground_acceleration"``, or of
         :func:`rockframe.response_spectrum`, such as ``"pseudo_spectral_acceleration"``.
     period : str or Quantity, optional
-        Of the oscillator of a spectral value [s].
+        Period of the oscillator of a spectral value [s].
     damping_ratio : float, optional
-        Of that oscillator, or of the spectra behind a measure [1].
+        Damping ratio of that oscillator, or of the spectra behind a measure [1].
     progress : bool, optional
-        Whether a bar counts the runs (needs tqdm); where it can be seen unless given. Its
-        total grows beyond `scales` with what is looked into.
+        Whether a bar counts the runs (needs tqdm); by default where it can be seen. Its
+        total grows beyond `scales` with the intervals that are halved.
 
     Returns
     -------
@@ -113,20 +113,20 @@ def critical_scale(
     -----
     SolverWarning
         Runs could not be finished. They have no verdict, and are neither counted as
-        standing nor as overturned. What the run at the critical scale warns of, it warns of here;
-        where a base has a coefficient of friction and nothing overturns, what that at the largest
-        scale warns of. Or it was interrupted (Ctrl-C): then it gives what the runs until then
-        show, as far as ``followed_scale``.
+        standing nor as overturned. Warnings of the run at the critical scale are repeated; where
+        a base has a coefficient of friction and nothing overturns, those of the run at the
+        largest scale. Or it was interrupted (Ctrl-C): then the result is that of the runs until
+        then, up to ``followed_scale``.
 
     Notes
     -----
     Rocking is not monotone in the scale: above the critical one the verdict may flip back,
     many times. Between two scales of the same verdict an even number of flips may hide, and
-    with them a lesser critical scale. Up to ``followed_scale`` no range of scales overturns that
-    is wider than `resolution` times its upper end, but those that were found; narrower ones may,
-    and those that end below `resolution` times `largest`. After that the signs by which
-    certificates look for flips (``rf.Certification``) decide which intervals are halved, first
-    below the least scale that overturns, down to 0.2 % of the scale.
+    with them a lesser critical scale. Up to ``followed_scale`` all ranges of scales that
+    overturn have been found, except ranges narrower than `resolution` times their upper end, and
+    those that end below `resolution` times `largest`. Then the indications by which certificates
+    look for flips (``rf.Certification``) decide which intervals are halved, first below the least
+    scale that overturns, down to 0.2 % of the scale.
 
     A block at rest on rigid ground, without vertical motion, does not move before the peak
     ground acceleration exceeds g tan(theta): the scan begins there.
@@ -169,7 +169,7 @@ def critical_scale(
     def plan_at(scale: float) -> Plan:
         return replace(plan, motion=motion.scaled(scale))
 
-    # samples tell of friction, and of nothing else that is asked for here
+    # of all that is needed here only warnings of friction need samples
     rubs = has_limit(system.assembly)
     step = plan.output_step if rubs else None
 
@@ -232,7 +232,7 @@ def _uplift_scale(system: System, plan: Plan) -> float:
 def _cautions(
     system: System, plan_at: Callable[[float], Plan], found: Followed, critical: float
 ) -> dict[str, str]:
-    """Repeat what simulate warns of at the scale that tells; warn of runs without a verdict."""
+    """Repeat the warnings of the run at the decisive scale; warn of runs without a verdict."""
     cautions: list[str] = []
     undecided = [scale for scale, shown in found.shown.items() if shown.overturned is None]
     if undecided:
@@ -247,7 +247,7 @@ def _cautions(
         warn(cautions[-1], SolverWarning)
     telling = critical
     if math.isnan(critical) and has_limit(system.assembly):
-        telling = max(found.shown)  # where nothing falls, most friction is needed there
+        telling = max(found.shown)  # if none falls, it needs the most friction
     if not math.isnan(telling):
         again = run(system.assembly, plan_at(telling))
         cautions += filter(None, [str(again.attrs.get("cautions", ""))])

@@ -1,4 +1,4 @@
-"""Incremental dynamic analysis: motions that are scaled until limit states are exceeded."""
+"""Incremental dynamic analysis: motions are scaled until limit states are exceeded."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -84,7 +84,7 @@ def incremental_dynamic_analysis(
         An intensity measure that the result has beside the scale, such as ``"PGA"``; see
         :func:`rockframe.fragility`.
     period : str or Quantity, optional
-        Of the oscillator of a spectral intensity [s].
+        Period of the oscillator of a spectral intensity [s].
     resolution : float, optional
         Width of a gap between runs below a capacity, over its upper scale, down to which gaps are
         halved, under all motions at once; 1 leaves the scales as they are [1].
@@ -100,7 +100,7 @@ def incremental_dynamic_analysis(
     outputs : sequence of str, optional
         Histories of the runs at `scale`, as for :func:`rockframe.sweep`; None keeps none.
     points : mapping of str to (str or Quantity, str or Quantity), optional
-        Points of the body, whose peaks the result has and limit states may be on, as for
+        Points of the body, for whose peaks there may be limit states, as for
         :func:`rockframe.sweep` [m].
 
     Returns
@@ -108,7 +108,7 @@ def incremental_dynamic_analysis(
     xarray.Dataset
         The sweep over the axes, ``scale`` and ``motion``, with the intensity measure; and over
         ``limit_state``, the axes and ``motion``: ``capacity_scale``, the least scale found to
-        exceed the limit state, infinite if none, and a bound from above where it is the least of
+        exceed the limit state, infinite if none, and an upper bound where it is the least of
         the scan; ``capacity_resolution``; ``flip_count``; over ``flip`` too ``scale_below``,
         ``scale_above`` [1] and ``exceeds_above``, NaN beyond the last one. Over ``limit_state``
         and the axes: ``censored_count``, of motions that did not exceed it. The attribute
@@ -133,10 +133,9 @@ def incremental_dynamic_analysis(
     Vamvatsikos and Cornell (2002). Rocking is not monotone in the scale: above the first
     exceedance a block may stand again, many times, and each change that the runs show is narrowed.
     A capacity is the least scale that was found to exceed. Below it, down to the least
-    scale of the scan, no range of scales exceeds that is wider than ``capacity_resolution`` times
-    its upper end; narrower ones may. A share of runs that exceed does not hang on such a
-    resolution: :func:`rockframe.fragility` is fitted to all runs of the scan unless asked for
-    capacities.
+    scale of the scan, only ranges of scales narrower than ``capacity_resolution`` times their
+    upper end may exceed. The share of runs that exceed does not depend on such a resolution:
+    :func:`rockframe.fragility` is fitted to all runs of the scan unless it is to use capacities.
 
     Examples
     --------
@@ -202,7 +201,7 @@ def incremental_dynamic_analysis(
 
 
 def _at_the_least(found: xr.Dataset) -> Array:
-    """Tell which motions overturned at the least scale: their capacities may lie below it."""
+    """Give which motions overturned at the least scale: their capacities may lie below it."""
     capacity = found["capacity_scale"].isel(limit_state=-1).to_numpy()
     return capacity == float(found[SCALE].min())
 
@@ -220,7 +219,7 @@ def verdict_of_analysis(dataset: xr.Dataset) -> str:
 
 
 def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
-    """Tell for how many motions overturning was found, and from which scale on."""
+    """Give the verdict in words: how many motions overturned, and from which scale on."""
     of_overturning = found.isel(limit_state=-1)
     capacity = of_overturning["capacity_scale"].to_numpy()
     count, some = capacity.size, np.isfinite(capacity)
@@ -240,7 +239,7 @@ def _sentence(found: xr.Dataset, structures: Mapping[str, int]) -> str:
     again = int((of_overturning["flip_count"].to_numpy() > 1).sum())
     if again:
         text += f"; under {again} the verdict changed more than once"
-    cut = str(found.attrs["verdict"]).endswith(INTERRUPTED)  # that of the scan
+    cut = str(found.attrs["verdict"]).endswith(INTERRUPTED)  # the verdict of the scan
     lacking = int(overturns(found).isnull().sum())
     if lacking and not cut:
         text += f"; {lacking} of {found['status'].size} runs of the scan have no verdict"

@@ -33,16 +33,16 @@ def ensemble_statistics(
     Parameters
     ----------
     runs : xarray.Dataset or DataArray
-        Of a sweep over motions, or a sample that was drawn; of further axes pick a value before,
+        Result of a sweep over motions, or of drawn cases; select a value of further axes before,
         or name them in `pooled`. Or values, such as measured ones, which are all one ensemble.
     name : str, optional
-        Which variable.
+        The variable whose distribution is given.
     quantiles : sequence of float, optional
-        Shares of the distribution whose values are wanted [1].
+        Probabilities of the quantiles [1].
     pooled : iterable of str, optional
         Dimensions of a sweep beside its motions whose runs are members of the one ensemble too.
     confidence : float, optional
-        Of all bounds [1].
+        Confidence level of all bounds [1].
 
     Returns
     -------
@@ -50,8 +50,8 @@ def ensemble_statistics(
         Over ``rank``: ``ordered_value``, ``cumulative_probability`` with bounds that hold at each
         value (Clopper and Pearson), and bounds that hold everywhere at once (``simultaneous``,
         Kolmogorov). Over ``quantile``: ``quantile_value``, with bounds by order
-        statistics, infinite where the ensemble is too small. Without bounds, as NaN, where
-        several members are of one motion. The attribute ``verdict`` counts members and
+        statistics, infinite where the ensemble is too small. Bounds are NaN where several
+        members are of one motion. The attribute ``verdict`` counts members and
         what was left out.
 
     Raises
@@ -66,7 +66,7 @@ def ensemble_statistics(
     -----
     All bounds hold whatever the distribution, for independent members. Cases without a
     result are left out, and counted. Runs that stop at the overturning angle have a
-    ``peak_relative_rotation`` of 1, which stands for all that is more.
+    ``peak_relative_rotation`` of 1, whatever it might have become.
 
     A model that misses single tests may still give their distribution (Bachmann et al., 2018):
     compare the bands of both.
@@ -129,7 +129,7 @@ def _values(runs: Any, name: str) -> xr.DataArray:
 
 
 def _dependent(values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequence[str]) -> bool:
-    """Tell whether members of a sweep depend on one another; refuse axes that nobody named."""
+    """Give whether members of a sweep depend on one another; refuse axes not named in `pooled`."""
     if "axes_json" not in attributes or SAMPLED in attributes:
         return False
     wide = [str(dim) for dim, size in values.sizes.items() if size > 1 and dim != MOTION]
@@ -148,7 +148,7 @@ def _dependent(values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequ
 
 
 def _sentence(count: int, left_out: int, asked: float, level: float) -> str:
-    """Tell of how many members the ensemble is, and what its bounds are."""
+    """Give the verdict in words: the number of members, and the bounds."""
     lacking = f"; {left_out} without a result are left out" if left_out else ""
     bounds = (
         "no bounds, for several members are of one motion"
@@ -185,7 +185,7 @@ def _quantile_bounds(ordered: Array, shares: Array, level: float) -> Array:
         return np.full((2, len(shares)), np.nan)
     count, tail = len(ordered), 0.5 * (1.0 - level)
     padded = np.concatenate([[-np.inf], ordered, [np.inf]])
-    # P(at least k members below) for the lower end, at most for the upper one
+    # lower end by P(at least k members below), upper end by P(at most k)
     low = binom.ppf(tail, count, shares).astype(int)
     high = binom.ppf(1.0 - tail, count, shares).astype(int) + 1
     return np.stack([padded[low], padded[np.minimum(high, count + 1)]])

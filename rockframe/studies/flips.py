@@ -1,4 +1,4 @@
-"""Where the verdict changes along the scale of a motion, and this in words."""
+"""Changes of the verdict (flips) along the scale of a motion, and their description in words."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -14,13 +14,13 @@ from rockframe.simulation.certify.scan import Side, may_change_between
 from rockframe.simulation.soundness import share_words, slip_words
 
 FINEST: Final = 0.002
-"""Length of an interval of scales that is not looked into for hidden flips, over its far end."""
+"""Length of an interval of scales, over its far end, that is not halved to find hidden flips."""
 
 CALM: Final = 0.1
-"""Share of the overturning angle: no flip is feared between two runs whose peaks are below it."""
+"""Peaks of two runs over the overturning angle below which no flip is expected between them."""
 
 Look = Callable[[float], RunSummary]
-"""Makes the run at a scale."""
+"""Function that makes the run at a scale."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +34,13 @@ class Flip:
 
 @dataclass(frozen=True)
 class Followed:
-    """The runs along the scale, and what they show."""
+    """The runs along the scale, and the flips and gaps between them."""
 
-    shown: dict[float, RunSummary]  # all runs by their scales, rising
-    # scale up to which neighbouring runs with a verdict lie no further apart than the resolution,
-    # over the upper one, wherever the base lifts [1]
+    shown: dict[float, RunSummary]  # all runs by their scales, ascending
+    # scale up to which no gap between runs with a verdict is wider than the resolution times its
+    # upper end, wherever the base lifts [1]
     up_to: float
-    whole: bool = True  # whether no interrupt (Ctrl-C) came in between
+    whole: bool = True  # False after an interrupt (Ctrl-C)
 
     def flips(self) -> list[Flip]:
         """Give all changes of the verdict, from low to high."""
@@ -50,7 +50,7 @@ class Followed:
     def largest_gap(self) -> float:
         """Largest distance between neighbouring scales with a verdict; NaN of fewer than two [1].
 
-        Flips closer together than that may be missed, in pairs, wherever nothing tells of them.
+        Pairs of flips closer together than this gap may be missed.
         """
         decided = [scale for scale, run in self.shown.items() if run.overturned is not None]
         return max((far - near for near, far in pairwise(decided)), default=math.nan)
@@ -65,13 +65,13 @@ def follow(
     resolution: float = 1.0,
     may_slide: bool = False,
 ) -> Followed:
-    """Scan scales, look into what is doubtful, and narrow every change of the verdict.
+    """Scan scales, halve doubtful intervals, and narrow every change of the verdict.
 
     Between two runs of the same verdict an even number of flips may hide. Below the least scale
-    that overturns every interval is halved down to the resolution, the widest first, but where the
-    base does not lift: it holds at any lesser scale too, unless it may slide. Then those where
-    flips are to be feared (:func:`rockframe.simulation.certify.scan.may_change_between`), below
-    that scale and above it.
+    that overturns every interval is halved down to the resolution, the widest first, except where
+    the base does not lift: at lower scales it does not either, unless it may slide. Then those are
+    halved where flips are to be expected, below that scale and above it,
+    :func:`rockframe.simulation.certify.scan.may_change_between`.
     """
     least, *others = row
     side = Side(1.0, {least: look(least)}, [least])
@@ -110,15 +110,15 @@ def _wide(
             return
         told = None not in (side.shown[near].overturned, side.shown[far].overturned)
         if near == 0.0 and far <= resolution * side.places[-1]:
-            continue  # what is so near to zero has no end
+            continue  # halving towards zero would not end
         if told and far - near > resolution * far and (side.shown[far].lifted or may_slide):
             yield near, far
 
 
 def _halve(side: Side, look: Look, most: int, *, up_to_first: bool) -> bool:
-    """Halve what is suspect by now; tell whether there was something, and runs were left."""
+    """Halve the suspect intervals; give whether there were some, and runs left for them."""
     suspects = list(_suspects(side, up_to_first=up_to_first))
-    # runs may not do for all: what comes nearest to overturning goes first
+    # runs may not suffice for all: those nearest to overturning come first
     for near, far in sorted(suspects, key=lambda ends: _clearance(side, *ends)):
         if len(side.places) >= most:
             return False
@@ -152,7 +152,7 @@ def _suspects(side: Side, *, up_to_first: bool) -> Iterator[tuple[float, float]]
 
 
 def _clearance(side: Side, near: float, far: float) -> float:
-    """Give what the larger peak left of the overturning angle; 0 where that was passed."""
+    """Give the least clearance of both runs to the overturning angle; 0 where it was passed."""
     ends = side.shown[near], side.shown[far]
     return min(one.clearances[0] if one.within_the_angle else 0.0 for one in ends)
 
@@ -187,13 +187,13 @@ def _in_order(side: Side) -> dict[float, RunSummary]:
 
 _FEWEST_DIGITS: Final = 4
 _ROUNDING: Final = 1e-9
-"""Of a distance over its last digit, not to be rounded up [1]."""
+"""Excess over a digit, in units of it, that is not rounded up [1]."""
 _MOST_GAPS: Final = 3
-"""Ranges that stand again which are named one by one."""
+"""Most ranges of scales without overturning that are named one by one."""
 
 
 def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) -> str:
-    """Tell from which scale on the block overturns, where it stands again, and what was tried."""
+    """Give in words from which scale the block overturns, where it stands again, and the gaps."""
     digits = max(_FEWEST_DIGITS, 1 + math.ceil(-math.log10(width)))
 
     def number(scale: float) -> str:
@@ -236,7 +236,7 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
 
 
 def unfinished(undecided: Sequence[float]) -> str:
-    """Tell how many runs have no verdict."""
+    """Give in words how many runs have no verdict."""
     if len(undecided) == 1:
         return "1 run could not be finished and has no verdict"
     return f"{len(undecided)} runs could not be finished and have no verdict"
@@ -248,7 +248,7 @@ def least_overturning(shown: dict[float, RunSummary]) -> float:
 
 
 def _gaps(flips: Sequence[Flip], largest: float) -> list[tuple[float, float]]:
-    """Give where the block stands again: the least and greatest scale that it was seen to."""
+    """Give the ranges where the block stands again: their least and greatest scale of a run."""
     starts = [flip.above for flip in flips if not flip.overturns_above]
     ends = [flip.below for flip in flips if flip.overturns_above]
     if flips and flips[0].overturns_above:

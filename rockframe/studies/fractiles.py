@@ -1,4 +1,4 @@
-"""Fractile curves of motions that are scaled: response given the intensity, and the other way."""
+"""Fractile curves of scaled motions: response given intensity, and intensity given response."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ from rockframe.units import Measure, RatioLike, Unit, to_ratio, to_si_values
 
 _OWNER: Final = "fractile_curves"
 _POINTS: Final = 201
-"""Intensities, and levels of the response, at which curves are given unless told otherwise."""
+"""Number of intensities, and of levels of the response, of the curves by default."""
 _LEVEL: Final = "response_level"
 _TITLE: Final = "Fractile curves of scaled motions"
 
@@ -43,20 +43,21 @@ def fractile_curves(
     fractiles: Sequence[RatioLike] = (0.16, 0.5, 0.84),
     levels: ArrayLike | None = None,
 ) -> xr.Dataset:
-    """Summarize scaled motions: fractiles of the response at an intensity, and of that to reach it.
+    """Summarize scaled motions: fractiles of the response at an intensity, and of the intensity.
 
     Parameters
     ----------
     runs : xarray.Dataset
-        Of :func:`rockframe.incremental_dynamic_analysis`, or of a sweep over the scale and motions.
+        Result of :func:`rockframe.incremental_dynamic_analysis`, or of a sweep over the scale and
+        motions.
     intensity : str or DataArray, optional
         Measure, as for :func:`rockframe.fragility`; the scale of the motion unless given.
     response : str, optional
-        Which scalar of the runs.
+        The scalar of the runs that is the response.
     label : str, optional
-        Of points, bodies or restrainers which one.
+        Which point, body or restrainer, where the response is of one of several.
     period : str or Quantity, or several, optional
-        Of a spectral intensity [s].
+        Period of a spectral intensity [s].
     motions : GroundMotion, or sequence or mapping of them, optional
         The records, where neither the dataset nor this process has them.
     fractiles : sequence of float, optional
@@ -89,10 +90,10 @@ def fractile_curves(
     Vamvatsikos and Cornell (2004), :eq:`eq-fractiles`. Between runs of a motion its response is
     a straight line; between one that stands and one that overturns it is level up to the scale
     at which the verdict changes, by the bracket of a dynamic analysis, by the run that overturned
-    in a sweep. Nothing is said below the greatest of the motions' least intensities, and nothing
-    above the least of their greatest ones. A fractile is the least value up to which at least that
-    share of the motions lies, so that those that are infinite count like any other. A motion
-    whose first run already reaches a level has the intensity of that run there, a bound from above.
+    in a sweep. Curves begin at the greatest of the motions' least intensities, and end at the least
+    of their greatest ones. A fractile is the least value up to which at least that
+    share of the motions lies, so that infinite values count like any other. A motion
+    whose first run already reaches a level has the intensity of that run there, an upper bound.
 
     Examples
     --------
@@ -152,11 +153,11 @@ class _Line:
     """The response of a motion along its intensity."""
 
     name: str
-    along: Array  # intensities of all runs with a verdict, rising
+    along: Array  # intensities of all runs with a verdict, ascending
     # breakpoints of the response where the block stands: intensities and values
     points: Array
     values: Array
-    falls: tuple[tuple[float, float], ...]  # from where to where it overturns, ends included
+    falls: tuple[tuple[float, float], ...]  # ranges where it overturns, ends included
 
     def at(self, intensities: Array) -> Array:
         """Give the response at intensities, infinite where the block overturns."""
@@ -220,7 +221,7 @@ def _lines(runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray) -> lis
 def _falls(
     runs: xr.Dataset, motion: int, intensities: Array, along: str
 ) -> list[tuple[float, float]] | None:
-    """Give the ranges that overturn by the brackets of a dynamic analysis; None of a sweep."""
+    """Give the ranges that overturn, by the brackets of a dynamic analysis; None for a sweep."""
     if along != SCALE or not all(one in runs for one in ("scale_above", "exceeds_above")):
         return None
     last = runs.isel({"limit_state": -1, MOTION: motion}, missing_dims="ignore").squeeze()
@@ -248,7 +249,7 @@ def _falls(
 def _line(
     name: str, along: Array, values: Array, fell: Generic, told: list[tuple[float, float]] | None
 ) -> _Line:
-    """Give the line of runs in order, of which some overturned."""
+    """Give the line through runs of ascending intensity, some of which may have overturned."""
     if not told:  # from the first of neighbours that overturned to the last
         edges = np.diff(np.concatenate([[False], fell, [False]]).astype(int))
         firsts, lasts = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
@@ -259,7 +260,7 @@ def _line(
     stood = ~fell
     x, y = along[stood].tolist(), values[stood].tolist()
     for first, last in told if any(stood) else ():
-        # level from the last run that stood to the fall, and from its end to the next
+        # constant from the last standing run to the fall, and from its end to the next one
         before, after = np.searchsorted(along[stood], [first, last], side="right")
         if before > 0:
             x.append(first)
@@ -277,7 +278,7 @@ def _line(
 def fractiles_of(rows: Array, shares: Array) -> Array:
     """Give the least values up to which at least these shares of the rows lie, :eq:`eq-fractiles`.
 
-    By order, so that infinite values need no arithmetic.
+    By sorting, so that infinite values need no arithmetic.
     """
     place = np.ceil(len(rows) * shares - 1e-9).astype(int) - 1
     return np.sort(rows, axis=0)[np.clip(place, 0, len(rows) - 1)]
@@ -304,7 +305,7 @@ def _levels(given: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
 
 
 def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataArray) -> str:
-    """Tell how many motions overturned, and at which least intensity half of them do."""
+    """Give the verdict in words: how many motions overturned, and from where half of them do."""
     falls = [
         [(max(first, low), last) for first, last in one.falls if last >= low and first <= high]
         for one in lines
@@ -313,7 +314,7 @@ def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataA
     motions = f"{len(lines)} motion{'s' if len(lines) > 1 else ''}"
     text = f"Of {motions} {sum(map(bool, falls))} overturned at some "
     text += f"{str(measure.name).replace('_', ' ')} from {low:.4g} to {high:.4g}{unit}"
-    # the number of those that overturn rises where one begins to, and nowhere else
+    # the number of overturned motions grows only where one begins to overturn
     for begin in sorted(first for each in falls for first, _ in each):
         fell = sum(any(first <= begin <= last for first, last in each) for each in falls)
         if fell >= 0.5 * len(lines):
@@ -323,7 +324,7 @@ def _sentence(lines: Sequence[_Line], low: float, high: float, measure: xr.DataA
 
 
 def _left_out(lines: Sequence[_Line], runs: xr.Dataset) -> str:
-    """Tell how many runs no line has."""
+    """Give in words how many runs were left out of the lines."""
     every = overturns(runs).size
     lacking = every - sum(len(one.along) for one in lines)
     if not lacking:

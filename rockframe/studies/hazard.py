@@ -1,4 +1,4 @@
-"""How often a limit state is exceeded: a fragility and a hazard curve in one number."""
+"""Mean annual rate of exceeding a limit state, from a fragility and a hazard curve."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -24,33 +24,33 @@ from rockframe.units import POSITIVE, Unit, check_own_unit, to_ratio
 _OWNER: Final = "annual_rate"
 _BY_RATE, _BY_PROBABILITY = ("intensity", "rate"), ("intensity", "probability", "years")
 _FINEST: Final = 0.02
-"""Of the logarithm of the intensity, over which the probability is all but a polynomial."""
+"""Longest part of an integral, as a logarithm of intensity; a polynomial fits well within it."""
 _POINTS: Final = 5
-"""Of Gauss and Legendre's rule in each part."""
+"""Points of Gauss-Legendre integration in each part."""
 _OF_FUNCTIONS: Final = 400
-"""Intensities at which a function is asked."""
+"""Number of intensities at which a hazard given as a function is evaluated."""
 _BINS: Final = 40
-"""In which contributions are told."""
+"""Number of bins of intensity for the contributions to the rate."""
 _SHARES: Final = (0.05, 0.5, 0.95)
 _LACKING: Final = 0.01
-"""Share of the rate beyond the curve from which on that is told."""
+"""Share of the rate beyond the hazard curve above which a warning is given [1]."""
 _FAR: Final = 12.0
-"""Logarithm of the intensity by which ends are followed."""
+"""Range over which the ends of the hazard curve are extrapolated, as a logarithm of intensity."""
 
 
 @dataclass(frozen=True, eq=False)
 class HazardCurve:
-    """Mean annual rates of exceeding intensities, straight between points in logarithms."""
+    """Mean annual rates of exceeding intensities, linear in logarithms between points."""
 
-    intensities: Array  # rising, in the unit of the measure
-    rates: Array  # falling [1/year]
+    intensities: Array  # ascending, in the unit of the measure
+    rates: Array  # descending [1/year]
 
     def slopes(self) -> Array:
         """Give the exponents of the power laws between the points [1]."""
         return -np.diff(np.log(self.rates)) / np.diff(np.log(self.intensities))
 
     def beyond(self) -> tuple["HazardCurve", "HazardCurve"]:
-        """Give what the first and the last power law are before and behind the curve."""
+        """Give extrapolations of the curve below and above, by its first and last power law."""
         first, last = (float(one) for one in self.slopes()[[0, -1]])
         reach = math.exp(_FAR)
         least, most = float(self.intensities[0]), float(self.intensities[-1])
@@ -69,12 +69,13 @@ def annual_rate(
     *,
     between: Any = None,
 ) -> xr.Dataset:
-    """Give the mean annual rate at which limit states are exceeded, and which intensities do it.
+    """Give the mean annual rate of exceeding limit states, and the contributing intensities.
 
     Parameters
     ----------
     fragility : xarray.Dataset
-        Of :func:`rockframe.fragility` or :func:`rockframe.cloud_analysis`, over one measure.
+        Result of :func:`rockframe.fragility` or :func:`rockframe.cloud_analysis`, over one
+        measure.
     hazard : mapping, DataArray or callable
         Mean annual rate at which the site exceeds values of that measure. A table:
         ``{"intensity": ([0.1, 0.2, 0.5], "g_0"), "rate": [1e-2, 3e-3, 2e-4]}``, or with
@@ -82,14 +83,14 @@ def annual_rate(
         so many years. A DataArray of rates whose only dimension has the intensities, with their
         unit. Or a function of an array of intensities in SI units.
     between : (sequence, unit), Quantity or sequence of str, optional
-        Of a function, the least and the greatest intensity at which it holds.
+        Range of intensities in which a hazard given as a function holds.
 
     Returns
     -------
     xarray.Dataset
-        Over structures and ``limit_state``: ``annual_rate``, with that of the upper and of the
-        lower bounds of the curve; ``unreached_rate_below`` and ``unreached_rate_above``, what lies
-        beyond the hazard curve where it goes on as it ends; ``outside_trials_share``. Over
+        Over structures and ``limit_state``: ``annual_rate``, with the rates by the upper and
+        lower bounds of the curve; ``unreached_rate_below`` and ``unreached_rate_above``, the rates
+        beyond the ends of the hazard curve if it is extrapolated; ``outside_trials_share``. Over
         ``contributing_intensity`` too ``rate_share``; over ``quantile``
         ``quantile_intensity``, below which that share of the rate arises. The attribute
         ``verdict`` says it in words.
@@ -157,7 +158,7 @@ def annual_rate(
 
 
 def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCurve:
-    """Read a hazard curve over a measure, and refuse what does not fall."""
+    """Read a hazard curve over a measure, and refuse one that does not descend."""
     name, unit = str(along.name), str(along.attrs.get("units", "1"))
     if callable(given):
         if between is None:
@@ -218,7 +219,7 @@ def _intensities(given: object, name: str, unit: str) -> Array:
 
 
 def _rates(table: Mapping[str, Any]) -> Array:
-    """Give rates, also of probabilities in years, which are those of a Poisson process."""
+    """Give rates; from probabilities in some years by a Poisson process."""
     if "rate" in table:
         return np.asarray(table["rate"], dtype=np.float64)
     years = to_ratio(table["years"], owner=_OWNER, name="years", condition=POSITIVE, example="50")
@@ -245,7 +246,7 @@ _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
 def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]:
-    """Give the rate of one limit state, and where it comes from; NaN without a fragility."""
+    """Give rate and contributions of one limit state; NaN without a fragility."""
     names = (
         "annual_rate", "annual_rate_lower_bound", "annual_rate_upper_bound",
         "unreached_rate_below", "unreached_rate_above", "outside_trials_share",
@@ -278,7 +279,7 @@ def _edges(curve: HazardCurve) -> Array:
 
 
 def contributions(one: xr.Dataset, curve: HazardCurve, measure: str) -> tuple[Array, Array]:
-    """Give the rate that arises between intensities: these, and the rates between them [1/year]."""
+    """Give intensities, and the contributions to the rate between them [1/year]."""
     edges, rates, slopes = _finely(curve)
     if "median_intensity" in one and "logistic_slope" not in one:
         median, spread = float(one["median_intensity"]), float(one["dispersion"])
@@ -332,7 +333,7 @@ def _by_points(
 
 
 def _interpolated(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array], Array]:
-    """Give a probability at logarithms of intensities, straight on normal axes, beyond it too."""
+    """Give a function of log intensity: the probability, linear in normal scores, extrapolated."""
     from scipy.special import ndtr, ndtri
 
     values = curve.to_numpy()
@@ -357,7 +358,7 @@ def _of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve
 
 
 def _say_what_lacks(found: xr.Dataset, curve: HazardCurve) -> None:
-    """Warn where the hazard curve ends where the integrand does not."""
+    """Warn if a part of the rate lies beyond the ends of the hazard curve."""
     unit = unit_behind(found["quantile_intensity"].attrs)
     ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}
     lacking: list[str] = []
@@ -378,7 +379,7 @@ def _say_what_lacks(found: xr.Dataset, curve: HazardCurve) -> None:
 
 
 def _sentence(found: xr.Dataset) -> str:
-    """Tell the rate of the last limit state, and where it comes from."""
+    """Give the verdict in words: rate of the last limit state, and contributing intensities."""
     last = found.isel(limit_state=-1) if "limit_state" in found.dims else found
     state = str(last["limit_state"].item()) if "limit_state" in last.coords else "what was counted"
     rates = np.atleast_1d(last["annual_rate"].to_numpy()).ravel()

@@ -43,7 +43,7 @@ SHORT: Final = {
     "PGV/PGA": RATIO,
     "Sa_avg": AVERAGE,
 }
-"""Usual abbreviations."""
+"""Usual abbreviations of measures, and their names."""
 POWERS: Final = {
     "peak_ground_acceleration": 1,
     "peak_ground_velocity": 1,
@@ -67,19 +67,19 @@ POWERS: Final = {
 _SPELLED: Final = {short.casefold(): name for short, name in SHORT.items()} | {
     name.replace("_", " "): name for name in POWERS
 }
-"""Names by how they may be written, in small letters."""
+"""Names of measures by their accepted spellings, in small letters."""
 PERIOD_OF: Final = "intensity_period"
 """Attribute that keeps the period of a spectral intensity, or those of an average [s]."""
 Periods: TypeAlias = float | tuple[float, ...] | None
-"""That of an oscillator, or those over which its values are averaged [s]."""
+"""Period of an oscillator, or periods over which spectral values are averaged [s]."""
 OSCILLATORS: Final = tuple(name for name in POWERS if SCHEMA[name].dims == OSCILLATOR)
 """Measures that need the period of an oscillator."""
 _SPECTRAL: Final = (*OSCILLATORS, AVERAGE)
-"""Measures that are of a period, or of several."""
+"""Measures that depend on a period, or on several."""
 
 
 def spelled(given: object) -> object:
-    """Give the name of a measure that is written in short, or in other letters."""
+    """Give the name of a measure for an abbreviation, or another spelling."""
     written = " ".join(given.split()).casefold() if isinstance(given, str) else ""
     return _SPELLED.get(written, given)
 
@@ -96,12 +96,12 @@ def measure_words(name: str, period: Any) -> str:
 
 
 def of_study(name: str, period: Periods) -> dict[str, Any]:
-    """Give the attributes by which a dataset tells of which measure it is."""
+    """Give the attributes in which a dataset records its measure."""
     return {"intensity": name} | of_period(period)
 
 
 def of_period(period: Periods) -> dict[str, Any]:
-    """Give the attribute by which a dataset tells the period of a measure, or its periods."""
+    """Give the attribute in which a dataset records period or periods of a measure."""
     if period is None:
         return {}
     return {PERIOD_OF: np.array(period) if isinstance(period, tuple) else period}
@@ -157,7 +157,7 @@ class Intensity:
 def measure_in(
     runs: xr.Dataset, given: object, period: PeriodLike | None, motions: object, *, owner: str
 ) -> xr.DataArray:
-    """Give a measure of the motion of each case: a known one, a column, or numbers of one's own.
+    """Give a measure of the motion of each case: a known one, a column, or given numbers.
 
     A column is any coordinate or variable of the runs, along their dimensions, by its name.
     """
@@ -182,7 +182,7 @@ def measure_in(
 
 
 def _of_these_runs(runs: xr.Dataset, given: xr.DataArray, owner: str) -> xr.DataArray:
-    """Give numbers of one's own for the labels of the runs, in their order; NaN where none is."""
+    """Give numbers of the user's in the order of the runs' labels; NaN where one is missing."""
     for dim in given.dims:
         twice = dim in given.indexes and not given.indexes[dim].is_unique
         if twice and dim in runs.indexes and given.indexes[dim].equals(runs.indexes[dim]):
@@ -200,7 +200,7 @@ def _of_these_runs(runs: xr.Dataset, given: xr.DataArray, owner: str) -> xr.Data
 
 
 def named_column(runs: xr.Dataset, given: object) -> object:
-    """Give a column of the runs for its name, where no known measure has that."""
+    """Give a column of the runs by its name, unless a known measure has this name."""
     known = spelled(given)
     if isinstance(known, str) and known not in POWERS and known in runs.variables:
         return runs[known]
@@ -208,7 +208,7 @@ def named_column(runs: xr.Dataset, given: object) -> object:
 
 
 def _same_period(runs: xr.Dataset, name: str, period: PeriodLike | None, owner: str) -> bool:
-    """Tell whether the runs have a spectral measure of the period that is asked for."""
+    """Give whether the runs have a spectral measure of the requested period."""
     known = runs.attrs.get(PERIOD_OF, runs.attrs.get("spectral_period"))
     if period is None:
         return True
@@ -269,7 +269,7 @@ def motions_of_runs(runs: xr.Dataset, given: object, *, owner: str) -> dict[str,
 def of_motions(
     runs: xr.Dataset, motions: Mapping[str, GroundMotion], value: Callable[[GroundMotion], float]
 ) -> xr.DataArray:
-    """Give a number of the motion of each case."""
+    """Give a number of each case by a function of its motion."""
     numbers = {name: value(motion) for name, motion in motions.items()}
     names = runs[MOTION]
     values = np.array([numbers[str(name)] for name in names.to_numpy().ravel()])
@@ -296,7 +296,7 @@ def _factors(runs: xr.Dataset, motions: Mapping[str, GroundMotion], owner: str) 
 
 
 _OF_THE_BLOCK: Final = ("overturning_angle", "uplift_acceleration")
-"""Numbers beside the measures that are not the motion's."""
+"""Variables among the measures that depend on the block alone."""
 
 
 class ScaledIntensity:

@@ -28,12 +28,12 @@ STATES: Final = "limits_json"
 _OF_SAMPLES: Final = {"residual_displacement", *(row.name for row in FORCE_SCALARS)} | {
     row.name for row in (*BODIES, *RESTRAINERS) if row.name.startswith("peak_")
 }
-"""What a run has that was looked at along its steps, as those with histories are."""
+"""Scalars of runs that were evaluated along their steps, as runs with histories are."""
 _AT_POINTS: Final = {row.name for row in POINT_PEAKS}
 _UP_TO_OVERTURNING: Final = {
     name for name in (*_OF_SAMPLES, *_AT_POINTS) if name.startswith("peak_")
 }
-"""What is told of a run up to the overturning angle."""
+"""Scalars that describe a run only up to the overturning angle."""
 _NEEDED: Final = ("status", "peak_relative_rotation", "first_uplift_time", "overturned")
 _TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_sha256")
 """Attributes of a sweep."""
@@ -41,18 +41,18 @@ _TOLD: Final = ("run_json", "axes_json", "motions_json", "motion_names", "study_
 
 @dataclass(frozen=True)
 class LimitState:
-    """What is asked of a run."""
+    """A limit state: a scalar of a run, and the value from which on it is exceeded."""
 
     # peak rotation over the overturning angle: 0 is uplift, 1 overturning; NaN of others [1]
     rotation: float
-    variable: str = ""  # scalar of a run whose size tells, in other limit states
-    # from where on it exceeds, in its SI unit; NaN where it exceeds wherever there is a number
+    variable: str = ""  # the scalar of a run, in limit states other than on the rotation
+    # value from which on it exceeds, in its SI unit; NaN where any number exceeds
     value: float = math.nan
-    label: str = ""  # which point, body or restrainer it is of
+    label: str = ""  # point, body or restrainer of the scalar
 
     @property
     def name(self) -> str:
-        """Its label."""
+        """Its label in results."""
         if not self.variable:
             named = {0.0: UPLIFT, 1.0: OVERTURNING}
             return named.get(self.rotation, f"rotation {self.rotation:g}")
@@ -81,7 +81,7 @@ def limit_states(
 
 
 def listed_limits(given: object, *, owner: str, name: str = "limits") -> list[Any]:
-    """Give the several limit states that were given, or the one."""
+    """Give the given limit states as a list, also a single one."""
     if isinstance(given, str | int | float):
         return [given]
     return several(given, owner=owner, name=name, of="limit states")
@@ -100,7 +100,7 @@ def _share(given: Any, owner: str, name: str) -> float:
 
 
 def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
-    """Read a limit state on a scalar of runs: its name, from where on, and of which point."""
+    """Read a limit state on a scalar of runs: its name, its limit, and the point or body."""
     name, value, label = (*given, None, None)[:3] if len(given) in (2, 3) else ("", None, None)
     if isinstance(name, str) and name and name not in SCHEMA:
         scalars = [row.name for row in SCHEMA.values() if TIME[0] not in row.dims]
@@ -127,7 +127,7 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
 def read_in_unit(
     given: Any, unit: str, words: str, *, owner: str, name: str, condition: Condition | None = None
 ) -> float:
-    """Read a number of something that has a unit; where that is 1, a ratio."""
+    """Read a number in the unit of a variable; a ratio where this unit is 1."""
     if unit == Unit.ONE:
         return to_ratio(given, owner=owner, name=name, condition=condition, example="0.5")
     measure = Measure(words, Unit(unit), f"1 {unit}")
@@ -173,7 +173,7 @@ def check_runs(given: object, *, owner: str) -> xr.Dataset:
 
 
 def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Tell which runs exceed a limit state."""
+    """Give which runs exceed a limit state."""
     overturned = overturns(runs)
     if state.rotation == 1.0:
         return overturned
@@ -192,10 +192,10 @@ def exceeds(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 
 def _beyond_all(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
-    """Tell which runs exceed a limit state whatever its variable is.
+    """Give which runs exceed a limit state whatever the value of its variable is.
 
-    A block that passed the overturning angle and stands in the end has not overturned; but what is
-    told up to overturning says nothing of what followed.
+    A block that passed the overturning angle and stands in the end has not overturned; but scalars
+    up to the overturning angle say nothing of what followed.
     """
     followed = state.variable and state.variable not in _UP_TO_OVERTURNING
     return (overturns(runs) if followed else runs["overturned"]) == 1
@@ -204,7 +204,7 @@ def _beyond_all(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     """Give the response over its limit, infinite where the block overturned.
 
-    From 1 on it exceeds; overturning, where it is infinite. NaN where `exceeds` tells nothing.
+    A run exceeds from 1 on; for overturning, where it is infinite. NaN without a verdict.
     """
     beyond = exceeds(runs, state)
     fell = beyond if state.rotation == 1.0 else _beyond_all(runs, state)
@@ -216,7 +216,7 @@ def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
 
 
 def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr.DataArray:
-    """Give a scalar of runs, of one of the points, bodies or restrainers that it is of."""
+    """Give a scalar of runs, of one point, body or restrainer where it is of several."""
     if not isinstance(cast("Any", name), str) or name not in runs:
         msg = f"{owner}: the runs have no {shown(name)}{_instead(runs, name)}"
         raise SchemaError(msg)
@@ -248,5 +248,5 @@ def _instead(runs: xr.Dataset, name: str) -> str:
 
 
 def interrupted(runs: xr.Dataset) -> bool:
-    """Tell whether some cases have not been run."""
+    """Give whether some cases have not been run."""
     return bool(np.any(runs["status"].to_numpy() == RunStatus.NOT_RUN))

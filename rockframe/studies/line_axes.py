@@ -1,4 +1,4 @@
-"""Axes of an analysis that follows lines of scales: a line for each of their combinations."""
+"""Axes of an analysis along scales of motions: each combination of their values is a line."""
 
 import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
@@ -26,13 +26,13 @@ class LineAxes:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """The dimensions that they make, in their order, and their lengths."""
+        """The dimensions of the axes, in order, and their lengths."""
         return {axis.name: len(axis.values) for axis in self.axes}
 
     def columns(
         self, rows: Mapping[str, tuple[Generic, str]] = MappingProxyType({})
     ) -> dict[str, tuple[Generic, str]]:
-        """Give a table of their combinations for each of some rows, the last axis fastest."""
+        """Give a table of all combinations of values, for each of some rows; last axis fastest."""
         places = np.indices(tuple(self.sizes.values()))
         count = math.prod(self.sizes.values())
         repeats = max((len(each) for each, _ in rows.values()), default=1)
@@ -50,14 +50,14 @@ class LineAxes:
         }
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
-        """Give what runs over the rows of the table the dimensions of the axes."""
+        """Give the runs with the dimensions of the axes instead of the rows of the table."""
         return over_rows(runs, self.sizes, self.labels) if self.axes else runs
 
 
 def over_rows(
     runs: xr.Dataset, sizes: Mapping[str, int], labels: Mapping[str, xr.Variable]
 ) -> xr.Dataset:
-    """Give what runs over the rows of a table several dimensions in their place."""
+    """Give a dataset with several dimensions in place of the rows of a table."""
     found: dict[Hashable, xr.Variable] = {}
     for name, one in runs.variables.items():
         if name == CASE or name in labels:

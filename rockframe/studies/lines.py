@@ -1,8 +1,8 @@
-"""Verdicts followed along the scale of the motion, in rounds of runs under all motions at once.
+"""Verdicts along the scale of the motion, found in rounds of runs under all motions together.
 
-First all motions at the scales of a first row; then the middles of wide intervals below what first
-exceeds a limit state; then brackets of all changes of a verdict, which are halved. All these sweeps
-have one bar, and each a folder of its own.
+The scan comes first, all motions at given scales; then the middles of wide intervals below the
+first exceedance of a limit state; then brackets of all changes of a verdict are halved. All these
+sweeps share one progress bar, and each has a folder of its own.
 """
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
@@ -43,13 +43,13 @@ from rockframe.version import __version__
 SCALE: Final = "scale"
 VERDICT: Final = "verdict"
 CAPACITY: Final = "least scale found to exceed"
-"""What a capacity is, as datasets tell it."""
+"""Definition of a capacity, for the attributes of datasets."""
 SOURCE: Final = f"rockframe {__version__}, scan and bisection of event-driven runs"
-"""Where the numbers of such analyses are from, as datasets tell it."""
+"""Source of the numbers of such analyses, for the attributes of datasets."""
 INTERRUPTED: Final = "; interrupted."
 """Ends the verdict of an analysis whose brackets are wider than asked."""
 MOST_ROUNDS: Final = 60
-"""More are not needed, whatever the width: then neighbouring floats have been reached."""
+"""Most rounds of halving, whatever the width: by then neighbouring floats are reached."""
 _WIDTH: Final = Condition("from 1e-12 to 0.1", lambda value: 1e-12 <= value <= 0.1)
 _RESOLUTION: Final = Condition("from 1e-4 to 1", lambda value: 1e-4 <= value <= 1.0)
 _MOST_SCALES: Final = 100_000
@@ -57,7 +57,7 @@ _MOST_SCALES: Final = 100_000
 
 @dataclass(frozen=True, eq=False)
 class Rounds:
-    """The sweeps of an analysis, one after the other: what is the same in all of them."""
+    """What all sweeps of an analysis, made one after the other, have in common."""
 
     scene: System | Callable[..., System]  # as for :func:`rockframe.sweep`
     motions: Mapping[str, GroundMotion] | None
@@ -76,7 +76,7 @@ class Rounds:
     ) -> xr.Dataset:
         """Run the cases of a part, which names a folder and stands on the bar.
 
-        Of further parts no result tells, by which :func:`rockframe.case` would find their motions.
+        Parts after the first are not recorded for :func:`rockframe.case`, as no result has them.
         """
         asked = {**self.run, **more}
         means: Any = {name: asked.pop(name, None) for name in ExecutionArguments.__annotations__}
@@ -111,7 +111,7 @@ def rounds_of(
 
 
 Wanted = list[tuple[int, float]]
-"""Lines, by their numbers, and a scale of each at which it is to be run."""
+"""Numbers of lines, each with a scale at which it is to be run."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class Bracket:
         return 0.5 * (self.below + self.above)
 
     def halved(self, shown: float) -> Iterator["Bracket"]:
-        """Give what is left of it where its middle shows a verdict: two of a third verdict."""
+        """Give the part that remains by the verdict of its middle; both parts by a third one."""
         if shown != self.before:
             yield replace(self, above=self.middle, after=shown)
         if shown != self.after:
@@ -203,10 +203,10 @@ def bracket_arrays(
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What is known of lines at scales."""
+    """Verdicts of all lines at the scales that were run."""
 
-    scales: Array  # all that were run along some line
-    verdicts: Array  # over verdicts, lines and scales; NaN where a line was not run, or told none
+    scales: Array  # all scales that were run along some line
+    verdicts: Array  # over verdicts, lines and scales; NaN where a line was not run, or has none
     moves: Generic  # over lines and scales: whether the base left the ground, or slid
 
     def joined(self, cases: Wanted, verdicts: Array, moves: Generic) -> "Seen":
@@ -235,7 +235,7 @@ class Seen:
         return self.scales[known[there]], self.scales[far[there]]
 
     def middles(self, resolution: float) -> Wanted:
-        """Give the lines, and the middles of their gaps, that are wider than the resolution."""
+        """Give lines and the middles of those of their gaps that are wider than the resolution."""
         found = set[tuple[int, float]]()
         for verdict, line in np.ndindex(self.verdicts.shape[:2]):
             near, far = self.gaps(verdict, line)
@@ -247,7 +247,7 @@ class Seen:
     def resolution(self) -> Array:
         """The widest gap below each first exceedance, over its upper end; verdicts, lines [1].
 
-        One where the least scale exceeds already: nothing parts it from zero.
+        It is 1 where the least scale exceeds already: the gap extends to zero.
         """
         found = np.zeros(self.verdicts.shape[:2])
         for place in np.ndindex(found.shape):
@@ -267,14 +267,14 @@ class Seen:
 
 @dataclass(frozen=True, eq=False)
 class FollowedLines:
-    """What was found along lines."""
+    """Result of an analysis along lines."""
 
     scan: xr.Dataset  # the runs at the scales of the first row
-    seen: Seen  # what these and those in their gaps show
+    seen: Seen  # verdicts of these runs and of those in their gaps
     brackets: list[Bracket]
 
     def capacities(self, shape: tuple[int, ...]) -> dict[str, Array]:
-        """Give what datasets tell of capacities, over verdicts and lines in some shape."""
+        """Give the variables of capacities in a dataset, over verdicts and lines in some shape."""
         _, above, _, after = self.arrays(shape)
         rising = np.where(after == 1.0, above, np.inf).min(axis=-1, initial=np.inf)
         return {
@@ -283,7 +283,7 @@ class FollowedLines:
         }
 
     def flips(self, shape: tuple[int, ...]) -> dict[str, Array]:
-        """Give what datasets tell of the changes of verdicts."""
+        """Give the variables of changes of verdicts in a dataset."""
         below, above, _, after = self.arrays(shape)
         count = np.isfinite(below).sum(axis=-1)
         return {
@@ -298,7 +298,7 @@ class FollowedLines:
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """What is the same along each line, and how it is run."""
+    """Scene, motions and rows of the lines, and how their runs are made."""
 
     scene: System | Callable[..., System]  # as for :func:`rockframe.sweep`
     motions: Mapping[str, GroundMotion]  # all of them
@@ -307,7 +307,7 @@ class Lines:
     columns: Mapping[str, tuple[Array, str]]
     # how all of it is run. The scan and each round have a folder of their own in its store
     run: SweepArguments
-    owner: str  # function that asks for it
+    owner: str  # the calling public function, for messages
     # gives the verdicts of runs over ``verdict`` and their dimensions: whole numbers as floats, NaN
     # where there is none
     verdicts: Callable[[xr.Dataset], xr.DataArray]
@@ -317,9 +317,9 @@ class Lines:
     ) -> FollowedLines:
         """Run all rows and motions at all scales, and narrow every change of a verdict.
 
-        With a resolution the intervals below what first exceeds are made narrower than that
-        before. Only the runs of the scan are asked for what is `kept` beside, histories. After an
-        interrupt (Ctrl-C) the verdict of the scan says so.
+        With a resolution the intervals below the first exceedance are made narrower than that
+        before. Only the runs of the scan have the histories `kept`. After an interrupt (Ctrl-C) the
+        verdict of the scan says so.
         """
         with rounds_of(self.scene, self.motions, self.run, owner=self.owner) as rounds:
             heads = self._heads(slice(None))
@@ -346,7 +346,7 @@ class Lines:
     def _seen(
         self, rounds: Rounds, runs: xr.Dataset, resolution: float | None
     ) -> tuple[Seen, bool]:
-        """Give what the scan showed, and runs in its gaps; tell if all have been made."""
+        """Give the verdicts of the scan and of runs in its gaps, and whether all were made."""
         order = ([CASE] if self.columns else []) + [MOTION, SCALE]
         shown = self.verdicts(runs).transpose(VERDICT, *order).to_numpy()
         shown = shown.reshape(len(shown), -1, shown.shape[-1])
@@ -356,7 +356,7 @@ class Lines:
         for number in range(1, MOST_ROUNDS + 1):
             if interrupted(runs):
                 return seen, False
-            # where a middle told no verdict the gap stays
+            # where a middle has no verdict the gap stays
             wanted = [] if resolution is None else sorted({*seen.middles(resolution)} - tried)
             if not wanted:
                 break
@@ -369,7 +369,7 @@ class Lines:
         return seen, True
 
     def _at(self, rounds: Rounds, part: str, wanted: Wanted) -> tuple[xr.Dataset, Array]:
-        """Run lines at scales of their own; give the verdicts too, over verdicts and cases."""
+        """Run each line at its own scale; give runs, and verdicts over verdicts and cases."""
         lines, scales = (np.array(each) for each in zip(*wanted, strict=True))
         names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))
@@ -383,7 +383,7 @@ class Lines:
 
 
 def _moves(runs: xr.Dataset) -> xr.DataArray:
-    """Tell in which runs a base left the ground, or slid; that of a lower body too."""
+    """Give in which runs a base lifted or slid, also one of a lower body."""
     moves = runs["first_uplift_time"].notnull() | (runs["impact_count"] > 0)
     moves |= runs["overturned"] == 1
     for slip in (runs[name] for name in PEAK_SLIPS if name in runs):
@@ -397,7 +397,7 @@ def read_resolution(given: object, *, owner: str) -> float:
 
 
 def read_rising(given: object, measure: Measure, name: str, *, owner: str) -> Array:
-    """Read values above zero; those that are alike are one."""
+    """Read values above zero, sorted, equal ones once."""
     values = np.unique(numbers_of(given, measure, name))
     if not len(values) or values[0] <= 0.0:
         msg = f"{owner}: {name} must be above zero, got {shown(given)}"

@@ -12,7 +12,7 @@ from rockframe.signals.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class Logistic:
-    """The probability of a verdict, :eq:`eq-logistic`; without a fit one, none, or a step."""
+    """The probability of a verdict, :eq:`eq-logistic`; where no fit exists 1, 0, or a step."""
 
     status: FragilityStatus
     coefficients: Array  # intercept and slope; of a step the logarithm in the middle of the gap
@@ -23,7 +23,7 @@ class Logistic:
         return self._of(self.coefficients, logs)
 
     def drawn(self, logs: Array, rng: np.random.Generator, count: int) -> Array:
-        """Draw curves from what the verdicts leave possible; shape (count, intensities)."""
+        """Draw curves from the posterior of the coefficients; shape (count, intensities)."""
         if self.status is not FragilityStatus.FITTED:
             return np.broadcast_to(self.at(logs), (count, len(logs)))
         root = np.linalg.cholesky(self.covariance)

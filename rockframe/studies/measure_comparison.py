@@ -1,4 +1,4 @@
-"""Intensity measures side by side: efficiency, sufficiency, and what each tells of the runs."""
+"""Comparison of intensity measures: efficiency, sufficiency, relative sufficiency."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -30,9 +30,9 @@ from rockframe.studies.sweeps.motions import MotionsLike
 
 _OWNER: Final = "compare_intensities"
 _AGAINST: Final = 0.05
-"""Probability below which a slope of the residuals is told of."""
+"""p-value below which a slope of the residuals is reported as significant [1]."""
 Covariates = Mapping[str, Any]
-"""Numbers of the motions by a name: in their order, by their labels, or over ``motion``."""
+"""Numbers of the motions by name: in order of motions, by their labels, or over ``motion``."""
 
 
 @hinted()
@@ -47,19 +47,19 @@ def compare_intensities(
     motions: MotionsLike | None = None,
     pooled: Iterable[str] = (),
 ) -> xr.Dataset:
-    """Compare intensity measures by how well each tells the response.
+    """Compare intensity measures by how well each predicts the response.
 
     Parameters
     ----------
     runs : xarray.Dataset
-        Of a sweep over many motions, usually as they were recorded.
+        Result of a sweep over many motions, usually as they were recorded.
     measures : iterable of str, (str, period) or DataArray
         As for :func:`rockframe.fragility`; spectral ones with their period, such as
         ``("SA", "1 s")``, or ``("Sa_avg", (numpy.linspace(0.5, 3, 26), "s"))``.
     response : str, optional
-        Which scalar of the runs.
+        The scalar of the runs that is the response.
     label : str, optional
-        Of points, bodies or restrainers which one.
+        Which point, body or restrainer, where the response is of one of several.
     against : sequence of str, or mapping of str to values, optional
         What the response should not depend on beside the measure: names of coordinates of the
         runs; or, by their names, numbers of the motions, in their order, by their labels, such as
@@ -94,12 +94,12 @@ def compare_intensities(
     Luco and Cornell (2007). The line is that of :func:`rockframe.cloud_analysis`. A measure is
     *efficient* where the ``residual_dispersion`` is small; of measures with different powers the
     ``efficiency_ratio`` is comparable, the dispersion of the intensity at a response (Padgett et
-    al., 2008). It is *sufficient* where the residuals do not go with magnitude or distance: the
+    al., 2008). It is *sufficient* where the residuals do not depend on magnitude or distance: the
     ``sufficiency_p_value`` is that of the slope of a straight line through the residuals over the
-    covariate, as it is given; give the logarithm of a distance. A small one tells
-    against the measure, a large one little where runs are few. The relative sufficiency
-    (Jalayer et al., 2012), :eq:`eq-relative-sufficiency`, is how many bits more than the first
-    measure each one tells of the response of a run on average, overturning and rest included.
+    covariate, as it is given; give the logarithm of a distance. A small one is evidence against the
+    measure; a large one means little where runs are few. The relative sufficiency (Jalayer et al.,
+    2012), :eq:`eq-relative-sufficiency`, is the mean information in bits on the response of a run,
+    overturning and rest included, that a measure has beyond the first one.
 
     Examples
     --------
@@ -182,7 +182,7 @@ def _covariates(runs: xr.Dataset, given: Sequence[str] | Covariates) -> dict[str
 
 
 def _of_motions(runs: xr.Dataset, name: str, given: Any) -> xr.DataArray:
-    """Give each run the number of its motion."""
+    """Give the numbers of the motions to the runs."""
     if isinstance(given, xr.DataArray):
         return given
     labels = runs[MOTION].to_numpy().astype(str)
@@ -208,7 +208,7 @@ def _of_motions(runs: xr.Dataset, name: str, given: Any) -> xr.DataArray:
 def _compared(
     named: Sequence[str], clouds: Sequence[Cloud], beside: Mapping[str, Array]
 ) -> xr.Dataset:
-    """Put the numbers of all measures side by side."""
+    """Give a dataset of the results of all measures."""
     lines = [one.line for one in clouds if one.line is not None]
     likely = np.stack([one.log_likelihoods() for one in clouds])
     more = (likely - likely[0]) / math.log(2.0)
@@ -242,7 +242,7 @@ def _compared(
 
 
 def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:
-    """Give the slope of the residuals over a covariate, and how probable it is by chance."""
+    """Give the slope of the residuals over a covariate, and its p-value."""
     from scipy.stats import linregress
 
     along = covariate[cloud.between]
@@ -254,7 +254,7 @@ def _dependence(cloud: Cloud, covariate: Array) -> tuple[float, float]:
 
 
 def _sentence(found: xr.Dataset) -> str:
-    """Tell which measure is most efficient, and which are not sufficient."""
+    """Give the verdict in words: the most efficient measure, and those not sufficient."""
     ratio = found["efficiency_ratio"]
     best = str(found["measure"][int(np.argmin(ratio.to_numpy()))].item())
     text = f"Of {found.sizes['measure']} measures {best} is the most efficient, with "

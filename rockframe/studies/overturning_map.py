@@ -28,7 +28,7 @@ _OWNER: Final = "overturning_map"
 _STANDS: Final = -1.0
 _MOST_IMPACTS: Final = 1000
 _SAME_PEAK: Final = 1e-6
-"""Relative difference up to which pulses of an amplitude have the same peak."""
+"""Relative difference up to which peaks of pulses of one amplitude count as equal [1]."""
 
 
 @takes(SweepArguments, overturning=Overturning.CONTINUE)
@@ -57,7 +57,7 @@ def overturning_map(
     frequency : values with a unit
         Cyclic frequencies: ``([0.5, 1, 2], "Hz")`` [Hz].
     impacts : int, optional
-        Number of impacts from which on the ways to overturn are no longer told apart.
+        Number of impacts from which on modes of overturning are no longer distinguished.
     bracket_width : float, optional
         Width of the brackets about boundaries, over their upper end [1].
 
@@ -85,9 +85,9 @@ def overturning_map(
     -----
     Blocks overturn without an impact, or after one or more (Zhang and Makris, 2001); between the
     two a range of amplitudes may stand. So a boundary is where the number of impacts before
-    overturning changes, and a bracket whose middle stands becomes two: between neighbouring
-    amplitudes of the first runs that overturn in different ways no such range is missed that
-    the halving meets.
+    overturning changes. A bracket whose middle stands becomes two: between neighbouring amplitudes
+    of the first runs that overturn in different modes a standing range is found if a middle of the
+    halving lies in it.
 
     Examples
     --------
@@ -188,7 +188,7 @@ def _labels(
         angular = 2.0 * math.pi * frequencies
         own = setting.body.frequency_at(system.options.gravity)
         rows.append(("relative_pulse_frequency", MOTION, angular / own))
-        # of an amplitude of one; that need not be the peak, as of less than a quarter of a sine
+        # of amplitude one, which need not be the peak, as in less than a quarter of a sine
         peaks = np.array([greatest(one.si.horizontal.pieces) for one in pulses])
         if np.ptp(peaks) <= _SAME_PEAK * peaks.max():
             rows.append(("relative_peak_ground_acceleration", SCALE, levels * peaks[0] / uplift))

@@ -1,4 +1,4 @@
-"""How probable overturning is where parameters and motions are spread; the distributions."""
+"""Probability of overturning with random parameters and motions, by drawn cases."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ from rockframe.units import POSITIVE, Condition, Measure, RatioLike, Unit, to_ra
 
 
 class Sampling(StrEnum):
-    """How a sample is drawn."""
+    """Method of sampling."""
 
     LATIN = "latin"
     RANDOM = "random"
@@ -46,7 +46,7 @@ _KINDS: Final = {
 
 @dataclass(frozen=True)
 class Spread:
-    """A parameter that is spread."""
+    """A random parameter: its axis, its unit and its distribution."""
 
     name: str  # of the axis
     unit: str  # of its values
@@ -109,9 +109,9 @@ def read_correlation(given: object, names: Sequence[str], *, owner: str) -> Arra
 
 
 def correlated(cube: Array, matrix: Array, *, stratified: bool) -> Array:
-    """Give a sample of the unit cube the correlation of normal scores, :eq:`eq-gaussian-copula`.
+    """Impose a correlation of normal scores on a sample of the unit cube, :eq:`eq-gaussian-copula`.
 
-    One that is stratified keeps its values, in another order (Iman and Conover, 1982).
+    A stratified sample keeps its values, in another order (Iman and Conover, 1982).
     """
     from scipy.special import ndtr, ndtri
 
@@ -190,7 +190,7 @@ def _frozen(name: str, parts: list[Any], scene: SweptScene, owner: str) -> Sprea
 
 def _axis(scene: SweptScene, name: str, value: Any, owner: str) -> Axis:
     """Read one value as the axis of its name does."""
-    with collected_warnings():  # a width of a distribution is no unusual value
+    with collected_warnings():  # a standard deviation may be an unusual value
         axis = scene.axis(name, [value])
     if axis.unit is None:
         msg = f"{owner}: {name} has words for values, which have no distribution"
@@ -200,23 +200,23 @@ def _axis(scene: SweptScene, name: str, value: Any, owner: str) -> Axis:
 
 _BINS: Final = 20
 _FEWEST: Final = 20
-"""Cases in a bin."""
+"""Least number of cases in a bin."""
 
 
 class Matters(NamedTuple):
-    """How much a parameter matters."""
+    """Sensitivity of the verdict to a parameter."""
 
-    # first-order index: the variance of the share that overturns given the parameter, over that of
-    # the verdict, without what chance alone would give [1]
+    # first-order index: variance of the share that overturns given the parameter, over that of the
+    # verdict, less its expectation without any dependence [1]
     first_order: float = np.nan
-    # greatest difference of the distributions of the parameter in cases of either verdict; NaN of
-    # words [1]
+    # greatest difference of the parameter's distributions in cases of either verdict; NaN where
+    # values are words [1]
     distance: float = np.nan
-    chance: float = np.nan  # probability of shares as uneven if the parameter did not matter [1]
+    chance: float = np.nan  # p-value of the uneven shares if the parameter had no influence [1]
 
 
 def ranked(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Matters]:
-    """Tell what matters most, first.
+    """Give the sensitivity of the verdict to each parameter, the greatest first.
 
     The index is the correlation ratio of groups of equal size, less its expectation if there
     were no dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given
@@ -256,7 +256,7 @@ def _matters(values: Generic, verdict: Array) -> Matters:
 
 _OWNER: Final = "probability_of_overturning"
 SAMPLED: Final = "sampling"
-"""Attribute that tells how cases were drawn."""
+"""Attribute that records how cases were drawn."""
 _MOST_CASES: Final = 1_000_000_000
 
 
@@ -283,29 +283,30 @@ def probability_of_overturning(
         Each case has one of them, all equally probable; the one among the parts of the system
         unless given.
     spread : mapping of str to distribution
-        By the names of axes (:func:`rockframe.sweep`), ``scale`` among them:
+        Distributions by names of axes (:func:`rockframe.sweep`), ``scale`` among them:
         ``("normal", mean, standard deviation)``, ``("lognormal", median, standard deviation of
         the logarithm)``, ``("uniform", least, greatest)``, with units; or a frozen distribution
         of ``scipy.stats`` in SI units, and the unit: ``(scipy.stats.triang(0.5), "m")``.
     correlation : mapping of (str, str) to float, or array, optional
-        Of the normal scores of parameters, by pairs of them, ``{("width", "height"): 0.7}``, or a
-        matrix in the order of `spread`; of normal distributions that of the parameters, of
-        lognormal ones that of their logarithms. None are correlated unless given [1].
+        Correlation of the normal scores of parameters, by pairs,
+        ``{("width", "height"): 0.7}``, or a matrix in the order of `spread`; for normal
+        distributions it is that of the parameters, for lognormal ones that of their logarithms.
+        None are correlated unless given [1].
     cases : int, optional
-        How many are drawn.
+        Number of cases that are drawn.
     sampling : {"latin", "random", "sobol"}, optional
         A Latin hypercube, independent numbers, or a scrambled Sobol sequence, for which
         `cases` had best be a power of two.
     seed : int, optional
-        Of the random numbers: the same one draws the same cases.
+        Seed of the random numbers: equal seeds draw equal cases.
     confidence : float, optional
-        Of the bounds [1].
+        Confidence level of the bounds [1].
 
     Returns
     -------
     xarray.Dataset
         The sweep over ``case``, with ``overturning_probability``, its bounds, and
-        ``verdict_count``; and over ``parameter``, what matters most first:
+        ``verdict_count``; and over ``parameter``, the most influential first:
         ``first_order_index``, ``verdict_distance`` and ``chance_probability`` [1].
 
     Raises
@@ -319,13 +320,13 @@ def probability_of_overturning(
     -----
     The bounds are those of Clopper and Pearson for independent cases. Latin hypercubes
     and Sobol sequences vary less, so that the bounds are wide for them: of a Latin hypercube
-    the variance is at most n/(n-1) times that of independent cases (Owen, 1997). They say
-    nothing of whether the motions stand for those to come. Correlated parameters have a Gaussian
-    copula, :eq:`eq-gaussian-copula`: each keeps its distribution; the order of a Latin hypercube
-    is changed, and its strata stay. The index of a parameter then holds what it tells of
-    those that go with it. The first-order index is the share
-    of the variance of the verdict that would be gone if the parameter were known; what several
-    parameters do together is in none of them. Cases without a verdict are left out.
+    the variance is at most n/(n-1) times that of independent cases (Owen, 1997). They do
+    not cover the question whether the motions represent those to come. Correlated parameters have
+    a Gaussian copula, :eq:`eq-gaussian-copula`: each keeps its distribution; the order of a Latin
+    hypercube is changed, not its strata. The index of a parameter then includes the influence of
+    those correlated with it. The first-order index is the share of the variance of the verdict
+    that would vanish if the parameter were known; interactions of several parameters are in none
+    of them. Cases without a verdict are left out.
 
     Examples
     --------
@@ -400,7 +401,7 @@ def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: fl
     said = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"
     said += f" with confidence {level:g}, by {count} cases"
     if several:
-        # the bounds are those of further cases of the same motions
+        # the bounds hold for further cases of the same motions
         said += f" under these {len(np.unique(columns[MOTION]))} motions"
     lacking = len(verdict) - count
     if lacking:

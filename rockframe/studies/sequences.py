@@ -1,4 +1,4 @@
-"""Earthquakes in sequence: how far each of them takes a system that the ones before have left."""
+"""Sequences of earthquakes: response after each, starting from the state after those before."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -34,7 +34,7 @@ _OWNER: Final = "earthquake_sequences"
 _SAME_STEP: Final = 1e-9
 """Relative difference up to which two time steps are the same."""
 _MOST_PARTS: Final = 64
-"""Parts of an interval, beyond which a refinement does as well."""
+"""Most parts into which an interval is divided for a common time step."""
 NUMBER: Final = "earthquake"
 
 
@@ -54,10 +54,10 @@ def earthquake_sequences(
         The scene.
     sequences : mapping of str to sequence of GroundMotion, or sequence of sequences
         Earthquakes in their order, such as a main shock and its aftershocks. Where their time
-        steps differ, intervals are divided, down to a 64th; the motions stay what they are.
+        steps differ, intervals are divided, down to a 64th; the motions do not change by it.
     pause : str or Quantity, optional
         Still ground after each of them [s], in whole time steps of its sequence, and at least one
-        between two motions; what it comes to is in the result.
+        between two motions; the pause that results is given.
 
     Returns
     -------
@@ -79,8 +79,8 @@ def earthquake_sequences(
     -----
     The motions are joined, with their polynomials, and zeros between them; each row of the
     result is a run from the start of its sequence, so that nothing is lost in between. On rigid
-    ground, on pads and on soil a block that has come to rest remembers nothing but how far it has
-    slid, and which ties have yielded or broken; a base of one's own may.
+    ground, on pads and on soil a block that has come to rest keeps no memory but its slip, and the
+    yielding and breaking of its ties; a user's own base may keep more.
 
     Examples
     --------
@@ -190,13 +190,13 @@ def _steps(motion: GroundMotion, rest: float) -> int:
 
 
 def _pause(motion: GroundMotion, rest: float) -> float:
-    """Give the pause in a sequence; as it was asked where that is whole steps."""
+    """Give the pause in a sequence; exactly the given one where it is whole time steps."""
     found = _steps(motion, rest) * motion.si.time_step
     return rest if math.isclose(found, rest, rel_tol=_SAME_STEP) else found
 
 
 def _level(horizontal: Signal) -> Signal:
-    """Give the vertical component of ground that does not move upwards."""
+    """Give a vertical component that is zero, of the length of the horizontal one."""
     still = np.zeros(horizontal.samples.size)
     return replace(horizontal, samples=still, polynomials=None, name="vertical")
 
@@ -215,7 +215,7 @@ def _six(pieces: Array) -> Array:
 
 
 def _arranged(runs: xr.Dataset, there: Generic) -> xr.Dataset:
-    """Give runs along motions the dimensions of sequences and earthquakes, where these are."""
+    """Give the runs with dimensions of sequence and earthquake instead of motion."""
     found: dict[str, xr.Variable] = {}
     gaps = not there.all()
     for name, one in runs.data_vars.items():

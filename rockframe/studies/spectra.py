@@ -38,13 +38,13 @@ from rockframe.units import LENGTH, PERIOD, Measure, QuantityLike, RatioLike, Un
 
 _SLENDER: Final = Measure("a pure ratio", Unit.ONE, "4")
 _ROUNDING: Final = 1e-9
-"""Relative to the height: a centre of mass that is less beside the middle is there."""
+"""Eccentricity of the centre of mass over the height that counts as none [1]."""
 
 
 class BlockSizes:
-    """A system whose block has other sizes.
+    """A system with blocks of other sizes.
 
-    Its attribute ``system`` is that system, with the block told by its shape factor.
+    Its attribute ``system`` is the given system, with the block defined by its shape factor.
     """
 
     def __init__(
@@ -82,14 +82,14 @@ class BlockSizes:
         self._labels = {str(name): labels[name].variable for name in labels.coords} | further.labels
 
     def arranged(self, runs: xr.Dataset) -> xr.Dataset:
-        """Give what runs over the rows of the table the dimensions of the sizes."""
+        """Give the runs with the dimensions of the sizes instead of the rows of the table."""
         return over_rows(runs, self._sizes, self._labels)
 
 
 def _by_shape_factor(system: System, owner: str) -> System:
     """Give a system whose block keeps its shape factor where width and height change.
 
-    An inertia and a height of the centre of mass that were given would stay as they are.
+    An inertia and a height of the centre of mass that were given would not change with them.
     """
     block, fault = system.parts.block, ""
     if type(block) is not Block:
@@ -131,7 +131,7 @@ def rocking_spectrum(
     Parameters
     ----------
     system : System
-        A block on its base. Its size is changed, and its slenderness if it is asked for;
+        A block on its base. Its size is changed, and its slenderness if that is given;
         its shape factor, its mass and the parameters of the base stay as they are.
     motions : GroundMotion, or sequence or mapping of them, optional
         Motions; the one among the parts of the system unless given.
@@ -223,7 +223,7 @@ def overturning_spectrum(
         Over ``slenderness``, ``rocking_period`` [s], the axes and ``motion``:
         ``capacity_scale`` [1] and ``capacity_intensity``, the least found to overturn, infinite if
         none did, and ``capacity_resolution``;
-        ``left_out_count``, how many runs of the first row have no verdict;
+        ``left_out_count``, the number of runs of the scan without a verdict;
         ``flip_count``, and over ``flip`` too ``scale_below``, ``scale_above`` and
         ``exceeds_above``.
 

@@ -1,4 +1,4 @@
-"""How probable a rare limit state is where parameters and motions are spread."""
+"""Small probabilities of limit states with random parameters and motions: subset simulation."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
@@ -55,13 +55,13 @@ from rockframe.units import Condition, RatioLike, to_ratio
 _OWNER: Final = "subset_simulation"
 _SHARE: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
 _FEWEST: Final = 5
-"""Chains of a level."""
+"""Least number of chains of a level."""
 _MOST_CASES: Final = 10_000_000
 _MOST_LEVELS: Final = 50
 _FEW_FAMILIES: Final = 5
-"""Of so few the coefficient of variation is itself hardly known."""
+"""Number of families below which the coefficient of variation is itself uncertain."""
 _TOLD: Final = ("axes_json", "study_sha256")
-"""Attributes that tell of the columns of a table, and under which name this process knows it."""
+"""Attributes with the columns of a table, and the name by which this process knows it."""
 
 
 @takes(SweepArguments)
@@ -90,23 +90,23 @@ def subset_simulation(
         Each case has one of them, all equally probable; the one among the parts of the system
         unless given.
     spread : mapping of str to distribution
-        What is random, as for :func:`rockframe.probability_of_overturning`.
+        Distributions of the random parameters, as for :func:`rockframe.probability_of_overturning`.
     correlation : mapping of (str, str) to float, or array, optional
-        Of the normal scores of parameters, as there [1].
+        Correlation of the normal scores of parameters, as there [1].
     limit : str, float or tuple, optional
         The limit state: ``"overturning"``, a peak rotation over the overturning angle, or a
         variable of runs and its limit, ``("peak_slip", "5 cm")``, as for
         :func:`rockframe.fragility`.
     cases : int, optional
-        Samples of each level.
+        Number of samples of each level.
     share : float, optional
-        Of the samples of a level that are the beginnings of the next [1].
+        Share of the samples of a level from which the chains of the next one start [1].
     levels : int, optional
-        How many there are at most.
+        Most levels.
     seed : int, optional
-        Of the random numbers: the same one draws the same cases.
+        Seed of the random numbers: equal seeds draw equal cases.
     confidence : float, optional
-        Of the bounds [1].
+        Confidence level of the bounds [1].
     points : mapping of str to (str or Quantity, str or Quantity), optional
         Points of the body, for a limit state at one of them, as for :func:`rockframe.sweep` [m].
 
@@ -123,8 +123,8 @@ def subset_simulation(
     Raises
     ------
     UnitsError, ComponentError
-        An argument is out of range, or has a wrong unit or none; or the limit state is one to
-        which responses come neither nearer nor farther, such as uplift.
+        An argument is out of range, or has a wrong unit or none; or responses cannot be
+        nearer to the limit state or farther from it, as with uplift.
     StudyError
         No such parameter, with every fault found; or as for :func:`rockframe.sweep`.
 
@@ -133,8 +133,8 @@ def subset_simulation(
     SolverWarning, ModelWarning
         As :func:`rockframe.sweep` does.
     ModelWarning
-        No sample exceeds the limit state, so that there is a bound from above alone; or
-        those that do descend from fewer than five samples of the first level.
+        No sample exceeds the limit state, so that there is only an upper bound; or those
+        that do descend from fewer than five samples of the first level.
 
     Notes
     -----
@@ -142,15 +142,15 @@ def subset_simulation(
     :eq:`eq-conditional-candidate`. A level's samples are those of chains that begin at the samples
     of the level before with the greatest demand; all chains make a step at once, in one sweep.
     The demand is the response over its limit, infinite where the block has overturned. Where many
-    samples demand the same, as blocks that stay at rest do, a threshold lies above or
-    below all of them, and the share of the level is another than asked for.
+    samples have the same demand, as blocks that stay at rest do, a threshold lies above or below
+    all of them, and the share of the level differs from `share`.
 
     The coefficient of variation counts how unequally the samples of the first level are
-    represented at the end, :eq:`eq-subset-variation`: so it holds what samples of one chain, chains
-    of one origin, and levels have in common. It cannot tell of a region of failure that no sample
-    of the first levels has come near; rocking may have several, and the way to overturning may
-    lead over motions of lesser rotation. Another `seed` or more `cases` show whether that is so.
-    Cases without a verdict are left out, and never accepted.
+    represented at the end, :eq:`eq-subset-variation`: so it includes the correlation of samples in
+    a chain, of chains of one origin, and of levels. It cannot account for a region of failure that
+    no sample of the first levels has come near; rocking may have several, and the way to
+    overturning may lead over motions of lesser rotation. Another `seed` or more `cases` show
+    whether this is so. Cases without a verdict are left out, and never accepted.
 
     Examples
     --------
@@ -218,7 +218,7 @@ def subset_simulation(
 
 
 def _read_limit(given: object) -> LimitState:
-    """Read the limit state, which must be one that responses come near to."""
+    """Read the limit state, which must have a demand that grows towards it."""
     if not isinstance(given, str | int | float | tuple):
         msg = (
             f"{_OWNER}: limit must be one limit state: 'overturning', a peak rotation over the "
@@ -237,24 +237,24 @@ def _read_limit(given: object) -> LimitState:
 
 
 class _Sampler:
-    """Makes parameters of normal scores, runs them, and keeps what the runs gave."""
+    """Transforms normal scores to parameters, runs the cases, and collects the results."""
 
     def __init__(
         self, rounds: Rounds, spreads: Sequence[Spread], matrix: Array | None,
         names: Sequence[str], state: LimitState,
     ) -> None:  # fmt: skip
-        self.said: list[str] = []  # what was warned of beyond the first level
+        self.said: list[str] = []  # warnings beyond the first level
         self.runs: list[xr.Dataset] = []
         self._rounds, self._spreads, self._names, self._state = rounds, spreads, names, state
         self._root = np.eye(len(spreads)) if matrix is None else np.linalg.cholesky(matrix)
 
     @property
     def size(self) -> int:
-        """How many numbers a sample is of: one for the motion too, if there are several."""
+        """Length of a sample: the number of parameters, and one more for several motions."""
         return len(self._spreads) + (len(self._names) > 1)
 
     def demand(self, part: str, scores: Array) -> Array:
-        """Run samples, a row of normal scores each."""
+        """Run samples, a row of normal scores each; give their demands."""
         table = self._table(scores)
         with collected_warnings() if self.runs else nullcontext([]) as said:
             runs = self._rounds.sweep(part, table, {}, further=bool(self.runs))
@@ -271,7 +271,7 @@ class _Sampler:
 
         count = len(self._spreads)
         normal = scores[:, :count] @ self._root.T
-        # of either tail the share beyond, which is not rounded off
+        # each by the probability of its own tail, which loses no digits
         beyond = ndtr(-np.abs(normal))
         table: dict[str, Any] = {
             head(one.name, one.unit): np.where(
@@ -288,7 +288,7 @@ class _Sampler:
 
 
 def _collected(every: Iterator[Level], *, kept: bool) -> tuple[list[Level], bool]:
-    """Give the levels, and whether they are all."""
+    """Give the levels, and whether sampling went to its end."""
     found: list[Level] = []
     try:
         found.extend(every)
@@ -305,7 +305,7 @@ def _collected(every: Iterator[Level], *, kept: bool) -> tuple[list[Level], bool
 def _labelled(
     sampler: _Sampler, found: Sequence[Level], confidence: float, *, whole: bool
 ) -> xr.Dataset:
-    """Give the samples of all levels, each with its run, and what follows from them."""
+    """Give a dataset of the samples of all levels with their runs, and of the probability."""
     first = sampler.runs[0]
     samples = concat(sampler.runs, CASE).isel(
         {CASE: np.concatenate([one.origins for one in found])}
@@ -344,7 +344,7 @@ def _labelled(
 
 
 def _say_what_is_lacking(found: xr.Dataset) -> None:
-    """Warn of a probability that is not known, or hardly."""
+    """Warn if the probability has only an upper bound, or is uncertain."""
     families, levels = int(found["family_count"]), found.sizes["sampling_level"]
     if families == 0:
         last = found["demand"].where(found["sample_level"] == levels, drop=True)
@@ -365,7 +365,7 @@ def _say_what_is_lacking(found: xr.Dataset) -> None:
 def _sentence(
     found: xr.Dataset, state: LimitState, confidence: float, motions: int, *, whole: bool
 ) -> str:
-    """Tell the probability, and by how many runs."""
+    """Give the verdict in words: the probability, and the number of runs."""
     does = "Overturns" if state.rotation == 1.0 else f"Exceeds {state.name}"
     lower, upper = (
         float(found[f"exceedance_probability_{end}_bound"]) for end in ("lower", "upper")

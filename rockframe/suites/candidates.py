@@ -1,4 +1,4 @@
-"""What a selection chooses from: motions or pairs, their spectra, and their factors."""
+"""Candidates of a selection: motions or pairs, their spectra, and their scale factors."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ _USUAL_COUNT: Final = 40
 
 
 class Combination(StrEnum):
-    """Whose spectrum is fitted: each motion's, or one of both components of a record."""
+    """The spectrum that is fitted: that of each motion, or a combined one of both components."""
 
     EACH = "each"
     GEOMETRIC_MEAN = "geometric mean"
@@ -46,9 +46,9 @@ _OF_PAIRS: Final = {
 
 @dataclass(frozen=True)
 class Candidates:
-    """Motions or records beside a target."""
+    """Spectra and scale factors of motions or records, with the target spectrum."""
 
-    # of n motions, or of records where both components are looked at together
+    # of n motions, or of n records where both components are combined
     labels: tuple[str, ...]
     seconds: Array  # periods at which spectra are compared [s]
     logarithms: Array  # of the spectra, not scaled
@@ -56,8 +56,8 @@ class Candidates:
     deviations: Array  # its standard deviations
     factors: Array  # by which each is scaled, whatever the bounds [1]
     bounds: tuple[float, float]  # least and greatest factor
-    events: tuple[str, ...]  # earthquake of each, empty where it is not known
-    attributes: dict[str, str | float | int]  # what answers say of all this
+    events: tuple[str, ...]  # earthquake of each, empty if unknown
+    attributes: dict[str, str | float | int]  # attributes of results
 
     def residuals(self, factors: Array) -> Array:
         """Give the logarithms of scaled spectra over the target, shape (n, k)."""
@@ -65,7 +65,7 @@ class Candidates:
 
     @property
     def within(self) -> "NDArray[np.bool_]":
-        """Which factors lie within the bounds, shape (n,)."""
+        """Give whether each factor lies within the bounds, shape (n,)."""
         low, high = self.bounds
         return (self.factors >= low) & (self.factors <= high)
 
@@ -118,7 +118,7 @@ def candidates_of(
 
 
 def usual_periods(target: TargetSpectrum) -> Array:
-    """Give the periods at which spectra are compared with a target unless told otherwise [s]."""
+    """Give the periods at which spectra are compared with a target by default [s]."""
     low, high = (float(np.clip(one, *target.limits)) for one in _USUAL_BAND)
     return np.geomspace(low, high, _USUAL_COUNT) if high > low else np.array([low])
 

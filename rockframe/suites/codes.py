@@ -145,7 +145,7 @@ def asce_7(
         for name, value in named.items()
     )
     last = to_si(long_period, PERIOD, owner=owner, name="long_period", condition=POSITIVE)
-    corner = one / short  # s: the second of S_D1 divides out
+    corner = one / short  # [s], as S_D1 is the acceleration at 1 s
     if last <= corner:
         msg = f"{owner}: long_period must exceed S_D1/S_DS, {corner:.4g} s"
         raise ComponentError(msg)

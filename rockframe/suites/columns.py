@@ -1,4 +1,4 @@
-"""The table of a suite: what is known of each motion, and motions chosen by that."""
+"""The table of a suite: metadata of each motion, and selection by them."""
 
 import math
 from collections.abc import Callable, Collection, Mapping
@@ -39,7 +39,7 @@ def column(name: str, motion: GroundMotion) -> Any:
 
 
 def known_columns(motions: Mapping[str, GroundMotion]) -> dict[str, np.ndarray]:
-    """Give the columns of the schema that are known of some motion."""
+    """Give the columns of the schema for which some motion has a value."""
     found: dict[str, np.ndarray] = {}
     for name in COLUMNS:
         values = [column(name, motion) for motion in motions.values()]
@@ -52,7 +52,7 @@ def known_columns(motions: Mapping[str, GroundMotion]) -> dict[str, np.ndarray]:
 
 
 def other_columns(motions: Mapping[str, GroundMotion]) -> dict[str, list[Any]]:
-    """Give what else the files tell, by the keys of the metadata, None where they do not."""
+    """Give other metadata of the files, by their keys, None where a motion has none."""
     keys = dict.fromkeys(key for one in motions.values() for key in one.metadata)
     return {
         key: [one.metadata.get(key) for one in motions.values()]
@@ -101,7 +101,7 @@ def chosen(motions: Mapping[str, GroundMotion], criteria: Mapping[str, object]) 
 
 
 def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: str) -> None:
-    """Refuse the name of a column that no motion knows."""
+    """Refuse a column for which no motion has a value."""
     known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
     if not isinstance(name, str) or name not in known:
         asked = f"{shown(name)}{nearest(name, known)}"
@@ -110,7 +110,7 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
 
 
 def order(motions: Mapping[str, GroundMotion], name: str, *, descending: bool) -> list[str]:
-    """Give the labels in the order of a column; motions without a value stand last."""
+    """Give the labels in the order of a column; motions without a value come last."""
     known = {label: column(name, motion) for label, motion in motions.items()}
     there = [label for label, value in known.items() if not _missing(value)]
     as_text = any(isinstance(known[label], str) for label in there)
@@ -157,16 +157,16 @@ def _key(value: Any) -> Any:
     if isinstance(value, str):
         return value.strip().casefold()
     if isinstance(value, int | float):
-        return float(f"{float(value):.12g}")  # but for rounding of a change of unit
+        return float(f"{float(value):.12g}")  # without the rounding of a change of unit
     return value
 
 
 _SHOWN: Final = 8
-"""Motions that have a row of their own."""
+"""Most motions that are shown in rows of their own."""
 
 
 def suite_html(suite: "LabelledMotions") -> str:
-    """Give number, and curves of the first motions, of a suite as HTML."""
+    """Give a suite as HTML: its size, and curves of its first motions."""
     rows = {"motions": str(len(suite))}
     if suite.verticals:
         rows["vertical ones beside them"] = str(len(suite.verticals))

@@ -19,7 +19,7 @@ def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
     Parameters
     ----------
     target : TargetSpectrum
-        What is aimed at.
+        The target spectrum.
     **arguments
         As for :meth:`GroundMotion.matched`: `periods` [s], `tolerance` [1].
 
@@ -40,7 +40,7 @@ def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
     Warns
     -----
     RecordWarning
-        What :meth:`GroundMotion.matched` warns of, for all motions together.
+        As :meth:`GroundMotion.matched`, once for all motions together.
 
     Examples
     --------

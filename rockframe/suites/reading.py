@@ -1,4 +1,4 @@
-"""From files to a suite."""
+"""Reading files into a suite."""
 
 from collections.abc import Iterable
 from pathlib import PurePath
@@ -27,7 +27,7 @@ from rockframe.units import QuantityLike
 _OWNER: Final = "read_suite"
 _OTHER_MOTIONS: Final = {".vt2": "a velocity", ".dt2": "a displacement"}
 _COMPANIONS: Final = (*_OTHER_MOTIONS, ".pdf", ".xml")
-"""Files that come with records and are none: of them nothing is warned."""
+"""Endings of files that come with records but are none: they are skipped without a warning."""
 _LISTED: Final = 3
 
 
@@ -48,17 +48,17 @@ def read_suite(
         download of the PEER database as it comes, one file, or several of these. ``~`` is the
         user's folder. Also a netCDF file of :meth:`MotionSuite.to_dataset`.
     format : str, optional
-        A name of :func:`rockframe.motion.formats` for all files; recognised unless given.
+        A name of :func:`rockframe.motion.formats` for all files; by default it is recognised.
     unit : str, optional
         Unit of the samples, where files do not say, as for :meth:`GroundMotion.read`.
     time_step : str or Quantity, optional
-        For columns of samples without times [s].
+        Time step, for columns of samples without times [s].
 
     Returns
     -------
     MotionSuite
         All components that could be read, in the order of the files; horizontal ones as
-        motions, vertical ones beside them. What could not be read stands in its ``unread``.
+        motions, vertical ones beside them. Files that could not be read are in ``unread``.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def read_suite(
 
 
 class _Found:
-    """What was found so far."""
+    """Components, tables and faults found so far."""
 
     def __init__(self) -> None:
         self.components: list[RecordedComponent] = []
@@ -125,7 +125,7 @@ class _Found:
         self._labels: set[str] = set()
 
     def take(self, file: Source, format_name: str | None, request: Request) -> None:
-        """Read a file, or note why not."""
+        """Read a file, or record why it was not read."""
         other = _OTHER_MOTIONS.get(file.suffix)
         if other is not None:
             self.left.append(Unread(file.path, f"found {other}; expected an acceleration"))
@@ -143,7 +143,7 @@ class _Found:
         except ComponentError:
             raise
         except Exception as problem:
-            # a fault of a reader takes one file away, not the folder, and is told as what it is
+            # a fault of a reader excludes one file, not the folder, and is reported as such
             found = f"found what the reader fails at ({type(problem).__name__}: {problem})"
             self.left.append(Unread(file.path, f"{found[:300]}; {PLEASE_REPORT}"))
             return
@@ -205,7 +205,7 @@ def _nothing(path: str, found: _Found, upwards: int) -> RecordError:
 
 
 def _say(found: _Found) -> None:
-    """Warn once of all that is worth a warning."""
+    """Warn once, for all files together."""
     left = [one for one in found.left if not one.path.casefold().endswith(_COMPANIONS)]
     words: list[str] = []
     if left:

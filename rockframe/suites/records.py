@@ -27,9 +27,9 @@ _INSTRUMENT: Final = re.compile(r"(?:^|\.)([FGDCESHBML][NLGH])[A-Z0-9](?:\s|$)")
 
 @dataclass
 class RecordedComponent:
-    """A component that was read, on its way into a suite."""
+    """A component that was read and is to be put into a suite."""
 
-    label: str  # what it will be called
+    label: str  # its label in the suite
     motion: GroundMotion  # as it was read
     vertical: bool  # whether it is vertical
     file: str  # path of its file, for messages
@@ -38,7 +38,7 @@ class RecordedComponent:
 
     @property
     def metadata(self) -> dict[str, Any]:
-        """What the file and other sources tell."""
+        """Metadata from the file and other sources."""
         own = {name: self.known[name] for name in _OF_THE_SUITE if name in self.known}
         return {**self.known, **self.motion.metadata, **own}
 
@@ -106,7 +106,7 @@ def pairs_of(
 def _sorted_by(
     components: Iterable[RecordedComponent], key: Callable[[RecordedComponent], tuple[str, ...]]
 ) -> list[list[RecordedComponent]]:
-    """Sort components by a key, and those of known starts by times that overlap."""
+    """Group components by a key, and those of known start times by overlapping times."""
     sorted_: dict[tuple[str, ...], list[RecordedComponent]] = {}
     for component in components:
         sorted_.setdefault(key(component), []).append(component)
@@ -132,7 +132,7 @@ def _at_one_time(members: list[RecordedComponent]) -> list[list[RecordedComponen
 
 
 def _start(component: RecordedComponent) -> float | None:
-    """Give when a component starts [s], where nothing else tells its earthquake."""
+    """Give the start time of a component whose earthquake is not known [s], else None."""
     metadata = component.metadata
     if not _named_by_station(metadata) or any(metadata.get(key) for key in _WHEN):
         return None
@@ -191,7 +191,7 @@ def _is_one(members: list[RecordedComponent]) -> bool:
 
 
 def _why_apart(members: list[RecordedComponent]) -> list[str]:
-    """Say why components of one station and time are no pair."""
+    """Give in words why components of one station and time are no pair."""
     if len(members) < len(HORIZONTAL):
         return []
     statements = {

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
 USUAL_BOUNDS: Final = (0.25, 4.0)
-"""Factors within which scaling is taken for harmless."""
+"""Bounds of scale factors that are usually accepted [1]."""
 _ROUNDING: Final = 1e-9
 
 
@@ -43,15 +43,15 @@ def scaling_to(
     Parameters
     ----------
     target : TargetSpectrum
-        What is aimed at; its damping ratio is that of the spectra.
+        The target spectrum; its damping ratio is that of the spectra.
     periods : (sequence, unit), Quantity or sequence of str, optional
-        At which spectra are compared, all of equal weight; 40 from 0.1 s to 4 s, evenly spaced
-        by their logarithms, unless given [s].
+        Periods at which spectra are compared, all of equal weight; unless given 40 from 0.1 s to
+        4 s, evenly spaced by their logarithms [s].
     conditioned_on : (sequence, unit), Quantity or sequence of str, optional
         One period, at which every scaled spectrum is to equal the target, or several, over
         which the average spectral acceleration is to equal the target's [s].
     bounds : tuple of two float, or None
-        Least and greatest factor; a factor beyond is set to the bound [1].
+        Least and greatest factor; factors beyond are set to the bound [1].
     combination : {"each", "geometric mean", "RotD50", "RotD100"}, optional
         Whether each motion has a factor of its own, or both components of a record a common
         one, by this spectrum of both.
@@ -76,7 +76,7 @@ def scaling_to(
     Warns
     -----
     RecordWarning
-        Periods asked for are shorter than ten time steps of a record.
+        Some periods are shorter than ten time steps of a record.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def scaled_set(
     title: str,
     **attributes: str | float,
 ) -> xr.Dataset:
-    """Label a set of scaled motions beside its target."""
+    """Give a labelled dataset of a set of scaled motions and its target."""
     residuals = candidates.residuals(factors)[places]
     logarithms = residuals + candidates.target
     low, high = candidates.bounds

@@ -50,18 +50,18 @@ def selection_for(
     Parameters
     ----------
     target : TargetSpectrum
-        Median that is aimed at, and the spread if it tells one.
+        Target for the median, and for the spread if it has one.
     count : int
-        How many motions; of records, where components are combined.
+        Number of motions, or of records where components are combined.
     periods, conditioned_on, combination : optional
         As for :meth:`scaling_to` [s].
     bounds : tuple of two float, or None
         Least and greatest factor; motions whose factor lies beyond are not chosen [1].
     spread_weight : float, optional
-        Weight of the spread beside the median; 1 where the target tells a spread, else 0, so
-        that only the median counts [1].
+        Weight of the spread relative to the median; by default 1 if the target has a spread,
+        else 0, so that only the median counts [1].
     per_event : int, optional
-        Most motions of one earthquake, where it is known.
+        Most motions of one earthquake, as far as earthquakes are known.
 
     Returns
     -------
@@ -80,9 +80,9 @@ def selection_for(
     Notes
     -----
     Greedy, after Jayaram, Lin and Baker (2011) and Baker and Lee (2018): a set grows by the
-    motion that makes it fit best, then each motion in turn gives way to the one that fits
-    better, until none does. That is done from several first motions, and the best set kept. A
-    better one may exist; no method of this kind can tell.
+    motion that makes it fit best, then each motion in turn is replaced by one that fits better,
+    until there is none. The search starts from several first motions, and the best set is kept. A
+    better one may exist, which no method of this kind can exclude.
 
     Examples
     --------
@@ -153,10 +153,10 @@ def selection_for(
 
 @dataclass(frozen=True)
 class _Search:
-    """The search for a set."""
+    """Data and methods of the search for a set."""
 
     residuals: "Array"  # logarithms of scaled spectra over the target
-    deviations: "Array"  # spread that is aimed at
+    deviations: "Array"  # target of the spread
     weight: float  # of the spread
     events: "NDArray[np.intp]"  # earthquakes by numbers; -1 where it is not known
     most: int  # most motions of one earthquake
@@ -167,7 +167,7 @@ class _Search:
         return float(self._misfits(others)[last])
 
     def best(self, count: int) -> list[int] | None:
-        """Find a set of so many; None where earthquakes do not suffice."""
+        """Find a set of `count` candidates; None where there are too few earthquakes."""
         alone = np.argsort((self.residuals**2).mean(axis=1), kind="stable")
         found: list[tuple[float, list[int]]] = []
         for first in alone[:_MOST_STARTS].tolist():
@@ -192,7 +192,7 @@ class _Search:
         return np.sqrt(squares.mean(axis=1))
 
     def _allowed(self, others: list[int]) -> "NDArray[np.bool_]":
-        """Tell which candidates may be added to a set, shape (n,)."""
+        """Give which candidates may be added to a set, shape (n,)."""
         free = np.ones(len(self.residuals), dtype=bool)
         free[others] = False
         numbers, counts = np.unique(self.events[others], return_counts=True)

@@ -1,7 +1,7 @@
 """A suite as a labelled dataset, and back, bit for bit.
 
-Motions differ in length: their samples stand one behind the other, and a count tells how many
-belong to each, the contiguous ragged array of CF 9.3.3.
+Motions differ in length: their samples are stored one after the other, with the number of samples
+of each, as the contiguous ragged array of CF 9.3.3.
 """
 
 import json
@@ -38,7 +38,7 @@ _MOST_NUMBERS: Final = 20_000_000
 _NAME: Final = "motion_name"
 _TARGET: Final = "target"
 _BAND: Final = (0.01, 20.0)
-"""Periods at which a target is kept that has no bounds of its own [s]."""
+"""Range of periods in which a target without bounds of its own is stored [s]."""
 _PERIODS: Final = 501
 _TEXTS: Final = {
     "motion_sha256": "digest of time step and samples",
@@ -132,7 +132,7 @@ def stored_motions(dataset: xr.Dataset) -> tuple[dict[str, GroundMotion], dict[s
 
 
 def _table_of(target: TargetSpectrum) -> dict[str, Any]:
-    """Give a target as a table: at its own periods, or at many where it is a formula."""
+    """Give a target as a table: at its own periods, or at many if it is a formula."""
     own = getattr(getattr(target.shape, "logarithm", None), "logarithms", None)
     low, high = np.clip(target.limits, *_BAND)
     seconds = np.geomspace(low, high, _PERIODS) if own is None else np.exp(np.array(own))
@@ -154,7 +154,7 @@ def _target_of(table: Mapping[str, Any]) -> TargetSpectrum:
 
 
 def is_stored_suite(source: "Source") -> bool:
-    """Tell whether a file is a netCDF file of a suite."""
+    """Give whether a file is a netCDF file of a suite."""
     if not is_netcdf(source):
         return False
     import netCDF4
@@ -166,7 +166,7 @@ def is_stored_suite(source: "Source") -> bool:
         ):
             warnings.simplefilter("ignore")
             return getattr(file, "kind", None) == _KIND
-    except Exception:  # damaged: the reader of motions says so
+    except Exception:  # damaged: the reader of motions reports it
         return False
 
 

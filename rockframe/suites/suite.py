@@ -1,4 +1,4 @@
-"""A suite: labelled motions, their measures, and what fits them to a target."""
+"""A suite: labelled motions, their measures, and scaling and selection for a target."""
 
 from collections.abc import Iterable
 from typing import Any, Self
@@ -28,9 +28,9 @@ class MotionSuite(LabelledMotions):
     """Labelled ground motions in an order; immutable.
 
     A mapping of labels to motions, accepted wherever several motions are. It holds the
-    horizontal components; vertical ones stand beside them in `verticals`, and set to work by
-    :meth:`with_verticals`. What is known of a motion are its metadata. Made by
-    :func:`rockframe.read_suite` or from motions at hand.
+    horizontal components; vertical ones are in `verticals`, and are added to the motions by
+    :meth:`with_verticals`. A motion's metadata describe it. Made by :func:`rockframe.read_suite` or
+    from motions.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class MotionSuite(LabelledMotions):
     unread : mapping of str to str, optional
         Files that were not read, and why.
     remarks : iterable of str, optional
-        What is worth a look.
+        Remarks on the records, such as contradictions in a file.
     target : TargetSpectrum, optional
         The spectrum that they were scaled to, known where they were compared with it.
 
@@ -193,8 +193,8 @@ class MotionSuite(LabelledMotions):
         Returns
         -------
         MotionSuite
-            Of the motions that were looked at, or chosen; their metadata tell ``scale_factor``
-            and ``spectral_misfit``, and its `target` what they were compared with.
+            The scaled motions, all or those chosen; their metadata have ``scale_factor`` and
+            ``spectral_misfit``, and its `target` is the spectrum they were compared with.
 
         Raises
         ------
@@ -228,7 +228,7 @@ class MotionSuite(LabelledMotions):
         target : TargetSpectrum
             The target.
         count : int
-            How many motions, or records of both components.
+            Number of motions, or of records of both components.
         **arguments
             As for :meth:`selection_for`.
 
@@ -265,8 +265,8 @@ class MotionSuite(LabelledMotions):
         Returns
         -------
         xarray.Dataset
-            Over ``motion``, the vertical components last, what is known of each; the samples of
-            all, one behind the other, over ``sample``, with ``sample_count`` (CF 9.3.3).
+            Over ``motion``, the vertical components last, the metadata of each; over ``sample``
+            the samples of all, one after the other, with ``sample_count`` (CF 9.3.3).
 
         Examples
         --------

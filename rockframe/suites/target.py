@@ -1,4 +1,4 @@
-"""Spectra that are aimed at: tables, spectra of motions, and those of codes."""
+"""Target spectra: from tables, from spectra of motions, and of codes."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -342,7 +342,7 @@ class TargetSpectrum(metaclass=Proposing):
         seconds : ndarray, shape (n,)
             Periods [s].
         owner : str
-            Who asks, for messages.
+            Name of the caller, for messages.
 
         Returns
         -------
@@ -375,7 +375,7 @@ class TargetSpectrum(metaclass=Proposing):
         Returns
         -------
         ndarray, shape (n,)
-            Zero where none is told [1].
+            Zero where the target has no spread [1].
         """
         _check_array(seconds, f"{type(self).__name__}.deviations_at")
         return np.zeros(seconds.size) if self.deviation is None else self.deviation(seconds)
@@ -409,7 +409,7 @@ class TargetSpectrum(metaclass=Proposing):
         )
 
     def with_deviation(self, standard_deviation: RatioLike) -> Self:
-        """Give a set the same spread at all periods.
+        """Set the same target of the spread at all periods.
 
         Parameters
         ----------
@@ -438,12 +438,12 @@ class TargetSpectrum(metaclass=Proposing):
         return replace(self, deviation=_Constant(value))
 
 
-# What follows is called as a function, and is a value: targets can be compared and pickled.
+# Functions as classes with values, so that targets can be compared and pickled.
 
 
 @dataclass(frozen=True)
 class _Interpolated:
-    """Straight between values at logarithms of periods."""
+    """Linear interpolation between values at logarithms of periods."""
 
     logarithms: tuple[float, ...]
     values: tuple[float, ...]

@@ -1,4 +1,4 @@
-"""Labelled motions in an order: a mapping, what is known of each, and which of them to keep."""
+"""Labelled motions in an order: a mapping, a table of metadata, and selection."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
@@ -30,7 +30,7 @@ _EXAMPLE: Final = "rf.read_suite(path) reads files"
 
 @proposing
 class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
-    """Labelled motions in an order; immutable. What a suite is, without what is done with it."""
+    """Labelled motions in an order; immutable. A suite without its measures and targets."""
 
     __slots__ = ("_motions", "_remarks", "_target", "_unread", "_verticals")
 
@@ -99,12 +99,12 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
 
     @property
     def unread(self) -> Mapping[str, str]:
-        """Files that were not read, and what was found in them."""
+        """Files that were not read, and why."""
         return MappingProxyType(self._unread)
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What is worth a look: of records that contradict themselves or do not make a pair."""
+        """Remarks on records that contradict themselves or do not make a pair."""
         return self._remarks
 
     @property
@@ -114,7 +114,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
 
     @property
     def table(self) -> pd.DataFrame:
-        """What is known of the motions: a row for each, units in the heads of the columns."""
+        """Metadata of the motions: a row for each, units in the names of the columns."""
         dataset = build_dataset(known_columns(self), {}, over=(MOTION,), title="Suite")
         frame = table_of(dataset.assign_coords({MOTION: (MOTION, list(self))}))
         for name, values in other_columns(self).items():
@@ -201,14 +201,14 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         return self._with({label: self._motions[label] for label in asked})
 
     def sort(self, by: str, *, descending: bool = False) -> Self:
-        """Order the motions by a column; those of which it is not known stand last.
+        """Order the motions by a column; those without a value come last.
 
         Parameters
         ----------
         by : str
             A column of `table`, without its unit.
         descending : bool, optional
-            Whether the greatest stands first.
+            Whether the greatest comes first.
 
         Returns
         -------
@@ -235,7 +235,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
     # changing -------------------------------------------------------------------------------
 
     def changed(self, step: Callable[[GroundMotion], GroundMotion]) -> Self:
-        """Do the same to all motions, and to the vertical components.
+        """Apply a function to all motions, and to the vertical components.
 
         Parameters
         ----------
@@ -266,12 +266,12 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         return type(self)(motions, verticals=upwards, unread=self._unread, remarks=self._remarks)
 
     def with_verticals(self) -> Self:
-        """Set the vertical component of its record beside each motion that has one.
+        """Add the vertical component of its record to each motion that has one.
 
         Returns
         -------
         MotionSuite
-            Its motions shake vertically too.
+            With motions of both directions.
 
         Raises
         ------
@@ -281,7 +281,7 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         Warns
         -----
         RecordWarning
-            No motion has one, so that nothing shakes vertically: scaling each motion by itself,
+            No motion has one, so that there is no vertical motion: scaling each motion by itself,
             and matching, leave vertical components out.
 
         Examples

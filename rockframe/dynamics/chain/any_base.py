@@ -1,4 +1,4 @@
-"""A base under a body of a chain: pads or a bed, as the numbers in the body's row tell."""
+"""A base under a body of a chain: pads or a bed, as a number in the row of the body says."""
 
 from typing import Final, NamedTuple
 
@@ -11,9 +11,9 @@ from rockframe.dynamics.point_law import Viscoelastic
 
 ON_PADS: Final = 0
 ON_BED: Final = 1
-ON_RIGID: Final = 2  # a bed without stiffness: what holds the ends are constraints
+ON_RIGID: Final = 2  # a bed without stiffness: constraints hold its ends
 BASE_NUMBERS: Final = 12
-"""Numbers of a law."""
+"""Numbers of a law, as many as the longest takes, which is that of pads."""
 
 
 class LawNumbers(NamedTuple):
@@ -35,7 +35,7 @@ class LawNumbers(NamedTuple):
 
 
 class AnyBase(Base, LawNumbers):
-    """A base whose law is known when it runs."""
+    """A base whose law is chosen at run time, so that one machine code serves all laws."""
 
     __slots__ = ()
 
@@ -54,17 +54,17 @@ class AnyBase(Base, LawNumbers):
 
     @kernel
     def contacts(self) -> int:
-        """Give the number of contacts, of either law."""
+        """Give the number of contacts, the larger of the two laws."""
         return max(self.pads().contacts(), self.bed().contacts())
 
     @kernel
     def end_guards(self) -> int:
-        """Give the number of guards of an end, of either law."""
+        """Give the number of guards of an end on pads; of a bed all but the first are idle."""
         return CORNER_GUARDS
 
     @inlined
     def guards_of(self, contact: int, left: bool, line: BaseLine, own: Variables) -> Guards:
-        """Give the guards of an end, and their rates; those that a bed has not are idle."""
+        """Give the guards of an end, and their rates; of a bed all but the first are idle."""
         if self.which == ON_PADS:
             return self.pads().guards_of(contact, left, line, own)
         found = self.bed().guards_of(contact, left, line, own)
@@ -77,7 +77,7 @@ class AnyBase(Base, LawNumbers):
 
     @kernel
     def observed(self, contact: int, line: BaseLine, own: Variables) -> Variables:
-        """Give what users see of the base."""
+        """Give the values of the base's columns in the results, with 0 where pads have none."""
         if self.which == ON_PADS:
             left, right = self.pads().observed(contact, line, own)
             return left, right, 0.0
@@ -92,28 +92,28 @@ class AnyBase(Base, LawNumbers):
 
     @inlined
     def touches(self, contact: int, left: bool) -> bool:
-        """Whether an end is held and its force counts as long as it presses."""
+        """Whether an end is held and its force acts as long as it is one of compression."""
         if self.which == ON_PADS:
             return self.pads().touches(contact, left)
         return self.bed().touches(contact, left)
 
     @kernel
     def tilt(self, contact: int) -> float:
-        """Give the side to which the contact will rotate a body that is upright and at rest."""
+        """Give the sign of the rotation that begins in a contact from upright rest, or 0."""
         if self.which == ON_PADS:
             return self.pads().tilt(contact)
         return self.bed().tilt(contact)
 
     @inlined
     def force(self, contact: int, line: BaseLine, own: Variables) -> BaseForce:
-        """Give force, moment and dissipated power."""
+        """Give force, moment and dissipated power of the base."""
         if self.which == ON_PADS:
             return self.pads().force(contact, line, own)
         return self.bed().force(contact, line, own)
 
     @kernel
     def energy(self, line: BaseLine, own: Variables) -> tuple[float, float]:
-        """Give the stored energy, and that less the energy at rest."""
+        """Give the elastic energy, and how much more that is than at rest."""
         if self.which == ON_PADS:
             return self.pads().energy(line, own)
         return self.bed().energy(line, own)
@@ -122,28 +122,28 @@ class AnyBase(Base, LawNumbers):
     def switch(
         self, contact: int, left: bool, which: int, line: BaseLine, own: Variables
     ) -> EndEvent:
-        """Give what happens when a guard of an end, by its number, falls through zero."""
+        """Give what follows when the guard `which` of an end falls through zero."""
         if self.which == ON_PADS:
             return self.pads().switch(contact, left, which, line, own)
         return self.bed().switch(contact, left, which, line, own)
 
     @kernel
     def level(self, left: bool, line: BaseLine, own: Variables) -> float:
-        """Give how much higher than an end the level is at which it parts from the base."""
+        """Give how far below its level of separation from the base an end is [m]."""
         if self.which == ON_PADS:
             return self.pads().level(left, line, own)
         return self.bed().level(left, line, own)
 
     @kernel
     def is_level(self, left: bool, line: BaseLine, own: Variables) -> bool:
-        """Whether an end that slides has come to that level, but for rounding."""
+        """Whether an end in sliding contact is at its level of separation, but for rounding."""
         if self.which == ON_PADS:
             return self.pads().is_level(left, line, own)
         return self.bed().is_level(left, line, own)
 
     @inlined
     def follows(self, contact: int, left: bool) -> int:
-        """Give the contact in which an end that slides takes part: it touches without force."""
+        """Give the contact with an end in sliding contact: it touches the base without force."""
         if self.which == ON_PADS:
             return self.pads().follows(contact, left)
         return self.bed().follows(contact, left)
@@ -157,70 +157,70 @@ class AnyBase(Base, LawNumbers):
 
     @kernel
     def least_landing(self) -> float:
-        """Give the speed of a landing below which the base's answer is rounding noise."""
+        """Give the speed of a landing below which the base's force is rounding noise [m s^-1]."""
         if self.which == ON_PADS:
             return self.pads().least_landing()
         return self.bed().least_landing()
 
     @kernel
     def released(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
-        """Give the contact after an end that touched without force has left."""
+        """Give the contact after an end that touched the base without force has lifted off."""
         if self.which == ON_PADS:
             return self.pads().released(contact, left, line, own)
         return self.bed().released(contact, left, line, own)
 
     @kernel
     def presses(self, contact: int, left: bool, line: BaseLine, own: Variables) -> bool:
-        """Whether the base still presses an end that has just left."""
+        """Whether the base still presses an end that has just lifted off."""
         if self.which == ON_PADS:
             return self.pads().presses(contact, left, line, own)
         return self.bed().presses(contact, left, line, own)
 
     @kernel
     def will_press(self, left: bool, line: BaseLine, own: Variables) -> bool:
-        """Whether the force of the base on an end would rise with an acceleration."""
+        """Whether the force of the base on an end would rise with the line's accelerations."""
         if self.which == ON_PADS:
             return self.pads().will_press(left, line, own)
         return self.bed().will_press(left, line, own)
 
     @kernel
     def held(self, contact: int, left: bool) -> int:
-        """Give the contact with an end that touches."""
+        """Give the contact with an end that lifted off but touches again, pressed by the base."""
         if self.which == ON_PADS:
             return self.pads().held(contact, left)
         return self.bed().held(contact, left)
 
     @kernel
     def waiting(self, contact: int, left: bool) -> int:
-        """Give the contact of an end that has left while the base still presses it."""
+        """Give the contact with an end that has lifted off while the base still presses it."""
         if self.which == ON_PADS:
             return self.pads().waiting(contact, left)
         return self.bed().waiting(contact, left)
 
     @kernel
     def unpressed(self, contact: int, left: bool) -> int:
-        """Give the contact of an end that stays held though the base has ceased to press it."""
+        """Give the contact with an end that stays held though the base no longer presses it."""
         if self.which == ON_PADS:
             return self.pads().unpressed(contact, left)
         return self.bed().unpressed(contact, left)
 
     @kernel
     def engaged(self, contact: int, left: bool, line: BaseLine, own: Variables) -> int:
-        """Give the contact after an end has come back and its body has been held."""
+        """Give the contact after an end has landed and the restraint has caught its body."""
         if self.which == ON_PADS:
             return self.pads().engaged(contact, left, line, own)
         return self.bed().engaged(contact, left, line, own)
 
     @kernel
     def disturbed(self, contact: int) -> int:
-        """Give the contact after something else than an event of its own changed the speeds."""
+        """Give the contact after an event elsewhere has changed the speeds of the ends."""
         if self.which == ON_PADS:
             return self.pads().disturbed(contact)
         return self.bed().disturbed(contact)
 
     @kernel
     def rebound(self, left: bool) -> float:
-        """Give the restitution of an end that lands with an impact."""
+        """Give the coefficient of restitution of an end that lands with an impact [1]."""
         if self.which == ON_PADS:
             return self.pads().rebound(left)
         return self.bed().rebound(left)
@@ -234,7 +234,7 @@ class AnyBase(Base, LawNumbers):
 
     @kernel
     def resting_height(self, left: float, right: float, own: Variables) -> float:
-        """Give the height at which the base carries the body at rest."""
+        """Give the height at which the base carries the body at rest [m]."""
         if self.which == ON_PADS:
             return self.pads().resting_height(left, right, own)
         return self.bed().resting_height(left, right, own)

@@ -1,8 +1,8 @@
-"""Corners that bear on rigid bases, and what follows from them for the bodies of a chain.
+"""Corners that bear on rigid bases: their constraints, their guards, and the placement they fix.
 
 A corner that bears is held, normal to the base and along it, by forces that are solved for,
-:eq:`eq-chain-solution`. What a contact does not let move follows from what it does, so that
-nothing drifts.
+:eq:`eq-chain-solution`. Coordinates that a contact constrains are computed from those that it
+leaves free, so that no drift builds up.
 """
 
 import math
@@ -26,12 +26,12 @@ from rockframe.dynamics.protocol import HELD_PLACE, Ground, Slope
 NONE: Final = -1.0
 """In place of the number of a constraint."""
 PULLED: Final = CORNER
-"""In the contact of a body whose corner is held though it does not press: free, it would come
-back at once."""
+"""Added to the contact of a body whose corner is constrained though its force is one of tension:
+released, it would fall back onto the base immediately."""
 OPENING: Final = 1
-"""Guard of such a corner, behind that of its force: that it would come back."""
+"""Guard of such a corner, behind that of its force: its fall if it were released."""
 EVERY_LEFT: Final = 0x55555555
-"""The left corners of sixteen bodies."""
+"""The left corners of sixteen bodies, as a set."""
 LEVEL: Final = 1e-13
 """Share of a body's size, or of its speed of fall, below which a corner is at its base."""
 
@@ -48,12 +48,12 @@ class RigidCorners(Chain):
 
     @inlined
     def band(self) -> int:
-        """Give how far apart constraints that have a body in common may stand."""
+        """Give the half-width of the band of the matrix: those farther apart share no body."""
         return 5
 
     @kernel
     def bearing(self, mode: int) -> int:
-        """Give the corners on rigid bases that bear in a mode."""
+        """Give the set of corners on rigid bases that bear in a mode."""
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
@@ -64,7 +64,7 @@ class RigidCorners(Chain):
 
     @kernel
     def pulled(self, mode: int) -> int:
-        """Give the corners that are held in a mode though they do not press."""
+        """Give the set of corners that are held in a mode though they do not press."""
         found, bearing = 0, self.bearing(mode)
         for k in range(self.body_count):
             if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED != 0:
@@ -79,7 +79,7 @@ class RigidCorners(Chain):
 
     @kernel
     def with_bearing(self, mode: int, corners: int, pulled: int) -> int:
-        """Give the mode in which some corners on rigid bases bear, some of them only held."""
+        """Give the mode in which `corners` bear; those in `pulled` are held without pressing."""
         new = mode
         for k in range(self.body_count):
             if self.is_rigid(k):
@@ -99,7 +99,7 @@ class RigidCorners(Chain):
 
     @kernel
     def standing_state(self, k: int, standing: Mode, state: Vector) -> BodyState:
-        """Give placement and rates of a body as its contacts allow them."""
+        """Give placement and rates of a body, with those that its contacts prescribe computed."""
         body, part = self.state_of(k, state), self.on_base(k)
         if not self.is_rigid(k) or part.flies(standing.contact):
             return body
@@ -144,12 +144,12 @@ class RigidCorners(Chain):
 
     @inlined
     def slip_sense(self, k: int) -> float:
-        """Give the sense in which a body slips on its rigid base as corners are tried: 0, held."""
+        """Give the sense of slip of a body on its rigid base in the trial at hand: 0, held."""
         return 0.0
 
     @inlined
     def sense_in(self, mode: int, k: int) -> float:
-        """Give the sense in which a body slips on its rigid base in a mode; 0: none does."""
+        """Give the sense of slip of a body on its rigid base in a mode: 0, none slips here."""
         return 0.0
 
     @inlined
@@ -157,7 +157,7 @@ class RigidCorners(Chain):
         self, k: int, which: int, sense: float, reach: float, impulsive: bool, room: Vector,
         rows: Vector,
     ) -> None:  # fmt: skip
-        """Let the force of a corner that slips have friction: none slips here."""
+        """Add friction to the force of a corner that slips: none slips here."""
 
     @inlined
     def lost_by_friction(
@@ -187,7 +187,7 @@ class RigidCorners(Chain):
 
     @inlined
     def let_all_go(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Let bodies move along bases that give way, of which friction holds them: none does."""
+        """Let bodies move along deformable bases, of which friction holds them: none does."""
         return mode
 
     @inlined
@@ -204,7 +204,7 @@ class RigidCorners(Chain):
     def hold_as_tried(
         self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
     ) -> int:
-        """Add the constraint of a body on a base that gives way, as corners are tried."""
+        """Add the constraint of a body on a deformable base, in a trial of corners."""
         return self.hold_or_slide(k, count, standing, state, room, rows)
 
     @inlined
@@ -218,22 +218,22 @@ class RigidCorners(Chain):
     def try_all_slips(
         self, mode: int, some: int, closed: int, noise: float, state: Vector
     ) -> Attempt:
-        """Let a set of the closed corners bear in any other way to slip: there is none."""
+        """Try all combinations of slips with a set of closed corners that bear: none slips here."""
         return Attempt(0, math.inf)
 
     @inlined
     def try_stops(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> Attempt:
-        """Let a set of the closed corners bear by impulses that stop a slip: there is none."""
+        """Try impulses that stop a slip, with a set of corners that bear: none slips here."""
         return Attempt(0, math.inf)
 
     @inlined
     def try_standing(self, mode: int, corners: int, state: Vector) -> None:
-        """Let bodies stand on corners after an impact, each held against sliding."""
+        """Find impulses by which bodies stand on a set of corners, each held against sliding."""
         attempt(self, mode, corners, corners, False, True, 0.0, state)
 
     @inlined
     def stand_still(self, room: Vector, out: Vector) -> None:
-        """Take rounding from the accelerations of bodies in full contact with a rigid base."""
+        """Set the accelerations of bodies in full contact with a rigid base to exactly zero."""
         for k in range(self.body_count):
             i = k * PLACES
             full = room[i + at.LEFT_CORNER] != NONE and room[i + at.RIGHT_CORNER] != NONE
@@ -244,7 +244,7 @@ class RigidCorners(Chain):
 
     @kernel
     def corner_force(self, k: int, left: bool) -> float:
-        """Give the force at a corner on a rigid base, or its impulse, as solved for last."""
+        """Give the normal force, or impulse, of a corner on a rigid base in the last solution."""
         i = k * PLACES + (at.LEFT_CORNER if left else at.RIGHT_CORNER)
         which = self.places()[i]
         if which == NONE:
@@ -253,7 +253,7 @@ class RigidCorners(Chain):
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give accelerations and powers; bodies that rest on the ground need no forces for it."""
+        """Give accelerations and powers, solved without the bodies at rest on the ground."""
         moving, bearing = self.body_count, self.bearing(mode)
         for k in range(self.body_count - 1, -1, -1):
             if bearing >> 2 * k & BOTH != BOTH or self.part_mode(mode, k).slides:
@@ -265,13 +265,13 @@ class RigidCorners(Chain):
 
     @inlined
     def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:
-        """Find the forces of corners on rigid bases, unless they stand."""
+        """Find the forces of corners on rigid bases, unless those in the workspace are valid."""
         if not self.forces_stand(mode, state, ground):
             self.find_forces(mode, state, ground)
 
     @inlined
     def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
-        """Give what users see of a base: of a rigid one, the forces of its corners."""
+        """Give the base's columns in the results: of a rigid one, the forces of its corners."""
         if self.is_rigid(k):
             return self.corner_force(k, True), self.corner_force(k, False), 0.0
         return self.observed_on(k, standing, body)
@@ -294,7 +294,7 @@ class RigidCorners(Chain):
                 left = self.on_base(k).base.is_held(standing.contact, True)
                 i = GUARDS * k + (0 if left else CORNER_GUARDS)
                 values[i] = -values[i]
-                # one that comes back itself, or leaves another to pull or close, stays held
+                # it stays held if, released, it would fall, or others would pull or close
                 falls = self.fall_if_let_go(k, left, mode, state, ground)
                 values[i + OPENING] = max(falls, self.most_pull(mode))
         slides = self.some_end_slides(mode)
@@ -307,7 +307,7 @@ class RigidCorners(Chain):
 
     @kernel
     def most_pull(self, mode: int) -> float:
-        """Give the most that a corner that bears would pull, as solved for last, over its size."""
+        """Give the largest tension in a corner that bears in the last solution, over FORCE_SIZE."""
         most = -math.inf
         for k in range(self.body_count):
             if self.is_rigid(k) and self.part_mode(mode, k).contact & PULLED == 0:
@@ -319,9 +319,9 @@ class RigidCorners(Chain):
 
     @kernel
     def fall_if_let_go(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> float:
-        """Give how fast a held corner would fall if it were let go, over gravity.
+        """Give the downward acceleration of a held corner if it were released, over gravity.
 
-        Or another one that does not bear, and is as near to its base as one at rest.
+        Maximum over this corner and those that practically touch their bases but do not bear.
         """
         lowest, most = self.body_count - 1, -math.inf
         x = self.horizontal_of(lowest)
@@ -342,7 +342,7 @@ class RigidCorners(Chain):
 
     @kernel
     def is_near(self, k: int, left: bool, fall: float, mode: int, state: Vector) -> bool:
-        """Whether a corner that does not bear is no farther from its base than one at rest."""
+        """Whether a corner that does not bear is practically at its base and falls onto it."""
         part, standing = self.on_base(k), self.part_mode(mode, k)
         line = part.body.base_line_at(self.standing_state(k, standing, state))
         level, speed = line.left, line.left_speed
@@ -353,7 +353,7 @@ class RigidCorners(Chain):
 
     @kernel
     def throws_down(self, mode: int, state: Vector) -> bool:
-        """Whether a corner that is at its rigid base, and does not bear, comes down."""
+        """Whether a corner that is at its rigid base, but does not bear, moves down."""
         for k in range(self.body_count):
             part, standing = self.on_base(k), self.part_mode(mode, k)
             line = part.body.base_line_at(self.standing_state(k, standing, state))
@@ -368,7 +368,7 @@ class RigidCorners(Chain):
 
     @inlined
     def free_lowest(self, mode: int, state: Vector) -> None:
-        """Write where the lowest body is: while it is held, its state tells where that is."""
+        """Write place and rate of the lowest body; while held, its state has the held point's."""
         k, x = self.body_count - 1, self.horizontal_of(self.body_count - 1)
         standing = self.part_mode(mode, k)
         if not self.on_base(k).is_free(standing):
@@ -377,12 +377,12 @@ class RigidCorners(Chain):
 
     @inlined
     def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
-        """Give the mode in which what friction cannot hold slips: it holds all."""
+        """Give the mode in which bodies slip that friction cannot hold: it holds all here."""
         return mode
 
     @inlined
     def sway_at(self, k: int, standing: Mode, held: float, state: Vector) -> tuple[float, float]:
-        """Give where a body is along its base, and its rate, by the place of what holds it."""
+        """Give place of a body along its base, and its rate, from the place of its held point."""
         part, body = self.on_base(k), self.standing_state(k, standing, state)
         pin, attitude = part.body.pin(standing.pivot), part.body.attitude(body.rotation)
         reach = part.body.reach(pin, attitude)
@@ -410,7 +410,7 @@ class RigidCorners(Chain):
             else:
                 scale = (1.0 if side == 0 else -1.0) / part.body.angle
                 values[i], changes[i] = scale * body.rotation, scale * body.angular_velocity
-            if resting >> side & 1 != 0:  # what is rounding does not close a corner
+            if resting >> side & 1 != 0:  # rounding must not close a corner
                 values[i], changes[i] = abs(values[i]), 0.0
 
     @inlined
@@ -421,7 +421,7 @@ class RigidCorners(Chain):
 
     @kernel
     def resting_corners(self, mode: int, state: Vector) -> int:
-        """Give the corners that have been left, and are still where they were."""
+        """Give the set of corners on rigid bases that touch their base and are at rest."""
         found = 0
         for k in range(self.body_count):
             if self.is_rigid(k):
@@ -431,12 +431,12 @@ class RigidCorners(Chain):
 
     @inlined
     def closed_corners(self, mode: int, state: Vector) -> int:
-        """Give the corners that bear, and those that do not but are still where they were."""
+        """Give the closed corners: those that bear, and others that touch their base at rest."""
         return self.bearing(mode) | self.resting_corners(mode, state)
 
     @kernel
     def level_corners(self, k: int, body: BodyState) -> int:
-        """Give the corners of a body that are at its base, and at rest."""
+        """Give the set of corners of a body that touch its base and are at rest, bits 1 and 2."""
         law, found = self.on_base(k).body, 0
         line, size = law.base_line_at(body), law.size()
         level, speed = LEVEL * size, LEVEL * math.sqrt(law.gravity * size)
@@ -448,7 +448,7 @@ class RigidCorners(Chain):
 
     @kernel
     def land(self, k: int, left: bool, standing: Mode, state: Vector) -> int:
-        """Put a corner that lands on its base; give the corners that are there then."""
+        """Move a corner that lands exactly onto its base; give the set that touches then."""
         part, first = self.on_base(k), BEFORE_HORIZONTAL * k
         line = part.body.base_line_at(self.state_of(k, state))
         both = not part.flies(standing.contact)
@@ -461,7 +461,7 @@ class RigidCorners(Chain):
 
     @kernel
     def write_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Write to the state what follows from the contacts with rigid bases."""
+        """Write to the state the coordinates and rates that contacts with rigid bases prescribe."""
         n = self.coordinates()
         for k in range(self.body_count):
             part, standing = self.on_base(k), self.part_mode(mode, k)
@@ -477,7 +477,7 @@ class RigidCorners(Chain):
 
     @kernel
     def hold_contacts(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Hold bodies where they are by the contacts of a mode, whose velocities they have."""
+        """Fix the held points of a mode where they are now; the velocities agree with it."""
         for k in range(self.body_count):
             part, standing = self.on_base(k), self.part_mode(mode, k)
             if self.is_rigid(k) and not part.is_free(standing):
@@ -489,4 +489,4 @@ class RigidCorners(Chain):
 
     @inlined
     def keep_hold(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Write to the state where the lowest body is held: no one asks where it is."""
+        """Write the place of the lowest held point to the state: nothing reads it here."""

@@ -1,4 +1,4 @@
-"""A chain of bodies that all slip on bases that give way, :eq:`eq-slip-on-base`."""
+"""A chain of bodies all of which may slip, on deformable bases, :eq:`eq-slip-on-base`."""
 
 import math
 
@@ -24,14 +24,14 @@ class SlippingChain(SlipperyBases):
 
     @inlined
     def is_slippery(self, k: int) -> bool:
-        """Whether a body may slip on a base that gives way: all do."""
+        """Whether a body may slip on a deformable base: all do."""
         return True
 
     @kernel
     def guards_on_base(
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
-        """Give the guards of a body, among them of the friction that holds it and of its slip."""
+        """Give the guards of a body: of contacts, of the friction that holds it, of its slip."""
         part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         first, press, sliding = BEFORE_HORIZONTAL * k, k * PLACES + at.PRESS, IDLE
         if k == 0:
@@ -84,9 +84,9 @@ class SlippingChain(SlipperyBases):
     def let_slip(
         self, lets_go: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Give the mode in which no body is held that friction cannot hold, and none starts back.
+        """Give the mode in which friction can hold all held bodies, and opposes the slip of others.
 
-        Where static friction leaves no such mode, what kinetic friction holds is held.
+        Where no mode satisfies that with static friction, kinetic friction decides what is held.
         """
         most, near = TRIES * self.body_count, NEARLY_ZERO
         for tries in range(2 * most):
@@ -95,7 +95,7 @@ class SlippingChain(SlipperyBases):
             holding = STATIC if tries < most else KINETIC
             found, push = self.held_in_vain(lets_go, holding, mode)
             if found >= 0:
-                if tries > 0:  # what was let go as its force came to the limit has another now
+                if tries > 0:  # a body let go at the limit of its friction has another force now
                     near = 0.0
                 mode = self.let_go(found, mode, state, memory)
                 mode = self.slipping(mode, found, -push)
@@ -109,14 +109,14 @@ class SlippingChain(SlipperyBases):
 
     @kernel
     def end_short_slips(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode in which bodies that would slip but hardly any way are held."""
+        """Give the mode in which bodies are held whose slip would stop within a negligible way."""
         for k in range(self.body_count):
             mode = self.end_short_slip(k, mode, state, ground, memory)
         return self.let_slip(-1, mode, state, ground, memory)
 
     @kernel
     def held_in_vain(self, lets_go: int, holding: int, mode: int) -> tuple[int, float]:
-        """Give a body that friction of a coefficient cannot hold, or -1, and what it would take."""
+        """Give a body that friction `holding` cannot hold, or -1, and the force that would."""
         room = self.places()
         for j in range(self.body_count):
             if not self.on_base(j).is_free(self.part_mode(mode, j)):
@@ -128,9 +128,9 @@ class SlippingChain(SlipperyBases):
 
     @kernel
     def starts_back(self, near: float, mode: int, state: Vector, slope: Slope) -> int:
-        """Give a body that would start to slip against the sense in which it slips, or -1.
+        """Give a body at the start of a slip whose acceleration is against its sense, or -1.
 
-        By more than an acceleration, over gravity.
+        Accelerations up to `near` times gravity do not count.
         """
         for j in range(self.body_count):
             part, standing = self.on_base(j), self.part_mode(mode, j)

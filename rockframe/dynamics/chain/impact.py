@@ -28,39 +28,39 @@ RIGHT_ONLY: Final = 2
 BOTH: Final = 3
 
 ALL_TRIED: Final = 10
-"""Closed corners up to which every subset of them is tried."""
+"""With this many closed corners or fewer, every subset of them is a candidate."""
 NEIGHBOURS: Final = 3
-"""Of more, corners in which the subsets that are tried first differ from the one with sticking
-assumed."""
+"""With more, candidates of the first round differ from the solution of :eq:`eq-sticking` in at
+most this many corners."""
 MOST_TRIED: Final = 16
-"""Closed corners up to which every other subset is tried then."""
+"""With this many closed corners or fewer, the second round takes every other subset."""
 FAR_NEIGHBOURS: Final = 5
-"""Of more, corners in which the subsets that are tried then may differ."""
+"""With more, candidates of the second round differ in at most this many corners."""
 NOISE: Final = 1e-11
-"""Share of all impulses, or of all speeds, that is rounding."""
+"""Rounding noise of impulses, or of speeds, over the sum of all of them [1]."""
 ROUNDING: Final = 1e-12
-"""Acceleration over gravity that is rounding."""
+"""Rounding noise of accelerations over gravity [1]."""
 NEARLY_ZERO: Final = 1e-5
-"""Acceleration of a corner as its force comes to zero, over gravity."""
+"""Acceleration of a corner over gravity that counts as zero as its force comes to zero [1]."""
 JAMMED: Final = -2
-"""In place of the corner that leaves: no forces are a motion, and impulses have to stop a slip."""
+"""In place of the corner that leaves: no finite forces solve, and impulses must stop a slip."""
 ALL_WAYS: Final = 4
-"""The trial of sets in which all ways to slip are tried."""
+"""Number of the round of candidates in which all combinations of slips are tried."""
 MOST_PIVOTS: Final = 1000
-"""Changes of the set in the search with sticking assumed, which needs a few."""
+"""Most changes of the set in the search with sticking assumed, which needs a few."""
 
 
 class Attempt(NamedTuple):
-    """What became of a set of corners: one that pulls or closes, or -1; the energy lost."""
+    """Outcome for a candidate set: the first corner at fault, or -1; energy lost in the impact."""
 
     fault: int
     loss: float
 
 
 class Found(NamedTuple):
-    """The set that bears, how many others would do, and the next best of them, or -1.
+    """The set of corners that bear, the number of admissible sets, and the next best, or -1.
 
-    Where none would do, the corner that is held though it does not press, or 0.
+    `held` is the corner that must be held though it does not press, where none is admissible, or 0.
     """
 
     taken: int
@@ -80,7 +80,7 @@ def size_of(corners: int) -> int:
 
 
 class Near(NamedTuple):
-    """Sets of closed corners that differ from one of them in at most so many."""
+    """The subsets of `closed` that differ from `reference` in at most `most` corners."""
 
     closed: int
     reference: int
@@ -89,16 +89,16 @@ class Near(NamedTuple):
 
 @kernel
 def next_set(start: int, near: Near) -> int:
-    """Give the highest of the sets up to a number, all closed corners or one less than a set; -1.
+    """Give the highest number of a set that is not above `start`; -1 if there is none.
 
-    Those between, that differ in too many corners, are passed by at once.
+    `start` is the number of all closed corners, or that of a set less one.
     """
     some = start & near.closed if start >= 0 else -1
     while some >= 0:
         rest = some ^ near.reference
         for _ in range(size_of(rest) - near.most - 1):
             rest &= rest - 1
-        corner = rest & -rest  # the highest one in which a set differs that may not
+        corner = rest & -rest  # the highest corner in which the sets must not differ
         if size_of(rest) <= near.most:
             break
         above = some & ~(2 * corner - 1)
@@ -111,7 +111,7 @@ def next_set(start: int, near: Near) -> int:
 
 @inlined
 def trial_of(bears: int, holds: int, sense: float, impulsive: bool) -> float:
-    """Give a number for how a body is tried, by which the constraints follow."""
+    """Give the code of a body's constraints in a trial, by which equal trials are recognized."""
     return bears + 4.0 * holds + 16.0 * (sense + 1.0) + (64.0 if impulsive else 0.0)
 
 
@@ -120,12 +120,12 @@ def bear(
     system: Any, k: int, count: int, bears: int, holds: int, sense: float, impulsive: bool,
     room: Vector, rows: Vector,
 ) -> int:  # fmt: skip
-    """Add the constraints of a body on a rigid base; give how many there are then."""
+    """Add the constraints of a body on a rigid base; give the number of all so far."""
     i = k * PLACES
     room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = -1.0
     if holds == 0:
         return count
-    # where both corners are closed all points of the base move alike
+    # where both corners are closed all points of the base move with one velocity
     pivot = 0 if holds == LEFT_ONLY else 1
     reach, stays = room[i + at.REACHES + pivot], room[i + at.STAYS + pivot]
     for side in range(2):
@@ -147,15 +147,15 @@ def attempt(
     system: Any, mode: int, some: int, closed: int, sticks: bool, impulsive: bool, noise: float,
     state: Vector,
 ) -> Attempt:  # fmt: skip
-    """Let a set of the closed corners bear; their bodies are free in the mode.
+    """Solve with the set `some` of the closed corners constrained, and check the solution.
 
-    Velocities change by impulses, or accelerations follow from the loads in the rooms. With
-    `sticks` every body with a closed corner is held along its base, else those that bear. Speeds
-    or accelerations up to `noise` are rounding.
+    Bodies fly in `mode`. Solves for impulses, or for forces under the loads in the workspace. With
+    `sticks` every body with a closed corner is held along its base, else only those that bear.
+    Speeds or accelerations up to `noise` are rounding.
     """
     room, rows = system.places(), system.constraints()
     count, start, same = 0, 0, True
-    # from the bottom up: sets that are tried in turn differ in the highest bodies
+    # from the bottom up: successive candidates differ in the highest bodies
     for k in range(system.body_count - 1, -1, -1):
         i, standing = k * PLACES, system.part_mode(mode, k)
         bears, touches = some >> 2 * k & BOTH, closed >> 2 * k & BOTH
@@ -192,7 +192,7 @@ def attempt(
 
 @kernel
 def write_corners(system: Any, impulsive: bool, state: Vector) -> None:
-    """Write what all trials of corners have in common: their levers, and what makes them rest."""
+    """Write what all trials have in common: levers, and the values prescribed at rest."""
     room = system.places()
     forget_trial(system, room)
     for k in range(system.body_count):
@@ -228,12 +228,12 @@ def first_fault(
             continue
         if some >> corner & 1 != 0:
             which = int(room[k * PLACES + at.LEFT_CORNER + side])
-            # where nothing closes all impulses are rounding
+            # where no corner closes all impulses are rounding
             none = noise * above if impulsive else 0.0
             if rows[which * CONSTRAINT + at.FORCE] < -least - none:
                 return corner
             continue
-        # under new forces a corner parts as its force is zero, and so is its acceleration
+        # as a corner parts under new forces, both its force and its acceleration are zero
         least_rise = noise if impulsive else -noise
         if free_rise(system, k, side) <= least_rise:
             return corner
@@ -242,9 +242,9 @@ def first_fault(
 
 @kernel
 def free_rise(system: Any, k: int, side: int) -> float:
-    """Give how fast a corner that is left free rises, as solved for last."""
+    """Give upward velocity, or acceleration, of a free corner by the last solution."""
     room, rows, i = system.places(), system.constraints(), k * PLACES + side
-    keeps = (MOST_CONSTRAINTS * system.body_count - 1) * CONSTRAINT + at.KEEPS  # there is room
+    keeps = (MOST_CONSTRAINTS * system.body_count - 1) * CONSTRAINT + at.KEEPS  # a row without use
     write_direction(system, k, 0.0, 1.0, room[i + at.LEVERS], keeps, room, rows)
     return float(of_both(system.body_count, k, keeps, room, rows) - room[i + at.RESTS])
 
@@ -268,14 +268,14 @@ def noise_of(system: Any, closed: int, impulsive: bool, state: Vector) -> float:
 def bearing_corners(
     system: Any, mode: int, closed: int, pulled: int, before: int, leaving: int, state: Vector
 ) -> Found:
-    """Find the corners that bear, of those that are closed, beside those that are held anyway.
+    """Find the closed corners that bear, beside those in `pulled`, which are held in any case.
 
-    After an impact the admissible set that loses the least energy. Where one of those that bore
-    before is `leaving`, since its force has come to zero, the admissible one nearest to those.
-    Where friction alone has changed, `leaving` is negative; where it jams, impulses have to stop a
-    slip. Where no set is admissible, after an impact that of the problem with sticking assumed,
-    which has one solution; under new forces first all ways to slip are tried, then sets of which
-    one corner is held though it does not press.
+    After an impact (`leaving` 0): the admissible set that loses the least energy; if there is none,
+    the solution with sticking assumed, which is unique. Under new forces, as the force of the
+    corner `leaving` has come to zero or, if it is negative, friction has changed: the admissible
+    set nearest to `before`, which bore so far; if there is none, first all combinations of slips
+    are tried, then sets of which one corner is held though it does not press. If `leaving` is
+    JAMMED, impulses have to stop a slip.
     """
     impulsive, count = leaving in (0, JAMMED), size_of(closed)
     write_corners(system, impulsive, state)
@@ -287,7 +287,7 @@ def bearing_corners(
         far = Near(closed, reference, count if count <= MOST_TRIED else FAR_NEIGHBOURS)
     taken, other, admissible, held = -1, -1, 0, 0
     lowest = second = math.inf
-    # first what is admissible but for rounding, and of each trial first the near sets
+    # first sets that are admissible within rounding; in each round first the near ones
     for trial in range(2 if impulsive else 1 + ALL_WAYS):
         if trial % 2 == 1 and count <= ALL_TRIED:
             continue  # there are no sets farther off
@@ -307,7 +307,7 @@ def bearing_corners(
                     elif loss < second:
                         other, second = bears, loss
             some = next_set(some - 1, tried)
-        if admissible > 0:  # what it does stays in the rooms
+        if admissible > 0:  # its solution stays in the workspace
             try_set(system, way, mode, taken, closed, impulsive, least, state)
             return Found(taken, admissible, other, 0)
     if impulsive:
@@ -324,7 +324,7 @@ def try_set(
     system: Any, way: int, mode: int, some: int, closed: int, impulsive: bool, noise: float,
     state: Vector,
 ) -> Attempt:  # fmt: skip
-    """Let a set of the closed corners bear, by slips found base by base or by trying all."""
+    """Let a set of the closed corners bear, and find the slips in the given way."""
     if way == JAMMED:
         return system.try_stops(mode, some, closed, noise, state)
     if way == ALL_WAYS:
@@ -339,11 +339,11 @@ def with_one_held(
 ) -> tuple[int, int]:  # fmt: skip
     """Find a set of which one corner, alone on its body, is held though it does not press.
 
-    Let go, it would come back at once, or another one would have to pull. Of several sets the
-    nearest to that before, by the corner that is leaving; gives the set and the corner, or 0.
+    Released, it would fall back, or another one would have to pull. Of several sets the one nearest
+    to `before`, if possible with the corner `leaving`. Gives the set and the corner, or 0.
     """
     taken, held, least, closed = before, 0, math.inf, near.closed
-    some, follower = before & closed, closed  # that before comes first, and rules most others out
+    some, follower = before & closed, closed  # `before` comes first and excludes most others
     while some >= 0:
         for corner in range(2 * system.body_count):
             one, bears = 1 << corner, some | pulled
@@ -365,7 +365,7 @@ def with_one_held(
 
 @kernel
 def all_press(system: Any, corners: int) -> bool:
-    """Whether corners that have not borne would press under new forces, beyond rounding."""
+    """Whether the forces of all of some corners are compression, beyond rounding."""
     for corner in range(2 * system.body_count):
         if corners >> corner & 1 != 0:
             k = corner // 2
@@ -379,7 +379,7 @@ def all_press(system: Any, corners: int) -> bool:
 def with_sticking(
     system: Any, mode: int, closed: int, impulsive: bool, noise: float, state: Vector
 ) -> int:
-    """Find the corners that bear by :eq:`eq-sticking`, by least-index pivots."""
+    """Give the set of corners that bear by :eq:`eq-sticking`, found by least-index pivoting."""
     some = closed
     for _ in range(MOST_PIVOTS):
         found = attempt(system, mode, some, closed, True, impulsive, noise, state)

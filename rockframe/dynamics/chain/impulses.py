@@ -1,8 +1,9 @@
-"""Impulses in an event: those of rigid bases, and the blow of an end that lands beside them.
+"""Impulses in an event: of rigid bases, and of a deformable base on which an end lands (its blow).
 
-Rigid bases answer a blow as they stand. What they cannot do, to pull or to hold beyond friction, is
-taken back, and bodies meet anew; the blow then ends where its end has the speed that restitution
-leaves it.
+First the corners that bear on rigid bases react to the impulse of the landing as constraints. If
+this takes tension or more than friction, all impulses of the event are undone and found again, the
+rigid bases in compression only, the impulse of the landing scaled so that its end gets the speed
+that restitution leaves it.
 """
 
 import math
@@ -31,27 +32,27 @@ from rockframe.dynamics.sliding import blend
 from rockframe.dynamics.switching import end_speed
 
 MOST_SHARES: Final = 60
-"""Shares of a blow that are tried, by halves: as many as a number has digits, and some."""
+"""Most steps of a bisection for the share of a blow: the bits of a float, and some."""
 MOST_BLOWS: Final = 1e3
-"""By how much a blow may be more than what bodies would answer as they stand."""
+"""Largest share of a blow; if more is needed the blow stays as it was found first."""
 
 
 SLIGHT: Final = 1e-9
-"""Share of the velocities along a base that is no slip: what is left of one that friction ends."""
+"""Velocity of slip, over the velocities along the base, that counts as none [1]."""
 
 
 class Shares(NamedTuple):
-    """How much of a blow acts, and of its friction then."""
+    """Factors of a blow: `press` of the whole impulse, `along` of its friction beside that [1]."""
 
     press: float
     along: float
 
 
 class Met(NamedTuple):
-    """By how much an end rises faster as bodies meet anew, and how fast its body slips then."""
+    """Velocities as impulses are found again: rise of an end beyond the old one, and slip."""
 
     rises: float
-    driven: float  # to where friction has pushed
+    driven: float  # velocity of slip, positive in the sense of the friction
 
 
 class RigidImpulses(RigidCorners):
@@ -61,7 +62,7 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def take_answer(self, state: Vector) -> None:
-        """Change the velocities by the last answer, and keep the impulses of rigid bases."""
+        """Change the velocities by the last response, and add up the impulses of rigid bases."""
         self.add_slopes(state)
         room, rows = self.places(), self.constraints()
         for j in range(self.body_count):
@@ -72,13 +73,13 @@ class RigidImpulses(RigidCorners):
                     room[i + at.LEFT_IMPULSE + side] += rows[which * CONSTRAINT + at.FORCE]
                     self.keep_impulse(j, which, room, rows)
                     last = which
-            # the hold along the base stands behind its corners
+            # the constraint along the base comes behind those of the corners
             if last >= 0 and self.slip_sense(j) == 0.0:
                 self.keep_impulse(j, last + 1, room, rows)
 
     @kernel
     def keep_impulse(self, k: int, which: int, room: Vector, rows: Vector) -> None:
-        """Add the impulse of a constraint of a rigid base to those that bodies have got."""
+        """Add the impulse of a rigid base's constraint to the sums of the bodies it acts on."""
         first = which * CONSTRAINT
         force, holds = rows[first + at.FORCE], first + at.HOLDS
         for body in range(k, min(k + 2, self.body_count)):
@@ -89,7 +90,7 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def scale_impulses(self, share: float) -> None:
-        """Keep a share of the impulses of rigid bases."""
+        """Multiply the impulses of all bases in this event by a factor."""
         room = self.places()
         for k in range(self.body_count):
             for j in range(at.IMPULSES):
@@ -99,7 +100,7 @@ class RigidImpulses(RigidCorners):
     def blend_velocities(
         self, before: tuple[float, ...] | Vector, share: float, state: Vector
     ) -> None:
-        """Take back all but a share of what has changed the velocities since."""
+        """Reduce the changes of velocities since `before`, and impulses, to a share of them."""
         n = self.coordinates()
         for i in range(n):
             state[n + i] = blend(before[i], state[n + i], share)
@@ -107,12 +108,12 @@ class RigidImpulses(RigidCorners):
 
     @inlined
     def must_meet_anew(self, closed: int, mode: int) -> bool:
-        """Whether rigid bases did more in an event beside them than they can, or some did less."""
+        """Whether impulses must be found again: a corner pulled, or a closed one did not act."""
         return self.some_pull() or closed != self.bearing(mode)
 
     @kernel
     def some_pull(self) -> bool:
-        """Whether a corner on a rigid base would have had to pull in an event beside it."""
+        """Whether the impulse of a corner on a rigid base in this event is one of tension."""
         room, least, all_of_them = self.places(), 0.0, 0.0
         for k in range(self.body_count):
             for side in range(2):
@@ -122,7 +123,7 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def change_velocities(self, state: Vector) -> None:
-        """Change the velocities by what impulses have done, which stands in the rooms."""
+        """Change the velocities by the last solution for impulses, which is in the workspace."""
         room = self.places()
         for k in range(self.body_count):
             i = k * PLACES
@@ -132,7 +133,7 @@ class RigidImpulses(RigidCorners):
 
     @inlined
     def note_blow(self, k: int, press: float, moment: float, along: float) -> None:
-        """Add to the impulses that a body has got from its base that gives way, as it landed."""
+        """Add to the impulses of a deformable base on its body as an end lands."""
         room, i = self.places(), k * PLACES
         room[i + at.BLOW] += press
         room[i + at.BLOW_MOMENT] += moment
@@ -140,9 +141,9 @@ class RigidImpulses(RigidCorners):
 
     @inlined
     def landed(self, k: int, left: bool, mode: int, new: int) -> int:
-        """Give the ends, as a set, that an event has brought down on a base that gives way.
+        """Give the set of ends that have landed on a deformable base in an event.
 
-        Of one that flew both may have come down at once.
+        Both ends of a body that flew may have landed together.
         """
         part = self.on_base(k)
         both = part.flies(self.part_mode(mode, k).contact)
@@ -151,7 +152,7 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def take_back(self, k: int, blow: Shares, mode: int, state: Vector) -> None:
-        """Take back what rigid bases did, and what is no share of the blow of a body."""
+        """Undo the impulses of rigid bases, and scale the blow on a body to its shares."""
         room = self.places()
         place_bodies(self, mode, state, room)
         for j in range(self.body_count):
@@ -167,10 +168,10 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def shares_of_blow(self, k: int, ends: int, mode: int, closed: int, state: Vector) -> Shares:
-        """Give how much of a blow acts as bodies meet anew, of its friction beside that.
+        """Give the shares of a blow, and of its friction, as the impulses are found again.
 
-        So much that an end has the speed that its restitution leaves it, and none more; and of its
-        friction so much that it turns no slip round.
+        The blow is such that one end has the speed that restitution leaves it, and none a higher
+        one; its friction does not reverse the slip.
         """
         room, i = self.places(), k * PLACES
         if room[i + at.BLOW] <= 0.0 and room[i + at.BLOW_ALONG] == 0.0:
@@ -196,10 +197,10 @@ class RigidImpulses(RigidCorners):
     def share_along(
         self, k: int, rubs: bool, press: float, mode: int, closed: int, state: Vector
     ) -> float:
-        """Give how much of the friction acts beside a share of what presses: it opposes the slip.
+        """Give the share of friction beside a share `press` of the blow: it must oppose the slip.
 
-        Unless it does not even where all of the blow acts. The slip is linear in it as long as the
-        same corners bear.
+        It is 1 if friction did not oppose the slip in the first solution (`rubs` is false). The
+        slip is linear in the share as long as the same corners bear.
         """
         if not rubs or self.places()[k * PLACES + at.BLOW_ALONG] == 0.0:
             return 1.0
@@ -223,7 +224,7 @@ class RigidImpulses(RigidCorners):
     def try_blow(
         self, k: int, ends: int, blow: Shares, mode: int, closed: int, state: Vector
     ) -> Met:
-        """Let bodies meet anew under shares of a blow, and take it back."""
+        """Give velocities, with impulses found again for shares of a blow; restores the state."""
         part, n, before = self.on_base(k), self.coordinates(), self.velocities(state)
         left, noise_left = end_speed(part, True, self.state_of(k, state))
         right, noise_right = end_speed(part, False, self.state_of(k, state))
@@ -248,7 +249,7 @@ class RigidImpulses(RigidCorners):
 
     @kernel
     def driven_slip(self, k: int, mode: int, state: Vector) -> float:
-        """Give how fast a body slips to where the friction of its blow has pushed it."""
+        """Give the velocity of slip of a body, positive in the sense of its blow's friction."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(self.part_mode(mode, k).pivot)
         reach = part.body.reach(pin, part.body.attitude(body.rotation))

@@ -1,4 +1,4 @@
-"""Where the points of links are, and how links are stretched between them, :eq:`eq-link`."""
+"""Positions and velocities of the ends of links, and the elongations, :eq:`eq-link`."""
 
 import math
 from typing import Final, NamedTuple
@@ -31,13 +31,13 @@ from rockframe.dynamics.chain.rows import PLACES
 from rockframe.dynamics.links import Stretch
 
 MEET: Final = 1e3
-"""Roundings of the elongation within which points of a link meet."""
+"""Points of a link meet within this many times the rounding noise of its elongation."""
 TINY: Final = 1e-280
-"""Square of a speed that is none."""
+"""Square of a speed below which it counts as zero [m^2 s^-2]."""
 
 
 class Moved(NamedTuple):
-    """Where a point of a body has come to from where it was given, and how it moves."""
+    """Displacement of a point of a body [m], its lever arm [m], and its velocity [m s^-1]."""
 
     x: float
     y: float
@@ -48,7 +48,7 @@ class Moved(NamedTuple):
 
 
 class StretchedLink(NamedTuple):
-    """A link that is stretched: how, and the direction from its second point to its first."""
+    """Elongation of a link and its rate; unit vector from its second point to its first."""
 
     stretch: Stretch
     x: float
@@ -56,13 +56,13 @@ class StretchedLink(NamedTuple):
 
 
 class LinkPoints(LinkRows):
-    """Where points of links are. A mixin of systems."""
+    """Kinematics of the points of links. A mixin of systems."""
 
     __slots__ = ()
 
     @inlined
     def moved(self, k: int, x: float, y: float, room: Vector) -> Moved:
-        """Give where a point of a body, or of the ground, has come to."""
+        """Give displacement and velocity of a point of a body, or of the ground."""
         if k == GROUND:
             return Moved(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         lies, i, j = self.lies(), k * PLACES, k * LIES
@@ -76,7 +76,7 @@ class LinkPoints(LinkRows):
 
     @inlined
     def upward(self, k: int) -> tuple[float, float]:
-        """Give the direction that points up on a body, or on the ground."""
+        """Give the unit vector that points up on a body, or on the ground."""
         if k == GROUND:
             return 0.0, 1.0
         lies = self.lies()
@@ -84,15 +84,15 @@ class LinkPoints(LinkRows):
 
     @inlined
     def points_of(self, row: Vector, room: Vector) -> tuple[Moved, Moved]:
-        """Give both points of a link."""
+        """Give displacements and velocities of both points of a link."""
         on = self.moved(int(row[ON]), row[ON_X], row[ON_Y], room)
         return on, self.moved(int(row[TO]), row[TO_X], row[TO_Y], room)
 
     @inlined
     def drawn(self, row: Vector, on: Moved, to: Moved) -> StretchedLink:
-        """Give how a link is stretched, :eq:`eq-link`.
+        """Give elongation, rate and direction of a link, :eq:`eq-link`, but no acceleration.
 
-        Where its points meet it acts along the way that they go apart, or come together, upwards.
+        Where its points meet it acts along their relative velocity, in its upward sense.
         """
         apart_x, apart_y, given = row[APART_X], row[APART_Y], row[GIVEN]
         moved_x, moved_y = on.x - to.x, on.y - to.y
@@ -137,9 +137,9 @@ class LinkPoints(LinkRows):
 
     @inlined
     def watched(self, row: Vector, room: Vector, idle: bool) -> Stretch:
-        """Give how a link is stretched, with its acceleration, as forces are known.
+        """Give elongation of a link, rate and acceleration, from the accelerations of its bodies.
 
-        Of one that is idle without that.
+        The acceleration of an idle link is left 0.
         """
         on, to = self.points_of(row, room)
         found, x, y = self.drawn(row, on, to)

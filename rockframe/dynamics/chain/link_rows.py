@@ -1,4 +1,4 @@
-"""The links of bodies as numbers: a row for each, behind the rows of the bodies, and room.
+"""Links in the array of a chain, behind the bodies: a row of data for each, and a workspace.
 
 One machine code serves all links of a law, whatever their number.
 """
@@ -14,42 +14,42 @@ from rockframe.dynamics.pads import ROUNDING
 from rockframe.dynamics.protocol import POWERS, Energies, Ground, Guards, Slope
 
 GROUND: Final = -1
-"""In place of a body."""
+"""In place of the number of a body."""
 
-# a row: the points, from the centres of mass of their bodies to the right and up
-ON: Final = 0
+# columns of a row; points are to the right and up from the centre of mass of their body [m]
+ON: Final = 0  # number of the body of the first point, or GROUND
 ON_X: Final = 1
 ON_Y: Final = 2
-TO: Final = 3
+TO: Final = 3  # and of the second
 TO_X: Final = 4
 TO_Y: Final = 5
-# how far they are apart as the link is given, from the latter to the former
+# first point from the second one, as the link is given [m]
 APART_X: Final = 6
 APART_Y: Final = 7
-GIVEN: Final = 8  # the same, along the link
-NOISE: Final = 9
-STORED: Final = 10  # energy at rest
-PLACE_VALUE: Final = 11  # of its state in the mode of the system
-STATES: Final = 12  # a power of two, so that place values are exact
-# direction in which it pulls whichever way its points go; zero for one that pulls along them
+GIVEN: Final = 8  # distance between them then [m]
+NOISE: Final = 9  # rounding noise of the elongation [m]
+STORED: Final = 10  # elastic energy at rest, per reference mass [m^2 s^-2]
+PLACE_VALUE: Final = 11  # factor of its state in the number of the system's mode
+STATES: Final = 12  # number of states, rounded up to a power of two: place values are exact
+# unit vector of a force of fixed direction; zero for a link that acts along its points
 ALONG_X: Final = 13
 ALONG_Y: Final = 14
-NUMBERS: Final = 15  # of its law, from here on
+NUMBERS: Final = 15  # first of the numbers of its law
 
-# room to work in: for each body how it has moved from where it is given, and what links load it by
-MOVED_X: Final = 0
+# workspace, for each body: its displacement from where it is given, and the loads of its links
+MOVED_X: Final = 0  # displacement of its centre of mass [m]
 MOVED_Y: Final = 1
 OWN_SINE: Final = 2  # of its rotation
-OWN_VERSINE: Final = 3
-OWN_RATE: Final = 4
-PULLED_X: Final = 5
+OWN_VERSINE: Final = 3  # 1 - cos of it
+OWN_RATE: Final = 4  # angular velocity [s^-1]
+PULLED_X: Final = 5  # resultant force of its links over the reference mass [m s^-2]
 PULLED_Y: Final = 6
-LIES: Final = 7
+LIES: Final = 7  # numbers of each body
 
 LINK_COLUMNS: Final = 3
-"""What users see of each link: force, elongation and state."""
+"""Columns of each link in the results: force, elongation and state."""
 LINK_MOMENT: Final = "link_moment"
-"""The column behind them: the moment of all links on the first body, about its centre of mass."""
+"""The column behind those: moment of all links on body 0, about its centre of mass."""
 
 
 class ChainLink(NamedTuple):
@@ -58,10 +58,10 @@ class ChainLink(NamedTuple):
     on: int
     on_point: tuple[float, float]  # from the centre of mass of its body to the right and up
     to: int  # a body, or `GROUND`
-    to_point: tuple[float, float]  # likewise; of no matter on the ground
+    to_point: tuple[float, float]  # likewise; not used on the ground
     apart: tuple[float, float]  # from the second point to the first, as the link is given
     numbers: LinkNumbers
-    along: tuple[float, float] = (0.0, 0.0)  # in which a load or a wall acts
+    along: tuple[float, float] = (0.0, 0.0)  # unit vector along which a load or a wall acts
 
 
 class LinkedLists(NamedTuple):
@@ -69,12 +69,12 @@ class LinkedLists(NamedTuple):
 
     body_count: int
     link_count: int
-    law: Any  # of the class of all links; its numbers are those of one of them
-    rows: Vector  # those of a chain; then of the links, and room to work in
+    law: Any  # of the class of all links; its numbers are replaced by those of each link's row
+    rows: Vector  # the array of the chain, then the rows of the links and their workspace
 
 
 class Linkable:
-    """What bodies are to the links between them. A mixin of systems, which give all of it."""
+    """What links need of the system of the bodies, which implements all of it. A mixin."""
 
     __slots__ = ()
     body_count: int
@@ -91,27 +91,27 @@ class Linkable:
             raise NotImplementedError
 
         def places(self) -> Vector:
-            """Give the room for places, speeds, loads and accelerations of all bodies."""
+            """Give the workspace of all bodies: places, velocities, loads and accelerations."""
             raise NotImplementedError
 
         def behind_bodies(self) -> int:
-            """Give the place behind all rows and rooms of the bodies."""
+            """Give the index behind rows and workspace of the bodies."""
             raise NotImplementedError
 
         def own_guards(self) -> int:
-            """Give the number of their guards."""
+            """Give the number of guards of all bodies."""
             raise NotImplementedError
 
         def own_columns(self) -> int:
-            """Give the number of their columns."""
+            """Give the number of columns of all bodies and their bases."""
             raise NotImplementedError
 
         def lay(self, mode: int, state: Vector, room: Vector) -> None:
-            """Write how bodies lie, after they are placed."""
+            """Write displacements and rotations of bodies; `place_bodies` must have run before."""
             raise NotImplementedError
 
         def set_out(self, mode: int, state: Vector, room: Vector) -> None:
-            """Write where all bodies are and how they move."""
+            """Write places, displacements and velocities of all bodies."""
             raise NotImplementedError
 
         def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
@@ -121,36 +121,36 @@ class Linkable:
         def guards_of_bodies(
             self, mode: int, state: Vector, slope: Slope, ground: Ground
         ) -> Guards:
-            """Write their guards, and the rates of these."""
+            """Write the guards of all bodies, and their rates."""
             raise NotImplementedError
 
         def switch_body(
             self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
         ) -> int:
-            """Carry out the switch that a guard of theirs calls for; give the new mode."""
+            """Carry out the switch that a guard of a body calls for; give the new mode."""
             raise NotImplementedError
 
         def begin_event(self, memory: Vector) -> None:
-            """Forget what the last event left."""
+            """Reset the memory of the last event."""
             raise NotImplementedError
 
         def link_place(self) -> int:
-            """Give the place of the last event's link in the memory."""
+            """Give the index, in the memory, of the number of the last event's link."""
             raise NotImplementedError
 
         def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-            """Give their energies, and leave where they are in the room."""
+            """Give the energies of bodies and bases, and leave their places in the workspace."""
             raise NotImplementedError
 
         def observe_bodies(
             self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
         ) -> Vector:
-            """Write their columns, and leave where they are in the room."""
+            """Write the columns of bodies and bases, and leave their places in the workspace."""
             raise NotImplementedError
 
 
 class LinkRows(Linkable):
-    """What stands in the rows of links. A mixin of systems."""
+    """Access to the rows and the workspace of links. A mixin of systems."""
 
     __slots__ = ()
     link_count: int
@@ -163,7 +163,7 @@ class LinkRows(Linkable):
 
     @inlined
     def behind_links(self) -> int:
-        """Give the place behind the rows of links."""
+        """Give the index behind the rows of links."""
         return self.behind_bodies() + self.link_count * self.link_width()
 
     @inlined
@@ -183,13 +183,13 @@ class LinkRows(Linkable):
 
     @inlined
     def of_link(self, i: int, state: Vector) -> Vector:
-        """Give the variables of a link."""
+        """Give the variables of a link in a state."""
         each = self.law.variables()
         return stretch(state, 2 * self.coordinates() + i * each, each)
 
     @inlined
     def lies(self) -> Vector:
-        """Give the room for how bodies lie, and what links load them by."""
+        """Give the room for displacements of bodies, and for the loads of links on them."""
         return stretch(self.rows, self.behind_links(), LIES * self.body_count)
 
     @inlined
@@ -200,7 +200,7 @@ class LinkRows(Linkable):
 
     @inlined
     def behind_slopes(self) -> int:
-        """Give the place behind them."""
+        """Give the index behind the room for slopes."""
         lies = LIES * self.body_count + self.coordinates()
         return self.behind_links() + lies + self.variables() + POWERS
 
@@ -220,7 +220,7 @@ class LinkRows(Linkable):
         return stretch(self.rows, self.behind_slopes() + 2 * self.guards(), self.columns())
 
     def behind_room(self) -> int:
-        """Give the place behind all."""
+        """Give the index behind the whole array, that is its length."""
         return self.behind_slopes() + 2 * self.guards() + self.columns()
 
     @kernel
@@ -235,15 +235,15 @@ class LinkRows(Linkable):
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes, of which some have no meaning."""
+        """Give the number of modes; some of these numbers do not occur."""
         last = self.row_of_link(self.link_count - 1)
         return int(last[PLACE_VALUE] * last[STATES])
 
 
 def numbers_of_link(link: ChainLink, law: Any, value: int) -> Vector:
-    """Give the row of a link, its state worth `value` in the mode of the system.
+    """Give the row of a link; `value` is the place value of its state in the system's mode.
 
-    `law` is that of all links, with the numbers of this one's own.
+    `law` is the law of the class of all links, with the numbers of this link.
     """
     apart, reach = math.hypot(*link.apart), math.hypot(*link.on_point) + math.hypot(*link.to_point)
     geometry = (

@@ -1,7 +1,6 @@
-"""Bodies of which points are linked: to one another, or to the ground.
+"""Links between points of bodies, or between a body and the ground: their loads and events.
 
-Links load the bodies, :eq:`eq-link-loads`; all else is that of the bodies, which know nothing of
-them.
+Links load the bodies, :eq:`eq-link-loads`; the equations of the bodies are otherwise unchanged.
 """
 
 from collections.abc import Sequence
@@ -45,13 +44,13 @@ from rockframe.errors import AssemblyError
 
 
 class Linked(LinkPoints):
-    """What bodies have of what links them. A mixin of systems."""
+    """Loads, guards, events, energies and columns of links. A mixin of systems."""
 
     __slots__ = ()
 
     @kernel
     def pull(self, mode: int, state: Vector, room: Vector) -> float:
-        """Load all bodies by their links, :eq:`eq-link-loads`; give what these dissipate."""
+        """Load all bodies by their links, :eq:`eq-link-loads`; give the power these dissipate."""
         lies, out, lost = self.lies(), self.slopes(), 0.0
         self.lay(mode, state, room)
         for k in range(self.body_count):
@@ -89,12 +88,12 @@ class Linked(LinkPoints):
 
     @inlined
     def pulled_x(self, k: int) -> float:
-        """Give the last force of links on a body, to the right."""
+        """Give the last resultant of links on a body, to the right, over the reference mass."""
         return float(self.lies()[k * LIES + PULLED_X])
 
     @inlined
     def pulled_y(self, k: int) -> float:
-        """Give the same upwards."""
+        """Give the last resultant of links on a body, upwards, over the reference mass."""
         return float(self.lies()[k * LIES + PULLED_Y])
 
     @kernel
@@ -121,7 +120,7 @@ class Linked(LinkPoints):
 
     @inlined
     def all_idle(self, mode: int) -> bool:
-        """Whether it is known at once that no link does anything in a mode."""
+        """Whether no link acts in a mode, as far as that is known without asking each."""
         return False
 
     @kernel
@@ -164,7 +163,7 @@ class Linked(LinkPoints):
             stored = self.law_of(row).energy(
                 self.link_state(mode, row), self.drawn(row, on, to).stretch, own
             )
-            # of what acts along a direction a load has but one state, a wall two
+            # loads and walls have a fixed direction; a load has one state, a wall two
             if (row[ALONG_X] != 0.0 or row[ALONG_Y] != 0.0) and row[STATES] <= 1.0:
                 gravity += stored
             else:
@@ -176,7 +175,7 @@ class Linked(LinkPoints):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> Vector:
-        """Give the columns of the bodies, then those of each link, and the moment of all."""
+        """Give the columns of the bodies, then those of each link, and the moment of all links."""
         out, room = self.observe_bodies(mode, state, slope, ground, memory), self.places()
         moment = 0.0
         for i in range(self.link_count):
@@ -195,7 +194,7 @@ class Linked(LinkPoints):
         return out
 
     def keep_energies(self, mode: int, state: Vector) -> None:
-        """Keep what links store at rest, from which energies are told."""
+        """Write the energies of links at rest to their rows: energies are changes from these."""
         room = self.places()
         self.set_out(mode, state, room)
         for i in range(self.link_count):
@@ -218,9 +217,9 @@ class Linked(LinkPoints):
 
 
 def rows_of_links(links: Sequence[ChainLink], modes: int, bodies: int) -> tuple[Any, list[Vector]]:
-    """Give the law of all links, with numbers to be replaced, and the row of each.
+    """Give one law for all links, whose numbers are placeholders, and the row of each link.
 
-    Behind the modes of the bodies by themselves, of which there are so many.
+    `modes` is the number of modes of the bodies without links.
     """
     laws = [one.numbers.law for one in links]
     kinds = kinds_of(laws)
@@ -236,7 +235,7 @@ def rows_of_links(links: Sequence[ChainLink], modes: int, bodies: int) -> tuple[
 
 
 def with_room(system: Any, filled: Vector) -> Any:
-    """Give a system of which all but the room to work in is filled, with that."""
+    """Give a system with its workspace, added as zeros behind the filled part of its array."""
     return system._replace(
         rows=np.concatenate([filled, np.zeros(system.behind_room() - len(filled))])
     )

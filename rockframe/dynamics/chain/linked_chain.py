@@ -1,6 +1,6 @@
-"""A chain of bodies of which points are linked: to one another, or to the ground.
+"""Chains of bodies with links between them or to the ground, for each kind of base.
 
-All else is that of a chain, on bases that hold, on rigid ones, or on those with friction.
+The kinds are: deformable bases without slip, rigid ones among them, and either with friction.
 """
 
 from collections.abc import Sequence
@@ -35,17 +35,17 @@ from rockframe.dynamics.trigonometry import sine_cosine, versine
 
 
 class ChainLinks(Linked, Chain):
-    """How the bodies of a chain lie, for what links them. A mixin of systems.
+    """Displacements of the bodies of a chain, as links need them. A mixin of systems.
 
-    The horizontal coordinate of the lowest body moves wherever that is held, as those of all
-    others do, for links ask where it is.
+    The horizontal coordinate of the lowest body is integrated even while the body is held, as
+    those of all other bodies are, since the elongations of links depend on it.
     """
 
     __slots__ = ()
 
     @inlined
     def behind_bodies(self) -> int:
-        """Give the place behind all rows and rooms of the bodies."""
+        """Give the index behind rows and workspace of the bodies."""
         return self.behind_chain()
 
     @inlined
@@ -60,17 +60,17 @@ class ChainLinks(Linked, Chain):
 
     @kernel
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: all."""
+        """Give the number of coordinates that move in a mode: all."""
         return DEGREES * self.body_count
 
     @inlined
     def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
-        """Give the horizontal place of the lowest body."""
+        """Give the horizontal place of the lowest body's centre of mass [m]."""
         return body.horizontal
 
     @kernel
     def lay(self, mode: int, state: Vector, room: Vector) -> None:
-        """Write how all bodies lie, from where they are given, after they are placed."""
+        """Write displacements and rotations of bodies; `place_bodies` must have run before."""
         lies, x, y, rate, angle = self.lies(), 0.0, 0.0, 0.0, 0.0
         for k in range(self.body_count - 1, -1, -1):
             i, j = k * PLACES, k * LIES
@@ -85,7 +85,7 @@ class ChainLinks(Linked, Chain):
                 x = self.lowest_place(mode, body, state)
             rate += body.angular_velocity
             angle += body.rotation
-            if k > 0:  # what the next body stands on
+            if k > 0:  # the frame of the body above, which rotates with this one
                 sine, cosine = room[i - PLACES + at.SINE], room[i - PLACES + at.COSINE]
             else:
                 sine, cosine = sine_cosine(angle)
@@ -94,22 +94,22 @@ class ChainLinks(Linked, Chain):
 
     @inlined
     def set_out(self, mode: int, state: Vector, room: Vector) -> None:
-        """Write where all bodies are and how they move."""
+        """Write places, displacements and velocities of all bodies."""
         place_bodies(self, mode, state, room)
         self.lay(mode, state, room)
 
 
 class LinkedChain(LinkedLists, ChainLinks):  # pyright: ignore[reportGeneralTypeIssues]
-    """Bodies upon one another, and what links them: a system."""
+    """Bodies upon one another, with links: a system."""
 
     __slots__ = ()
 
 
 class RestOnGround(ChainLinks):
-    """How bodies lie of which the lowest may stand on rigid ground. A mixin of systems.
+    """Displacements of bodies of which the lowest may stand on rigid ground. A mixin of systems.
 
-    Forces of links are finite: impacts are those without them. While the lowest body is held on
-    rigid ground, its horizontal coordinate is the place of what holds it, and does not move.
+    Forces of links are finite, so that links take no part in impacts. While rigid ground holds the
+    lowest body, its horizontal coordinate is the place of the held point, and does not change.
     """
 
     __slots__ = ()
@@ -122,12 +122,12 @@ class RestOnGround(ChainLinks):
 
     @kernel
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move."""
+        """Give the number of coordinates that move: not the lowest body's where ground holds it."""
         return DEGREES * self.body_count - (1 if self.rests_on_ground(mode) else 0)
 
     @inlined
     def lowest_place(self, mode: int, body: BodyState, state: Vector) -> float:
-        """Give the horizontal place of the lowest body: that follows from what holds it."""
+        """Give the horizontal place of the lowest body, where held from that of the held point."""
         if not self.rests_on_ground(mode):
             return body.horizontal
         k = self.body_count - 1
@@ -138,7 +138,7 @@ class RestOnGround(ChainLinks):
 
     @kernel
     def keep_hold(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Write to the state where the lowest body is held, if rigid ground does."""
+        """Write the place of the lowest body's held point to the state, if the ground holds it."""
         if self.rests_on_ground(mode):
             k = self.body_count - 1
             self.set_sway(k, memory[HELD_PLACE + k], 0.0, state)
@@ -154,24 +154,24 @@ class RestOnGround(ChainLinks):
 
     @inlined
     def hold_again(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let what friction no longer holds slip: none slips here."""
+        """Give the mode in which bodies slip that friction cannot hold: none slips here."""
         return mode
 
 
 class LinkedRigidChain(LinkedLists, RestOnGround, RigidChain):  # pyright: ignore[reportGeneralTypeIssues]
-    """Bodies upon one another of which some stand on rigid bases, and what links them."""
+    """Bodies upon one another, some of them on rigid bases, with links: a system."""
 
     __slots__ = ()
 
 
 class LinkedSlips(ChainLinks, SlippingBodies):
-    """Where the numbers are of bodies that friction holds, and of what links them. A mixin."""
+    """Layout of the array of bodies with friction and links. A mixin of systems."""
 
     __slots__ = ()
 
     @inlined
     def behind_bodies(self) -> int:
-        """Give the place behind all rows and rooms of the bodies, and their friction."""
+        """Give the index behind rows, workspace and friction of the bodies."""
         return self.behind_friction()
 
     @inlined
@@ -181,9 +181,9 @@ class LinkedSlips(ChainLinks, SlippingBodies):
 
 
 class LinkedSlippingChain(LinkedLists, LinkedSlips, SlippingChain):  # pyright: ignore[reportGeneralTypeIssues]
-    """The same where friction holds the bodies on their bases.
+    """Bodies that friction holds on deformable bases, with links: a system.
 
-    What friction must hold follows from the forces of the links too.
+    The forces of links enter the force that friction must hold.
     """
 
     __slots__ = ()
@@ -192,13 +192,13 @@ class LinkedSlippingChain(LinkedLists, LinkedSlips, SlippingChain):  # pyright: 
 class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
     LinkedLists, LinkedSlips, RestOnGround, SlippingRigidChain
 ):
-    """The same where friction holds the bodies on their rigid bases."""
+    """Bodies that friction holds, some of them on rigid bases, with links: a system."""
 
     __slots__ = ()
 
     @inlined
     def hold_again(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let what friction no longer holds slip: a link has broken, or a wall is touched."""
+        """Give the mode in which bodies slip that friction cannot hold after an event of a link."""
         self.begin_slips(mode, state, memory)
         new = self.hold_as_far(mode, state, ground, memory)
         self.end_slips(new, state, memory)
@@ -206,7 +206,7 @@ class LinkedSlippingRigidChain(  # pyright: ignore[reportGeneralTypeIssues]
 
 
 def linked(chain: Chain, links: Sequence[ChainLink]) -> ChainLinks:
-    """Give a chain with links."""
+    """Give the system of a chain with links."""
     law, rows = rows_of_links(links, chain.modes(), chain.body_count)
     if isinstance(chain, SlippingRigidChain):
         kind: Any = LinkedSlippingRigidChain

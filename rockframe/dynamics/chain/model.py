@@ -42,18 +42,18 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.vibrations import ChainBody, fastest_vibration, is_rigid, per_own_mass
 
 ROUNDING_OF_FORCES: Final = 1e-14
-"""Of what holds a body on a rigid base, over the weight on it."""
+"""Rounding noise of the forces that hold a body on a rigid base, over the weight on it [1]."""
 
 
 class AtRest(NamedTuple):
-    """Where a body is, relative to what it stands on."""
+    """Placement of a body at rest relative to what it stands on [rad, m]."""
 
     rotation: float
     vertical: float
 
 
 def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chain:
-    """Give the equations of bodies upon one another, from the top down, without their ties."""
+    """Give the system of bodies upon one another, from the top down, without their ties."""
     kind = RigidChain if some_rigid(links) else Chain
     rows = [row_of(one.body, one.base, one.mass, one.top, one.beside) for one in links]
     for row in rows:
@@ -62,7 +62,7 @@ def chain_of(links: Sequence[ChainBody], ties: Sequence[ChainLink] = ()) -> Chai
 
 
 def slipping(bare: Chain, frictions: Sequence[tuple[float, float, float]]) -> Chain:
-    """Give the equations of bodies that friction holds, of those whose bases hold."""
+    """Give the system `bare`, of bases without slip, with friction on the bases."""
     gives = not isinstance(bare, RigidChain) and all(math.isfinite(one[0]) for one in frictions)
     kind = SlippingChain if gives else SlippingRigidChain
     return kind(bare.body_count, np.concatenate([bare.rows, coefficients(frictions)]))
@@ -89,20 +89,20 @@ def chain(
     links : sequence of ChainBody
         From the top down.
     mass : float
-        That all is measured by [kg].
+        The reference mass, over which all masses and forces are given [kg].
     rest : sequence of AtRest, or None
-        Where the bodies are at rest; None where they all stand upright.
+        Placements of the bodies at rest; None where they all stand upright.
     limits : sequence of tuple of float
         Rotations to the left and to the right at which each body but the first overturns, with
-        all above it; none are looked at unless given [rad].
+        all above it; unless given, the rotations of these bodies are not checked [rad].
     ties : sequence of ChainLink
-        What links points of bodies.
+        Links between points of bodies, or to the ground.
     held : callable, optional
         From a rotation of the highest body to the height at which it starts there; unless
         given, that at which its base carries its weight.
     frictions : sequence of tuple of float
-        Coefficients of friction of each base, at rest, of slip and in impacts; none where all
-        bases hold, infinite where one does.
+        Coefficients of friction of each base: static, kinetic and in impacts; empty where no base
+        can slip, infinite for one that cannot.
 
     Returns
     -------
@@ -171,7 +171,7 @@ def chain(
 
 
 def _weights(count: int, k: int) -> Vector:
-    """Give the rotation of body `k` as a sum of coordinates: of its own and of those below."""
+    """Give the weights of the coordinates in the rotation of body `k`: its own and those below."""
     weights = np.zeros(DEGREES * count)
     first = BEFORE_HORIZONTAL * k + ROTATION
     weights[first : BEFORE_HORIZONTAL * count : BEFORE_HORIZONTAL] = 1.0
@@ -179,7 +179,7 @@ def _weights(count: int, k: int) -> Vector:
 
 
 def _tolerance(base: BaseNumbers, carried: float) -> Vector:
-    """Give the rounding noise of a body's guards, of which those of a bed's ends are fewer."""
+    """Give the rounding noise of a body's guards; of each end of a bed one guard is in use."""
     if is_rigid(base):
         return np.full(GUARDS, ROUNDING_OF_FORCES * carried)
     found = part_tolerance(base)
@@ -192,7 +192,7 @@ def _tolerance(base: BaseNumbers, carried: float) -> Vector:
 
 
 def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
-    """Name the columns of body `k`: those of the first one as of any scene."""
+    """Give the columns of body `k`; those of body 0 have the names of any scene."""
     own = (*BODY_COLUMNS, Column("rotation_on_base"), Column("vertical_displacement_on_base"))
     unused = tuple(Column(f"unused_{i}") for i in range(OBSERVED - len(base.columns)))
     return tuple(
@@ -202,24 +202,24 @@ def _columns(base: BaseNumbers, k: int) -> tuple[Column, ...]:
 
 
 def rounding_of_ties(ties: Sequence[ChainLink]) -> float:
-    """Give by how much the rounding of the lengths of stiff ties changes what corners bear."""
+    """Give the noise in forces of corners from the rounding of the lengths of stiff ties."""
     return ROUNDING * sum(one.numbers.stiffness * reach_of(one) for one in ties)
 
 
 def reach_of(tie: ChainLink) -> float:
-    """Give the lengths by which the rounding of a link's elongation is known."""
+    """Give the length that the rounding noise of a link's elongation is proportional to [m]."""
     return math.hypot(*tie.apart) + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
 
 
 def links_shown(ties: Sequence[ChainLink]) -> int:
-    """Give how many links results show; loads, which are the last, they do not."""
+    """Give the number of links in the results: all but loads, which come last."""
     return sum(not isinstance(one.numbers.law, SteadyForce) for one in ties)
 
 
 def scales_of_links(system: Linked, ties: Sequence[ChainLink]) -> list[float]:
     """Give typical sizes of the variables of links.
 
-    Links of several laws have as many variables each as that which has the most.
+    Each link has as many variables as the law that has the most.
     """
     each = system.law.variables()
     return [size for one in ties for size in (*one.numbers.variable_scales, *[1.0] * each)[:each]]
@@ -231,7 +231,7 @@ def tie_tolerance(tie: ChainLink) -> Vector:
 
 
 def columns_of_ties(ties: int, shown: int) -> Iterator[Column]:
-    """Name the columns of links; users do not see those of the last, which are loads."""
+    """Give the columns of links; users do not see those of loads, which come last."""
     for i in range(ties):
         kind = "restrainer" if i < shown else "unused_load"
         yield Column(column_of(f"{kind}_force", i), per_mass=True)
@@ -266,7 +266,7 @@ def _answers(links: Sequence[ChainBody]) -> Vector:
 
 
 class Starts(NamedTuple):
-    """What starts are told by."""
+    """What the initial state is made from."""
 
     links: Sequence[ChainBody]
     rest: Sequence[AtRest] | None
@@ -274,7 +274,7 @@ class Starts(NamedTuple):
 
 
 def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
-    """Start a run: all at rest but the first body, which is as told."""
+    """Give mode, state and memory at the start: all at rest but body 0, as `start` says."""
     count, rest = len(starts.links), starts.rest
     tied = isinstance(system, ChainLinks)
     n = DEGREES * count
@@ -286,7 +286,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
         attitude = part.body.attitude(rotation)
         height = start.vertical_displacement
         if height is None and is_rigid(starts.links[0].base):
-            height = 0.0  # as its contact has it
+            height = 0.0  # the contact prescribes it
         elif height is None and starts.held is not None:
             height = starts.held(rotation)
         elif height is None:
@@ -307,7 +307,7 @@ def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, 
             contact = both_contacts(int(side > 0.0), int(side < 0.0))
         else:
             contact = part.base.starting(part.body.base_line_at(body), ())
-        # upright and at rest a body leans nowhere yet; it follows the one above
+        # a body at rest upright has no side yet: it takes that of the body above
         leaning = body
         if body.rotation == 0.0 and k > 0:
             leaning = body._replace(rotation=placed[k - 1].rotation)

@@ -1,9 +1,9 @@
-"""How the bodies of a chain lie and accelerate under loads and constraints, :eq:`eq-chain`.
+"""Kinematics of a chain, and accelerations under loads and constraints, :eq:`eq-chain`.
 
 Newton's and Euler's equations of each body in the axes of the ground, with one unknown force for
 each constraint: of a held point, of a corner on a rigid surface, of an end that slides. A
 constraint touches its own body and the one below, so that the cost grows with the number of bodies
-alone. What holds for accelerations under forces holds for changes of velocities under impulses.
+alone. The same equations give changes of velocities under impulses.
 """
 
 from typing import Final
@@ -15,22 +15,22 @@ from rockframe.dynamics.chain.rows import CONSTRAINT, MOST_CONSTRAINTS, PLACES, 
 from rockframe.dynamics.protocol import Ground
 from rockframe.dynamics.trigonometry import sine_cosine
 
-FREE: Final = 0.0
+FREE: Final = 0.0  # in the column HELD of the workspace
 HELD: Final = 1.0
 UNKNOWN: Final = -1.0
-"""How a body is tried of which no elimination stands."""
+"""Code of a trial for a body whose constraints have not been eliminated."""
 
 
 @inlined
 def forget_trial(system: Rows, room: Vector) -> None:
-    """Let the next set of corners that is tried, or forces, be solved for from the beginning."""
+    """Discard what was eliminated: the next solution starts from the beginning."""
     i = (system.body_count - 1) * PLACES
     room[i + at.TRIED], room[i + at.SOLVED] = UNKNOWN, 0.0
 
 
 @kernel
 def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
-    """Write how all bodies lie and move relative to what they stand on, and their velocities."""
+    """Write places and rates of all bodies relative to what they stand on, and velocities."""
     forget_trial(system, room)
     count, angle, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     below = 0.0  # top of the body below above its centre of mass
@@ -72,7 +72,7 @@ def place_bodies(system: Rows, mode: int, state: Vector, room: Vector) -> None:
 
 @kernel
 def input_power(system: Rows, state: Vector, ground: Ground, room: Vector) -> float:
-    """Give the power of the ground at the rates of a state, of bodies that lie as in the room."""
+    """Give the power of the ground at the rates of a state, for the places in the workspace."""
     count, supplied, rate, speed_x, speed_y = system.body_count, 0.0, 0.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
         i, mass, body = k * PLACES, system.number(k, at.MASS), system.state_of(k, state)
@@ -91,7 +91,7 @@ def input_power(system: Rows, state: Vector, ground: Ground, room: Vector) -> fl
 
 @inlined
 def load_bodies(system: Rows, x: float, y: float, room: Vector) -> None:
-    """Load all bodies by accelerations that their masses resist."""
+    """Set the loads of all bodies to the inertia forces of an acceleration of the ground."""
     forget_trial(system, room)
     for k in range(system.body_count):
         i, mass = k * PLACES, system.number(k, at.MASS)
@@ -101,7 +101,7 @@ def load_bodies(system: Rows, x: float, y: float, room: Vector) -> None:
 
 @inlined
 def press_at(system: Rows, k: int, press: float, moment: float, room: Vector) -> None:
-    """Add the force of a base along its normal and the moment on its body, and the reaction."""
+    """Add normal force and moment of a base to the loads of its body, and the reaction below."""
     forget_trial(system, room)
     i = k * PLACES
     sine, cosine = room[i + at.SINE], room[i + at.COSINE]
@@ -117,7 +117,7 @@ def press_at(system: Rows, k: int, press: float, moment: float, room: Vector) ->
 
 @inlined
 def load_along(system: Rows, k: int, thrust: float, room: Vector) -> None:
-    """Add a force along a base on the point of its body that slips, and the reaction."""
+    """Add a force along a base at the slipping point of its body, and the reaction below."""
     forget_trial(system, room)
     i = k * PLACES
     x, y = thrust * room[i + at.COSINE], -thrust * room[i + at.SINE]
@@ -133,14 +133,14 @@ def load_along(system: Rows, k: int, thrust: float, room: Vector) -> None:
 
 @inlined
 def coriolis_along(i: int, room: Vector) -> float:
-    """Give what the rotation of the body below adds to the acceleration along it."""
+    """Give the Coriolis and centripetal acceleration, from the body below, along the frame."""
     rate = room[i + at.FRAME_RATE]
     return 2.0 * room[i + at.RISE] * rate - room[i + at.ACROSS] * rate * rate
 
 
 @inlined
 def coriolis_normal(i: int, room: Vector) -> float:
-    """Give what it takes from the acceleration along its normal."""
+    """Give the Coriolis and centripetal acceleration along the inward normal of the frame."""
     rate = room[i + at.FRAME_RATE]
     return (2.0 * room[i + at.SWAY] + room[i + at.ARM] * rate) * rate
 
@@ -150,9 +150,9 @@ def write_direction(
     system: Rows, k: int, along: float, normal: float, rotation: float, first: int, room: Vector,
     rows: Vector,
 ) -> None:  # fmt: skip
-    """Write a combination of a body's relative accelerations as one of those in the ground's axes.
+    """Write a combination of a body's relative accelerations by weights in the axes of the ground.
 
-    Of the body, then of the one below. As a force it is what acts on both.
+    Those of the body, then of the one below: also its components as a generalized force on both.
     """
     i = k * PLACES
     sine, cosine = room[i + at.SINE], room[i + at.COSINE]
@@ -185,7 +185,7 @@ def add_constraint(
     system: Rows, which: int, k: int, along: float, normal: float, rotation: float, wanted: float,
     room: Vector, rows: Vector,
 ) -> None:  # fmt: skip
-    """Add a constraint: what it keeps at a value, and by a force in the same direction."""
+    """Add a constraint on a combination of accelerations, with a force in its direction."""
     first = which * CONSTRAINT
     rows[first + at.BODY], rows[first + at.VALUE] = k, wanted
     write_direction(system, k, along, normal, rotation, first + at.KEEPS, room, rows)
@@ -195,7 +195,7 @@ def add_constraint(
 
 @inlined
 def of_both(moving: int, k: int, direction: int, room: Vector, rows: Vector) -> float:
-    """Give a combination of the accelerations of a body and of the one below, if that moves."""
+    """Give a combination of the accelerations of a body and, if it moves, of the one below."""
     i = k * PLACES
     found = (
         rows[direction] * room[i + at.X]
@@ -214,7 +214,7 @@ def of_both(moving: int, k: int, direction: int, room: Vector, rows: Vector) -> 
 
 @inlined
 def through(system: Rows, k: int, one: int, other: int, rows: Vector) -> float:
-    """Give what a force on a body does to what is kept of it, by its mass and inertia."""
+    """Give the product of two directions of one body over its mass and inertia."""
     per_mass, per_inertia = system.number(k, at.PER_MASS), system.number(k, at.PER_INERTIA)
     moved = rows[one] * rows[other] + rows[one + 1] * rows[other + 1]
     return per_mass * moved + per_inertia * rows[one + 2] * rows[other + 2]
@@ -222,7 +222,7 @@ def through(system: Rows, k: int, one: int, other: int, rows: Vector) -> float:
 
 @inlined
 def answer(system: Rows, moving: int, kept: int, force: int, rows: Vector) -> float:
-    """Give what a unit force of one constraint does to what another keeps; 0 if far apart."""
+    """Give the response of constraint `kept` to a unit force of `force`: an entry of the matrix."""
     a, b = kept * CONSTRAINT, force * CONSTRAINT
     one, other = int(rows[a + at.BODY]), int(rows[b + at.BODY])
     keeps, holds, found = a + at.KEEPS, b + at.HOLDS, 0.0
@@ -239,7 +239,7 @@ def answer(system: Rows, moving: int, kept: int, force: int, rows: Vector) -> fl
 
 @inlined
 def push(system: Rows, moving: int, which: int, room: Vector, rows: Vector) -> None:
-    """Add what a constraint's force does to the accelerations."""
+    """Add the accelerations that a constraint's force causes."""
     first = which * CONSTRAINT
     k, force, holds = int(rows[first + at.BODY]), rows[first + at.FORCE], first + at.HOLDS
     for body in range(k, min(k + 2, moving)):
@@ -252,9 +252,9 @@ def push(system: Rows, moving: int, which: int, room: Vector, rows: Vector) -> N
 
 @inlined
 def eliminate(system: Rows, moving: int, r: int, band: int, rows: Vector, matrix: Vector) -> None:
-    """Add a constraint to those before it, whose elimination stands.
+    """Eliminate one more constraint behind those that have been eliminated.
 
-    Below the diagonal of the matrix stand the factors, on it what one is divided by.
+    The matrix holds the factors below its diagonal, the inverses of the pivots on it.
     """
     stride, low, first = MOST_CONSTRAINTS * system.body_count, max(0, r - band), r * CONSTRAINT
     own, left = answer(system, moving, r, r, rows), rows[first + at.LEFT]
@@ -279,9 +279,9 @@ def solve_motion(
 
     Equation :eq:`eq-chain-solution`.
 
-    Elimination in the band about the diagonal, on which there is no zero. That of constraints
-    before `start` stands from the last time. Bodies from `moving` on rest on the ground, and have
-    no constraints here.
+    Elimination in the band about the diagonal, whose pivots are never zero. Constraints before
+    `start` have been eliminated in the last call. Bodies from number `moving` on rest on the
+    ground, and have no constraints here.
     """
     for k in range(system.body_count):
         i = k * PLACES

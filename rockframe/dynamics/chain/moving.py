@@ -1,6 +1,6 @@
-"""How a chain of bodies moves: its accelerations, energies, and answers to impulses.
+"""Motion of a chain of bodies: accelerations, energies, and responses to impulses.
 
-Equations :eq:`eq-chain`; per unit of a mass that all others are measured by.
+Equations :eq:`eq-chain`; forces and energies are per unit of the reference mass.
 """
 
 from rockframe.compiled import Vector, inlined, kernel
@@ -34,7 +34,7 @@ from rockframe.dynamics.trigonometry import versine
 
 
 class MovingBodies(Rows):
-    """Bodies upon one another, from the top down, as they move. A mixin of systems."""
+    """Equations of motion of bodies upon one another. A mixin of systems."""
 
     __slots__ = ()
 
@@ -52,7 +52,7 @@ class MovingBodies(Rows):
 
     @kernel
     def relaxation_in(self, mode: int) -> float:
-        """Give the rate at which an end that slides returns to its level."""
+        """Give the fastest rate at which a sliding end returns to its level [s^-1]."""
         fastest = 0.0
         for k in range(self.body_count):
             if not self.is_slippery(k):
@@ -61,12 +61,12 @@ class MovingBodies(Rows):
 
     @inlined
     def own_place(self, k: int) -> int:
-        """Give the place of the variables of a base's own in the state."""
+        """Give the index in the state of the own variables of bases, which have none here."""
         return 2 * DEGREES * self.body_count
 
     @kernel
     def constrain(self, moving: int, mode: int, state: Vector, room: Vector) -> int:
-        """Write the constraints of bodies that move in a mode; give how many there are."""
+        """Write the constraints of the first `moving` bodies in a mode; give their number."""
         count, rows = 0, self.constraints()
         for k in range(moving):
             standing = self.part_mode(mode, k)
@@ -81,18 +81,18 @@ class MovingBodies(Rows):
 
     @inlined
     def is_slippery(self, k: int) -> bool:
-        """Whether a body may slip on a base that gives way, by its friction: none does here."""
+        """Whether a body may slip on a deformable base, by its friction: none does here."""
         return False
 
     @inlined
     def load_by_friction(self, k: int, mode: int, room: Vector) -> None:
-        """Load a body that slips on a base that gives way by its friction: none does here."""
+        """Load a body that slips on a deformable base by its friction: none slips here."""
 
     @inlined
     def hold_or_slide(
         self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
     ) -> int:
-        """Add the constraint of a point that is held, or of an end that slides."""
+        """Add the constraint of a body's held point, or of its sliding end; give the count."""
         i = k * PLACES
         room[i + at.THRUST] = room[i + at.DRAG]
         if room[i + at.HELD] != FREE:
@@ -113,18 +113,18 @@ class MovingBodies(Rows):
 
     @inlined
     def band(self) -> int:
-        """Give how far apart constraints that have a body in common may stand."""
+        """Give the half-width of the band of the matrix: those farther apart share no body."""
         return 1
 
     @inlined
     def stand_still(self, room: Vector, out: Vector) -> None:
-        """Take rounding from the accelerations of bodies that do not move on theirs: none."""
+        """Set the accelerations of bodies in full contact with a rigid base to zero: none here."""
 
     @kernel
     def let_slide(
         self, k: int, which: int, standing: Mode, state: Vector, room: Vector, rows: Vector
     ) -> None:
-        """Keep the end that slides at the level of its base, :eq:`eq-sliding-contact`."""
+        """Add the constraint that keeps a sliding end at its base, :eq:`eq-sliding-contact`."""
         i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
         attitude = part.body.attitude(body.rotation)
         line = part.body.base_line(body, attitude)
@@ -140,11 +140,11 @@ class MovingBodies(Rows):
 
     @kernel
     def solve(self, moving: int, count: int, room: Vector) -> None:
-        """Write forces and accelerations, in the ground's axes and of all coordinates."""
+        """Solve for the forces of constraints, and the accelerations of bodies and coordinates."""
         rows = self.constraints()
         forget_trial(self, room)
         solve_motion(self, moving, 0, count, self.band(), room, rows, self.matrix())
-        for which in range(count):  # the last one of each body is along what it stands on
+        for which in range(count):  # the last constraint of a body is the one along its base
             first = which * CONSTRAINT
             room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]
         write_relative(self, room, self.slopes())
@@ -152,12 +152,12 @@ class MovingBodies(Rows):
 
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give the accelerations of all coordinates, and the powers."""
+        """Give the accelerations of all coordinates, then the powers dissipated and supplied."""
         return self.accelerate_first(self.body_count, mode, state, ground)
 
     @kernel
     def find_forces(self, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give the same, leave the forces on all bodies in the rooms, and note for what."""
+        """Give what `accelerate` gives, leave all forces, and note for which mode and state."""
         found, note = (
             self.accelerate_first(self.body_count, mode, state, ground),
             self.solved_room(),
@@ -171,7 +171,7 @@ class MovingBodies(Rows):
 
     @kernel
     def forces_stand(self, mode: int, state: Vector, ground: Ground) -> bool:
-        """Whether forces were solved for last that belong to a mode and a state."""
+        """Whether the forces in the workspace are those of this mode, state and ground."""
         note, solved = self.solved_room(), (self.body_count - 1) * PLACES + at.SOLVED
         # variables of links are not noted
         stand = (self.places()[solved] != 0.0) & (self.variables() == 0)
@@ -184,7 +184,7 @@ class MovingBodies(Rows):
 
     @kernel
     def accelerate_first(self, moving: int, mode: int, state: Vector, ground: Ground) -> Vector:
-        """Give accelerations and powers where bodies from a number on rest on the ground."""
+        """Give accelerations and powers; bodies from number `moving` on rest on the ground."""
         room, out = self.places(), self.slopes()
         place_bodies(self, mode, state, room)
         load_bodies(self, ground.x, self.number(0, at.GRAVITY) + ground.y, room)
@@ -213,39 +213,39 @@ class MovingBodies(Rows):
 
     @kernel
     def powers(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> tuple[float, float]:
-        """Give the power dissipated at the rates of the slope, and that put in at those given."""
+        """Give the power dissipated, of the slope, and that of the ground at the state's rates."""
         dissipated = slope[DEGREES * self.body_count + self.variables()]
         return dissipated, input_power(self, state, ground, self.places())
 
     @inlined
     def contact_with_force(self, k: int, mode: int) -> int:
-        """Give the contact of a body with its base as far as forces go."""
+        """Give the contact by which the force of a body's base is computed."""
         standing = self.part_mode(mode, k)
-        if self.is_slippery(k):  # which presses whether the body slips or not
+        if self.is_slippery(k):  # its base presses whether the body slips or not
             return standing.contact
         return self.on_base(k).contact_with_force(standing)
 
     @inlined
     def pull(self, mode: int, state: Vector, room: Vector) -> float:
-        """Load bodies by what links them, and give what that dissipates: nothing links them."""
+        """Load bodies by their links; give the power these dissipate: there are none here."""
         return 0.0
 
     @inlined
     def pulled_x(self, k: int) -> float:
-        """Give the last force of links on a body, to the right."""
+        """Give the last resultant of links on a body, to the right: there are none here."""
         return 0.0
 
     @inlined
     def pulled_y(self, k: int) -> float:
-        """Give the same upwards."""
+        """Give the last resultant of links on a body, upwards: there are none here."""
         return 0.0
 
     @kernel
     def forces_from(self, mode: int, state: Vector, slope: Slope, ground: Ground) -> None:
         """Write the bodies' accelerations and the forces at their bases, from a slope.
 
-        What rests has no acceleration of its own: that of the lowest body follows from its
-        rotation where it is held.
+        The slope has no horizontal acceleration of a lowest body that is held: it follows from its
+        rotation.
         """
         room = self.places()
         place_bodies(self, mode, state, room)
@@ -280,7 +280,7 @@ class MovingBodies(Rows):
 
     @kernel
     def energies_of_bodies(self, mode: int, state: Vector) -> Energies:
-        """Give the energies of all bodies and bases, and leave how the bodies lie in the room."""
+        """Give the energies of all bodies and bases; leaves the bodies' places in the workspace."""
         room = self.places()
         place_bodies(self, mode, state, room)
         kinetic = gravity = elastic = change = rise = rate = 0.0
@@ -299,7 +299,7 @@ class MovingBodies(Rows):
 
     @inlined
     def rise_of(self, k: int, below: float, vertical: float, room: Vector) -> float:
-        """Give the rise of a body's centre of mass from rest, to all digits, from that below."""
+        """Give the rise of a centre of mass, from that of the body below, without cancellation."""
         i = k * PLACES
         sine, cosine = room[i + at.SINE], room[i + at.COSINE]
         fixed = room[i + at.ARM] - vertical if k + 1 < self.body_count else 0.0
@@ -309,7 +309,7 @@ class MovingBodies(Rows):
 
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the horizontal place of a centre of mass: along the body below, or on the ground."""
+        """Give the place of a body's centre of mass along the body below, or along the ground."""
         if k + 1 < self.body_count:
             return state[self.horizontal_of(k)]
         part, body = self.on_base(k), self.state_of(k, state)
@@ -322,9 +322,9 @@ class MovingBodies(Rows):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give how velocities change by an impulse, or as a hold stops a slip.
+        """Give the changes of velocities by an impulse of a base, or by a hold that stops a slip.
 
-        The changes of all velocities stand in the room for slopes until the next ones.
+        The changes of all velocities are in the room for slopes until the next solution.
         """
         room, out = self.places(), self.slopes()
         place_bodies(self, mode, state, room)
@@ -337,7 +337,7 @@ class MovingBodies(Rows):
 
     @kernel
     def answer(self, k: int, mode: int, slip: float, state: Vector) -> None:
-        """Find how velocities change by impulses among the loads, or as a hold stops a slip."""
+        """Solve for changes of velocities by impulses in the loads, or a hold that stops `slip`."""
         room, rows, count = self.places(), self.constraints(), 0
         for j in range(self.body_count):
             i = j * PLACES
@@ -358,12 +358,12 @@ class MovingBodies(Rows):
 
     @inlined
     def take_answer(self, state: Vector) -> None:
-        """Change the velocities by the last answer to impulses."""
+        """Change the velocities by the last response to impulses."""
         self.add_slopes(state)
 
     @inlined
     def add_slopes(self, state: Vector) -> None:
-        """Change the velocities by what stands in the room for slopes; what holds lasts."""
+        """Add the room for slopes to the velocities; held points keep their constraint exactly."""
         out, room, n = self.slopes(), self.places(), self.coordinates()
         for i in range(n):
             state[n + i] += out[i]
@@ -374,7 +374,7 @@ class MovingBodies(Rows):
 
     @kernel
     def velocities(self, state: Vector) -> Vector:
-        """Give all velocities, which stand in a room of their own until the next ones."""
+        """Give a copy of all velocities, in a room that the next call overwrites."""
         out, n = self.velocity_room(), self.coordinates()
         for i in range(n):
             out[i] = state[n + i]
@@ -384,14 +384,14 @@ class MovingBodies(Rows):
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the accelerations of the ends of a base in a mode, seen from what it stands on."""
+        """Give the accelerations of the left and right end away from the body below."""
         slope, first = self.find_forces(mode, state, ground), BEFORE_HORIZONTAL * k
         body = self.state_of(k, state)
         return self.on_base(k).end_rises(body, slope[first + VERTICAL], slope[first + ROTATION])
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the side to which a body will rotate; a first guess will do at rest."""
+        """Give the sign of the rotation that will follow; at rest it is a guess."""
         if ground.x != 0.0:
             return -ground.x
         if self.body_count == 1:

@@ -1,4 +1,4 @@
-"""A block on pads on a cap on soil, either of which may slip: a chain of two, shown as such."""
+"""A block on pads on a cap on soil, with slip on either: a chain of two, named as a cap scene."""
 
 import math
 from collections.abc import Sequence
@@ -24,11 +24,11 @@ from rockframe.dynamics.stacked import COLUMNS, CONTACTS, LOWER, tell_of_soil
 from rockframe.dynamics.vibrations import ChainBody
 
 OF_CAP: Final = 4
-"""Columns of the cap's motion; forces that bear it are those of block and soil."""
+"""Columns of the cap's motion: its forces are in the columns of block and soil."""
 
 
 class OnCap(Chain):
-    """A block on a cap, whose events have names of their own. A mixin of systems."""
+    """A block on a cap, whose events of the soil have names of their own. A mixin of systems."""
 
     __slots__ = ()
 
@@ -43,13 +43,13 @@ class OnCap(Chain):
 
 
 class BothSlip(OnCap, SlippingChain):
-    """A block on a cap, both held by friction: a system."""
+    """A block on a cap, both of which may slip: a system."""
 
     __slots__ = ()
 
 
 class OneSlips(OnCap, SlippingRigidChain):
-    """A block on a cap, of which one base holds: a system."""
+    """A block on a cap, one of which cannot slip: a system."""
 
     __slots__ = ()
 
@@ -78,6 +78,6 @@ def block_on_cap(
 
 
 def _filled(columns: Sequence[Column], count: int, whose: str) -> tuple[Column, ...]:
-    """Give columns and, behind them, those that users do not see."""
+    """Give columns, filled up to a number by columns that users do not see."""
     unseen = (Column(f"unused_{i}_of_{whose}") for i in range(count - len(columns)))
     return (*columns, *unseen)

@@ -1,6 +1,6 @@
 """A chain in which some bodies stand on rigid bases, beside others on pads and beds.
 
-Corners part where their force falls through zero, and close by impacts, :eq:`eq-projection`.
+Corners lift off as their force falls to zero, and close by impacts, :eq:`eq-projection`.
 """
 
 from typing import Final
@@ -35,11 +35,11 @@ from rockframe.dynamics.protocol import (
 from rockframe.dynamics.switching import comes_back, end_speed, lift_by_slip, stay_if_small
 
 # memory, behind the held places and the body of the last event
-ADMISSIBLE: Final = 1  # ways to bear, or to slip, that there were after the last event
-TAKEN: Final = 2  # the set that did
-OTHER: Final = 3  # the next best, or -1
+ADMISSIBLE: Final = 1  # number of admissible sets, or of slips, in the last event
+TAKEN: Final = 2  # the set of corners that was taken
+OTHER: Final = 3  # the next best set, or -1
 KEPT: Final = ("admissible_sets", "set_taken", "other_set")
-"""Names of these."""
+"""Names of these three."""
 
 
 class RigidChain(RigidImpulses):
@@ -49,13 +49,13 @@ class RigidChain(RigidImpulses):
 
     @inlined
     def begin_event(self, memory: Vector) -> None:
-        """Forget what the last event left: unless told, one set of corners was admissible."""
+        """Reset the memory of the last event: by default one set of corners was admissible."""
         memory[HELD_PLACE + self.body_count] = 0.0
         memory[HELD_PLACE + self.body_count + ADMISSIBLE] = 1.0
 
     @inlined
     def behind_events(self) -> int:
-        """Give the place behind what is remembered of the last event."""
+        """Give the index in the memory behind the numbers of the last event."""
         return HELD_PLACE + self.body_count + 1 + len(KEPT)
 
     @inlined
@@ -70,7 +70,7 @@ class RigidChain(RigidImpulses):
     def switch_contacts(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Let corners part or land, or bodies change how they stand on bases that give way."""
+        """Let a corner lift off or land, or a body change its contact with a deformable base."""
         k, count = guard // GUARDS, self.body_count
         contact, which = self.part_mode(mode, k).contact, guard - k * GUARDS
         left = which < CORNER_GUARDS
@@ -94,13 +94,13 @@ class RigidChain(RigidImpulses):
                 new = self.catch_up(mode, guard, state, ground, memory)
             else:
                 new = self.switch_on_base(mode, guard, state, ground, memory)
-            # a change of a held point is the rule's, and no blow: contacts stay as they are
+            # the rule of restraint may change a held point without an impact: contacts stay
             if memory[LAST_EVENT] != IMPACT or not self.must_meet_anew(closed, new):
                 return new
             ends = self.landed(k, left, mode, new)
             new = self.meet_anew(k, ends, closed, new, state, ground, memory)
             stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
-            # the hold is a part of the blow then, of which bodies have taken back some
+            # the impulse of the hold is a part of the blow then, and has been scaled with it
             memory[IMPACT_LOSS] += memory[REPINNING_LOSS] - pinned
             memory[REPINNING_LOSS] = pinned
         struck = memory[LAST_EVENT] in (IMPACT, REST)
@@ -114,12 +114,12 @@ class RigidChain(RigidImpulses):
     def switch_corner(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Let a corner part from a rigid base, or land on it."""
+        """Let a corner lift off from a rigid base, or land on it; give the new mode."""
         part, standing = self.on_base(k), self.part_mode(mode, k)
         bore = part.base.is_held(standing.contact, left)
         self.write_contacts(mode, state, memory)
         before, landed = self.bearing(mode), 0
-        if not bore:  # one that has come too far is put on its base, and its body with it
+        if not bore:  # a corner past its base is moved back onto it, with its body
             landed = self.land(k, left, standing, state)
         closed = before | landed | self.resting_corners(mode, state)
         if bore:
@@ -140,11 +140,11 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def catch_up(self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let a base catch up with an end; give the new mode.
+        """Let a pad that rises behind an end touch it again; give the new mode.
 
-        Where a blow elsewhere has slowed down one that rises, its base presses it, but less and
-        less. If the re-pinning would let it go at once, and throw a corner down that is at its
-        rigid base, it is not held: it waits to be let go.
+        After an impact elsewhere has slowed the end down, its pad presses it, but with a falling
+        force. If holding the end would not last, and its impulse would throw a corner down that is
+        at its rigid base, the end is not held: it is marked as one that lifts off while pressed.
         """
         k, left = guard // GUARDS, guard % GUARDS < CORNER_GUARDS
         part, was = self.on_base(k), self.part_mode(mode, k)
@@ -169,10 +169,10 @@ class RigidChain(RigidImpulses):
     def part_where_pulled(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Let corners part that a pad's end would pull off if it slid as its pad catches up.
+        """Release corners that would be in tension if an end, reached by its pad, slid on it.
 
-        Those that bear answer the hold's impulse as if they could pull. Where without them it
-        presses the end on its pad, instead of lifting it, that is what happens.
+        Corners that bear react to the impulse of the hold as if they could pull. They are released
+        if without them this impulse presses the end on its pad instead of lifting it.
         """
         part, was, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         if not part.flies(was.contact):
@@ -200,7 +200,7 @@ class RigidChain(RigidImpulses):
     def hold_where_small(
         self, closed: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Hold corners that were closed in an impact, and that leave only to come back at once."""
+        """Hold corners that were closed in an impact and whose rebound is negligible."""
         for corner in range(2 * self.body_count):
             if closed >> corner & 1 != 0:
                 left = corner % 2 == 0
@@ -211,7 +211,7 @@ class RigidChain(RigidImpulses):
     def hold_if_small(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Hold a corner of a body that flies only to come back at once."""
+        """Hold a corner of a body in flight if its rebound is negligible; give the mode."""
         part, corner = self.on_base(k), (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
         if not part.flies(self.part_mode(mode, k).contact):
             return mode
@@ -230,10 +230,10 @@ class RigidChain(RigidImpulses):
         self, k: int, left: bool, mode: int, new: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip
-        """Hold a corner that has left since it would have to pull, but that falls where it is free.
+        """Hold a corner that, held, was in tension and that, released, falls: neither is possible.
 
-        Or where the other one of its body does, that has hardly risen. What holds bodies along
-        their bases makes all of it impossible.
+        Or of which the other corner of its body falls, practically at its base. Such a jam comes
+        from the constraints that hold bodies along their bases.
         """
         rises, falls = self.end_accelerations(k, new, state, ground), False
         for side in range(2):
@@ -242,7 +242,7 @@ class RigidChain(RigidImpulses):
                 falls |= fall > ROUNDING * self.number(k, at.GRAVITY)
         if not falls:
             return new
-        self.forget_slips(mode, False)  # what slips goes on
+        self.forget_slips(mode, False)  # bodies that slip go on
         corners, pulled = self.bearing(mode), self.pulled(new)
         held = self.with_bearing(new, corners, pulled | corners & ~self.bearing(new))
         self.write_contacts(new, state, memory)
@@ -256,7 +256,7 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def let_stand(self, corners: int, pulled: int, mode: int, state: Vector, memory: Vector) -> int:
-        """Let bodies stand on corners, by impulses that may pull; give the new mode."""
+        """Let bodies stand on corners, by impulses that may be tension; give the new mode."""
         self.write_contacts(mode, state, memory)
         flying = self.with_bearing(mode, 0, 0)
         had = self.energies(flying, state).kinetic  # places the bodies, too
@@ -274,10 +274,10 @@ class RigidChain(RigidImpulses):
         self, k: int, ends: int, closed: int, mode: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip
-        """Take back what rigid bases did in an event beside them, and let them press only.
+        """Undo impulses of rigid bases in an event elsewhere; find new ones, in compression only.
 
-        At corners that were closed. And what of the blow of a body's ends that have landed would
-        throw these up then.
+        They act at the corners `closed`. The blow at the ends of body `k` that have landed is
+        scaled, so that it does not throw them up.
         """
         free = self.let_all_go(mode, state, memory)
         self.write_contacts(free, state, memory)
@@ -296,9 +296,9 @@ class RigidChain(RigidImpulses):
         self, mode: int, closed: int, before: int, leaving: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip
-        """Let those of the closed corners bear that can; give the new mode.
+        """Find which of the closed corners bear, and let these bear; give the new mode.
 
-        After an impact, unless a corner is leaving.
+        After an impact if `leaving` is 0, else under new forces as that corner lifts off.
         """
         free = self.let_all_go(mode, state, memory) if leaving == 0 else mode
         flying, kept = self.with_bearing(free, 0, 0), HELD_PLACE + self.body_count
@@ -327,7 +327,7 @@ class RigidChain(RigidImpulses):
 
     @inlined
     def rest_where_small(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let bodies come to rest, of which one at rest may let another come to rest."""
+        """Let bodies come to rest, repeatedly: one at rest may let another come to rest."""
         new = mode
         for _ in range(self.body_count):
             new = self.rest_if_small(new, state, ground, memory)
@@ -335,7 +335,7 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def rest_if_small(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let bodies whose rebound is below all that counts come to rest, together or alone."""
+        """Let bodies whose rebound is negligible come to rest, together or one by one."""
         n, corners, small, count = self.coordinates(), self.bearing(mode), 0, 0
         slope = self.find_forces(mode, state, ground)
         for k in range(self.body_count):
@@ -358,7 +358,7 @@ class RigidChain(RigidImpulses):
 
     @kernel
     def rest(self, corners: int, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Let bodies stand on both corners, if these press then; else give the mode as it is."""
+        """Let bodies stand on both corners if these are in compression; else give `mode`."""
         before, lost = self.velocities(state), memory[IMPACT_LOSS]
         all_of_them = self.bearing(mode) | corners
         resting = self.let_stand(all_of_them, 0, mode, state, memory)

@@ -1,7 +1,7 @@
-"""A chain in which bodies slip on some of their bases, and others hold.
+"""A chain in which some bases have friction, and on others no body can slip.
 
-What bears and what slips is found anew where friction has come to its bound, a slip to its end, or
-a contact changes.
+Which corners bear and which bodies slip is found anew as friction comes to its bound, as a slip
+ends, and as a contact changes.
 """
 
 import math
@@ -24,7 +24,7 @@ from rockframe.dynamics.protocol import HELD_PLACE, IMPACT_LOSS, LAST_EVENT, Gro
 from rockframe.dynamics.switching import stay_if_small
 
 FRICTION_ALONE: Final = -1
-"""In place of the corner that leaves: what friction does has changed."""
+"""In place of the corner that leaves: only friction has changed."""
 
 
 class SlippingRigidChain(TriedSlips):
@@ -68,7 +68,7 @@ class SlippingRigidChain(TriedSlips):
             new = self.rearrange(mode, state, ground, memory)
             memory[LAST_EVENT] = self.kind_of(k, mode, new)
             memory[HELD_PLACE + self.body_count] = k + 1.0
-            if memory[LAST_EVENT] == STICK:  # bounces in which a body slips end as it is held
+            if memory[LAST_EVENT] == STICK:  # once a body is held bounces may end
                 new = self.rest_where_small(new, state, ground, memory)
                 new = self.hold_as_far(new, state, ground, memory)
         elif self.is_slippery(k):
@@ -78,7 +78,7 @@ class SlippingRigidChain(TriedSlips):
             if memory[LAST_EVENT] in (IMPACT, REST):
                 new = self.stop_creep(mode, new, state, ground, memory)
             new = self.hold_as_far(new, state, ground, memory)
-        else:  # a change of what is held may be a blow
+        else:  # a change of the held point may be an impact
             new = self.let_all_go(mode, state, memory)
             new = self.switch_contacts(new, guard, state, ground, memory)
             new = self.go_on(new, state, memory)
@@ -90,9 +90,9 @@ class SlippingRigidChain(TriedSlips):
 
     @kernel
     def let_wait(self, mode: int, state: Vector, ground: Ground) -> int:
-        """Let ends wait that have just left, and that a change of forces would send back at once.
+        """Mark ends as lifted off while still pressed, if the new forces would return them at once.
 
-        As they leave, the held point changes, and with it slips and the corners that bear.
+        As an end lifts off the held point changes, and with it the slips and the corners that bear.
         """
         for k in range(self.body_count):
             part, now = self.on_base(k), self.part_mode(mode, k)
@@ -112,9 +112,9 @@ class SlippingRigidChain(TriedSlips):
     def stop_creep(
         self, before: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Hold bodies again that an impact moves but so far along bases that give way.
+        """Hold bodies again whose slip on deformable bases after an impact is negligible.
 
-        Bounces may end with it.
+        Then bounces may end, too.
         """
         new = mode
         for k in range(self.body_count):
@@ -126,7 +126,7 @@ class SlippingRigidChain(TriedSlips):
     def stop_short_slip(
         self, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Hold a body that would slip but so far along its base that gives way; add its way."""
+        """Hold a body whose slip on its deformable base is negligible; add that slip."""
         was_at = state[self.horizontal_of(k)]
         new = self.end_short_slip(k, mode, state, ground, memory)
         if new != mode:
@@ -138,7 +138,7 @@ class SlippingRigidChain(TriedSlips):
     def switch_beside(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out a switch of a body on a base that gives way, and let it slip or be held."""
+        """Carry out a contact switch of a body that may slip on a deformable base."""
         k = guard // GUARDS
         which, closed = guard - k * GUARDS, self.closed_corners(mode, state)
         self.scale_impulses(0.0)
@@ -167,7 +167,7 @@ class SlippingRigidChain(TriedSlips):
 
     @kernel
     def begin_slips(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Remember how far all bodies have slipped, and which of them slip."""
+        """Store the slips of all bodies before an event, and note which of them slip."""
         self.keep_peaks(mode, state, memory)
         self.note_slips(mode)
         for k in range(self.body_count):
@@ -176,21 +176,21 @@ class SlippingRigidChain(TriedSlips):
 
     @inlined
     def end_slips(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Let slips go on from what they were, of points that may be others."""
+        """Continue the slips after an event from their stored values, maybe of new points."""
         for k in range(self.body_count):
             memory[self.kept(k) + OFFSET] -= self.point_of(k, mode, state, memory)
         self.keep_peaks(mode, state, memory)
 
     @kernel
     def hold_as_far(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode after an event in which friction holds what it can, and opposes slip."""
+        """Give the mode in which friction can hold the held bodies, and opposes other slips."""
         new, event = mode, memory[LAST_EVENT]
         for _ in range(self.body_count):
             self.find_forces(new, state, ground)
             amiss = False
             for k in range(self.body_count):
                 amiss |= self.is_amiss(k, new, state)
-                self.places()[k * PLACES + at.STARTS] = 0.0  # other corners may let it be held
+                self.places()[k * PLACES + at.STARTS] = 0.0  # with other corners it may be held
             if not amiss:
                 break
             new = self.rearrange(new, state, ground, memory)
@@ -217,7 +217,7 @@ class SlippingRigidChain(TriedSlips):
 
     @kernel
     def let_slip_if_amiss(self, mode: int, state: Vector, ground: Ground) -> int:
-        """Give the mode in which what friction cannot hold slips."""
+        """Give the mode in which bodies slip that friction cannot hold."""
         room = self.places()
         for _ in range(self.body_count):
             self.find_forces(mode, state, ground)
@@ -230,9 +230,9 @@ class SlippingRigidChain(TriedSlips):
 
     @kernel
     def rearrange(self, mode: int, state: Vector, ground: Ground, memory: Vector) -> int:
-        """Give the mode in which the forces have what bears and what slips as it is then."""
+        """Give the mode whose corners and slips agree with the forces, found by trial of sets."""
         kept, before = HELD_PLACE + self.body_count, self.bearing(mode)
-        self.write_contacts(mode, state, memory)  # of those that were held and may slip
+        self.write_contacts(mode, state, memory)  # of bodies that were held and may slip
         self.note_slips(mode)
         flying, pulled = self.with_bearing(mode, 0, 0), self.pulled(mode)
         closed, count, free = before | self.resting_corners(mode, state), 0, mode
@@ -266,16 +266,16 @@ class SlippingRigidChain(TriedSlips):
         new = self.with_bearing(free, found.taken, pulled | found.held)
         self.hold_contacts(new, state, memory)
         new = self.as_tried(new, state, memory)
-        # where impulses of several sets would do, motion is not unique either
+        # where several sets of impulses are admissible, motion is not unique either
         memory[kept + ADMISSIBLE] = max(ways, count if found.admissible > 0 else 0)
         memory[kept + TAKEN], memory[kept + OTHER] = found.taken, found.other
         return new
 
     @kernel
     def jam(self, flying: int, closed: int, before: int, state: Vector, memory: Vector) -> Found:
-        """Stop slips by impulses, since no forces are a motion, :eq:`eq-stack-jam`.
+        """Stop slips by impulses, as no finite forces solve the equations, :eq:`eq-stack-jam`.
 
-        Gives what bears then; nothing has changed where no set does.
+        Gives the corners that bear then. Where no set is admissible nothing is changed.
         """
         had = self.energies(flying, state).kinetic  # places the bodies, too
         load_bodies(self, 0.0, 0.0, self.places())

@@ -1,8 +1,8 @@
-"""What happens to a body that friction holds on a base that gives way, :eq:`eq-slip-on-base`.
+"""Events of a body that friction holds on a deformable base, :eq:`eq-slip-on-base`.
 
-Of each base the point that the rule of restraint names is held as long as friction can, and slips
-against it otherwise. What a base presses with follows from where its body is, so that no force
-waits for another, and friction holds nothing in an impact beside it.
+Friction holds the point of each base that the rule of restraint names, up to its bound, and else
+opposes the slip of that point. The normal force of a deformable base follows from the state, not
+from the friction. It is finite, so that this friction has no impulse in an impact elsewhere.
 """
 
 import math
@@ -25,7 +25,7 @@ from rockframe.dynamics.switching import end_speed, next_pivot
 
 
 class SlipperyBases(SlippingBodies):
-    """Bodies upon one another of which some slip on bases that give way. A mixin of systems."""
+    """Bodies upon one another of which some slip on deformable bases. A mixin of systems."""
 
     __slots__ = ()
 
@@ -35,7 +35,7 @@ class SlipperyBases(SlippingBodies):
     ) -> int:
         """Carry out the switch of an end's contact, or of the held point of a body.
 
-        Unless nothing happens, in the mode that is given the body is let go.
+        In the mode that is given the body is released, unless nothing happens.
         """
         if which < 2 * CORNER_GUARDS:
             left = which < CORNER_GUARDS
@@ -51,7 +51,7 @@ class SlipperyBases(SlippingBodies):
     def switch_end(
         self, k: int, left: bool, which: int, mode: int, state: Vector, memory: Vector
     ) -> int:
-        """Carry out the switch of an end's contact; give the mode in which the body is let go."""
+        """Carry out the switch of an end's contact; give the mode, with the body released."""
         part, was = self.on_base(k), self.part_mode(mode, k)
         line = part.body.base_line_at(self.state_of(k, state))
         found = part.base.switch(was.contact, left, which, line, ())
@@ -75,7 +75,7 @@ class SlipperyBases(SlippingBodies):
     ) -> int:
         """Reduce the speed of the end that lands, or of both, with friction in the impact.
 
-        Other bases that give way press with forces. Those with friction hold nothing in it.
+        Other deformable bases press with forces. The friction of these has no impulse.
         """
         mode = self.let_all_go(mode, state, memory)
         for j in range(self.body_count):
@@ -92,7 +92,7 @@ class SlipperyBases(SlippingBodies):
 
     @kernel
     def strike_end(self, k: int, left: bool, mode: int, state: Vector) -> None:
-        """Reduce the speed of an end to eps times what it was, :eq:`eq-slide-impact`."""
+        """Reduce the speed of an end by the factor eps in an impact, :eq:`eq-slide-impact`."""
         part = self.on_base(k)
         speed, _ = end_speed(part, left, self.state_of(k, state))
         if speed >= 0.0:
@@ -115,10 +115,10 @@ class SlipperyBases(SlippingBodies):
 
     @kernel
     def strike_ends(self, k: int, mode: int, state: Vector) -> int:
-        """Reduce the speeds of both ends at once to eps times what they were, each its own.
+        """Reduce the speeds of both ends in one impact, each by its own factor eps; gives 0.
 
-        Gives the end that strikes alone, as it does where friction lifts the other: the velocities
-        stay as they are then.
+        Where friction would lift one of them the other strikes alone: gives this one, as LEFT_ONLY
+        or RIGHT_ONLY, and leaves the velocities as they are.
         """
         line, base = (
             self.on_base(k).body.base_line_at(self.state_of(k, state)),
@@ -137,7 +137,7 @@ class SlipperyBases(SlippingBodies):
         gain_left = -(1.0 - base.rebound(True)) * min(line.left_speed, 0.0)
         gain_right = -(1.0 - base.rebound(False)) * min(line.right_speed, 0.0)
         determinant = left_left * right_right - mixed * mixed
-        # without friction, and by how much less of it along the base
+        # impulses without friction, and their reduction by a unit impulse along the base
         left = (right_right * gain_left - mixed * gain_right) / determinant
         right = (left_left * gain_right - mixed * gain_left) / determinant
         left_less = (right_right * left_along - mixed * right_along) / determinant
@@ -145,7 +145,7 @@ class SlipperyBases(SlippingBodies):
         press, less = left + right, left_less + right_less
         if press <= 0.0:
             return 0
-        # as both grow in one proportion, they are one impulse, of the size of their sum
+        # both grow in one proportion, and count as one impulse, their sum
         slides_with = (slides_left * left + slides_right * right) / press
         slides += slides_with * less - slides_left * left_less - slides_right * right_less
         along, _ = coulomb_impulse(
@@ -165,7 +165,7 @@ class SlipperyBases(SlippingBodies):
         self, k: int, press: float, moment: float, along: float, slip: float, mode: int,
         state: Vector,
     ) -> None:  # fmt: skip
-        """Change the velocities by the impulses of a base, which may have ended the slip."""
+        """Change the velocities by the impulses of a base; a slip that they end becomes zero."""
         self.answers(k, press, moment, along, mode, state)
         self.take_answer(state)
         self.note_blow(k, press, moment, along)
@@ -175,16 +175,16 @@ class SlipperyBases(SlippingBodies):
 
     @inlined
     def turned(self, k: int) -> float:
-        """Give the change of a body's angular velocity in the last answer."""
+        """Give the change of a body's angular velocity in the last response."""
         return float(self.slopes()[BEFORE_HORIZONTAL * k + ROTATION])
 
     @kernel
     def answers(
         self, k: int, press: float, moment: float, along: float, mode: int, state: Vector
     ) -> tuple[float, float]:
-        """Give what impulses of a base change of its body's rise and of the slip.
+        """Give the changes of its body's rate of rise and of slip by impulses of a base.
 
-        The changes of all velocities stand in the room for slopes until the next ones.
+        The changes of all velocities are in the room for slopes until the next solution.
         """
         room, out = self.places(), self.slopes()
         place_bodies(self, mode, state, room)
@@ -200,7 +200,7 @@ class SlipperyBases(SlippingBodies):
     def turns_back(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> bool:
-        """Whether an end that has left comes back at once, or one that has landed leaves."""
+        """Whether an end that has lifted off returns immediately, or one that has landed leaves."""
         event = memory[LAST_EVENT]
         speed, noise = end_speed(self.on_base(k), left, self.state_of(k, state))
         if event not in (SEPARATION, IMPACT) or abs(speed) > noise:
@@ -213,15 +213,15 @@ class SlipperyBases(SlippingBodies):
     def end_short_slip(
         self, k: int, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Hold a body that would slip but so far along its base that gives way, if it slows.
+        """Hold a body whose decelerating slip on its deformable base is negligible.
 
-        A slip below all that counts ends at once.
+        Its remaining way is added to its place, and its velocity is stopped.
         """
         body = self.on_base(k).body
         if not self.part_mode(mode, k).slides:
             return mode
         rate, noise = self.slip_rate(k, mode, state)
-        # a blow may have turned it round since
+        # an impact may have reversed the slip since
         slips = self.slipping(mode, k, rate) if abs(rate) > noise else mode
         slope = self.find_forces(slips, state, ground)
         found = self.guards_of_slip(k, slips, state, slope, 0.0, 1.0)
@@ -229,8 +229,8 @@ class SlipperyBases(SlippingBodies):
         if rate * rate >= 2.0 * slows * REST_AMPLITUDE * body.size():
             return mode
         had = self.energies_of_bodies(slips, state).kinetic
-        state[self.horizontal_of(k)] += 0.5 * rate * abs(rate) / slows  # as far as it comes
-        # an impulse of its base ends it: what slips elsewhere is not rubbed less by that
+        state[self.horizontal_of(k)] += 0.5 * rate * abs(rate) / slows  # the way until it stops
+        # an impulse of its base stops it, without friction of slips elsewhere
         _, slides = self.answers(k, 0.0, 0.0, 1.0, slips, state)
         self.answers(k, 0.0, 0.0, -rate / slides, slips, state)
         self.add_slopes(state)
@@ -242,9 +242,9 @@ class SlipperyBases(SlippingBodies):
     def wait(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Let an end that the change of the held point would send back at once wait.
+        """Give the mode after an end has lifted off, or is pressed again, and the held point moved.
 
-        One that has left and would be pressed again, and one that presses and would let go.
+        If that change would reverse its switch at once the end gets the contact between the two.
         """
         part, now, event = self.on_base(k), self.part_mode(mode, k), memory[LAST_EVENT]
         if event not in (SEPARATION, REENGAGEMENT) or part.flies(now.contact):

@@ -1,7 +1,7 @@
-"""How far and how fast the bodies of a chain slip on their bases, and what is remembered of it.
+"""Slip of the bodies of a chain on their bases: its rate, guards, memory and columns.
 
-Of each base the point that the rule of restraint names, or the corner that bears, slips or is held.
-Which of the two stands in the mode, with the sense of the slip.
+The point of a base that the rule of restraint names, or the corner that bears, slips or is held.
+The mode says which, and the sense of the slip.
 """
 
 import math
@@ -22,23 +22,24 @@ from rockframe.dynamics.on_base import Mode, SlidingGuards
 from rockframe.dynamics.protocol import HELD_PLACE, Ending, Slope
 from rockframe.dynamics.sliding import NOISE
 
+# coefficients of friction [1]
 STATIC: Final = 0
 KINETIC: Final = 1
 IMPULSIVE: Final = 2  # in impacts
 FRICTIONS: Final = 3
-"""Coefficients of each body behind the lists of a chain, then its slip and the rate of that."""
-SLIP_COLUMNS: Final = 2
+"""Coefficients of each body, behind the array of the chain; the room for columns follows."""
+SLIP_COLUMNS: Final = 2  # slip and its rate
 
-OFFSET: Final = 0  # of the slip from the place of the point that is held
-PEAK_LEFT: Final = 1
+OFFSET: Final = 0  # slip less the place of the held point [m]
+PEAK_LEFT: Final = 1  # largest slip so far [m]
 PEAK_RIGHT: Final = 2
 KEPT: Final = 3
-"""What is remembered of the slip of each body, behind what a chain remembers."""
+"""Numbers of the slip of each body in the memory, behind those of the chain."""
 
 ROUNDING: Final = 1e-12
-"""Accelerations over gravity that are rounding."""
+"""Rounding noise of accelerations over gravity [1]."""
 TRIES: Final = 6
-"""Changes of what slips, of each body, after which it is tried otherwise, or given up."""
+"""Changes of the slips, for each body, after which a search changes its method or stops."""
 
 
 class SlippingBodies(Chain):
@@ -59,7 +60,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def behind_friction(self) -> int:
-        """Give the place behind all these rooms."""
+        """Give the index behind the coefficients of friction and the columns."""
         count = self.body_count
         return self.behind_chain() + (FRICTIONS + COLUMNS + SLIP_COLUMNS) * count
 
@@ -83,7 +84,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def slip_rate(self, k: int, mode: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity at which the point that would be held slips, and its noise."""
+        """Give the velocity of slip of the point named by the mode, and its rounding noise."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin = part.body.pin(self.part_mode(mode, k).pivot)
         turning = part.body.reach(pin, part.body.attitude(body.rotation)).rate
@@ -93,7 +94,7 @@ class SlippingBodies(Chain):
 
     @inlined
     def point_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the place of the point that is held, or would be."""
+        """Give the place along the base of the point that is held, or slips."""
         part, body = self.on_base(k), self.state_of(k, state)
         pin, attitude = (
             part.body.pin(self.part_mode(mode, k).pivot),
@@ -103,17 +104,17 @@ class SlippingBodies(Chain):
 
     @inlined
     def kept(self, k: int) -> int:
-        """Give where the memory of a body's slip begins."""
+        """Give the index in the memory of the first number of a body's slip."""
         return self.behind_events() + KEPT * k
 
     @inlined
     def link_place(self) -> int:
-        """Give the place of the last event's link in the memory of a chain that has links."""
+        """Give the index in the memory of the last event's link, in a chain with links."""
         return self.kept(self.body_count)
 
     @inlined
     def keep_peaks(self, mode: int, state: Vector, memory: Vector) -> None:
-        """Remember how far bodies that bear have slipped, if that is farther than before."""
+        """Update the largest slips of all bodies in contact."""
         for k in range(self.body_count):
             if self.on_base(k).flies(self.part_mode(mode, k).contact):
                 continue
@@ -123,12 +124,12 @@ class SlippingBodies(Chain):
 
     @kernel
     def slip_of(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give how far a body has slipped on its base."""
+        """Give the slip of a body on its base [m]."""
         return float(memory[self.kept(k) + OFFSET]) + self.point_of(k, mode, state, memory)
 
     @inlined
     def kind_of(self, k: int, old: int, new: int) -> int:
-        """Give the kind of event between slipping, in either sense, and holding."""
+        """Give the kind of event by which a body starts, stops or reverses its slip."""
         slipped, slips = self.part_mode(old, k).slides, self.part_mode(new, k).slides
         if not slips:
             return events.STICK if slipped else SILENT
@@ -138,20 +139,20 @@ class SlippingBodies(Chain):
 
     @inlined
     def is_slippery(self, k: int) -> bool:
-        """Whether a body may slip on a base that gives way."""
+        """Whether a body may slip on a deformable base."""
         return not self.is_rigid(k) and self.friction_of(k, STATIC) < math.inf
 
     @inlined
     def load_by_friction(self, k: int, mode: int, room: Vector) -> None:
-        """Load a body that slips on a base that gives way by its friction."""
+        """Load a body that slips on a deformable base by its friction."""
         if self.is_slippery(k) and self.part_mode(mode, k).slides:
             self.drag(k, self.sense(mode, k), room)
 
     @kernel
     def drag(self, k: int, sense: float, room: Vector) -> None:
-        """Load a body by the friction of a slip in a sense, instead of what is on it.
+        """Replace the friction among a body's loads by that of a slip in a sense.
 
-        What presses is known, that of springs and dashpots: a load, :eq:`eq-mixed-slips`.
+        The normal force of springs and dashpots is known, so is friction, :eq:`eq-mixed-slips`.
         """
         i = k * PLACES
         drag = -sense * self.friction_of(k, KINETIC) * max(room[i + at.PRESS], 0.0)
@@ -162,7 +163,7 @@ class SlippingBodies(Chain):
     def guards_of_slip(
         self, k: int, mode: int, state: Vector, slope: Slope, press: float, size: float
     ) -> SlidingGuards:
-        """Give the guards of the friction that holds a body, over a force, and of its slip."""
+        """Give the guards of a body's friction, over the force `size`, and of its slip."""
         standing, body = self.part_mode(mode, k), self.state_of(k, state)
         if not standing.slides:
             hold = self.friction_of(k, STATIC) * max(press, 0.0)
@@ -174,16 +175,16 @@ class SlippingBodies(Chain):
         change = slope[self.horizontal_of(k)] - reach.bend * rate * rate
         change -= reach.rate * slope[BEFORE_HORIZONTAL * k + ROTATION]
         sway, rotating = body.horizontal_velocity, reach.rate * rate
-        # a slip that starts, or is hardly one, is not stopped by rounding
+        # rounding must not stop a slip that starts or is very slow
         slip = scale * (sense * (sway - rotating) + NOISE * (abs(sway) + abs(rotating)))
         least = self.rounding(k, self.friction_of(k, KINETIC)) / self.number(k, at.MASS)
         return SlidingGuards(1.0, slip, scale * (sense * change + least))
 
     @inlined
     def rounding(self, k: int, friction: float) -> float:
-        """Give the force that is rounding beside the friction of what a base presses with.
+        """Give the rounding noise of the friction force of a base.
 
-        That is what forces of the size of the weights on it leave, or that force itself.
+        It comes from forces of the size of the weight above, and from the friction force itself.
         """
         mass = 0.0
         for j in range(k + 1):
@@ -196,9 +197,9 @@ class SlippingBodies(Chain):
 
     @kernel
     def go_on(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Give the mode in which bodies that are let go on bases that give way slip, or are held.
+        """Give the mode in which released bodies on deformable bases slip, or are held again.
 
-        Held are those that do not slip, as far as friction can.
+        Those without velocity of slip are held; the bound of friction is not checked here.
         """
         for k in range(self.body_count):
             if self.is_slippery(k) and self.part_mode(mode, k).slides:
@@ -222,9 +223,9 @@ class SlippingBodies(Chain):
 
     @kernel
     def let_all_go(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Let bodies move along bases that give way if friction holds them: its force is finite.
+        """Release bodies that friction holds on deformable bases; give the new mode.
 
-        So it holds nothing in an impact beside it.
+        Their friction is finite, and has no impulse in an impact elsewhere.
         """
         for k in range(self.body_count):
             if self.is_slippery(k):
@@ -233,7 +234,7 @@ class SlippingBodies(Chain):
 
     @kernel
     def let_go(self, k: int, mode: int, state: Vector, memory: Vector) -> int:
-        """Let a body that is held move along its base; give the mode in which it may."""
+        """Release a held body along its base; give the mode in which it may move."""
         part, was = self.on_base(k), self.part_mode(mode, k)
         if part.is_free(was):
             return mode
@@ -256,7 +257,7 @@ class SlippingBodies(Chain):
         out[j + 1] = self.slip_rate(k, mode, state)[0] if moves else 0.0
 
     def slips(self, k: int, ending: Ending) -> tuple[float, float, float]:
-        """Give the slip of a body at the end of a run, and the most to the left and right."""
+        """Give slip at the end of a run, and largest slips to the left and right [m]."""
         mode, state, memory = ending.mode, ending.state, ending.memory.copy()
         self.keep_peaks(mode, state, memory)
         kept = memory[self.kept(k) :]
@@ -265,6 +266,6 @@ class SlippingBodies(Chain):
 
 
 def coefficients(frictions: Sequence[tuple[float, float, float]]) -> Vector:
-    """Give the coefficients of friction of all bases, and room for what is shown of their slips."""
+    """Give the coefficients of friction of all bases, then the room for columns."""
     room = (COLUMNS + SLIP_COLUMNS) * len(frictions)
     return np.concatenate([np.ravel(frictions), np.zeros(room)])

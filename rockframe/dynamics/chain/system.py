@@ -1,4 +1,4 @@
-"""A chain of bodies as a system: what the integrator and the switches of contact ask of it."""
+"""A chain of bodies as a system: its guards, its switches of contact, and its columns."""
 
 from rockframe.compiled import Vector, inlined, kernel, put
 from rockframe.dynamics.base import Guards, Variables
@@ -26,7 +26,7 @@ class Chain(MovingBodies):
 
     @kernel
     def modes(self) -> int:
-        """Give the number of modes, of which some have no meaning."""
+        """Give the number of modes; some of these numbers do not occur."""
         return self.modes_of_bodies()
 
     @kernel
@@ -36,7 +36,7 @@ class Chain(MovingBodies):
 
     @kernel
     def some_end_slides(self, mode: int) -> bool:
-        """Whether an end of some body slides."""
+        """Whether an end of some body is in sliding contact."""
         found = False
         for k in range(self.body_count):
             found |= self.part_mode(mode, k).slides and not self.is_slippery(k)
@@ -67,11 +67,11 @@ class Chain(MovingBodies):
     def guards_on_base(
         self, k: int, slides: bool, mode: int, state: Vector, slope: Slope, ground: Ground
     ) -> Guards:
-        """Give the guards of a body on a base that gives way, and their rates."""
+        """Give the guards of a body on a deformable base, and their rates."""
         part, standing, body = self.on_base(k), self.part_mode(mode, k), self.state_of(k, state)
         first, sliding = BEFORE_HORIZONTAL * k, IDLE
         vertical, angular = slope[first + VERTICAL], slope[first + ROTATION]
-        if self.is_slippery(k):  # written before
+        if self.is_slippery(k):  # these guards have been written before
             values, changes = self.guard_room(0), self.guard_room(1)
             i = GUARDS * k + 2 * CORNER_GUARDS
             sliding = SlidingGuards(values[i + HOLD], values[i + SLIP], changes[i + SLIP])
@@ -98,24 +98,24 @@ class Chain(MovingBodies):
 
     @inlined
     def begin_event(self, memory: Vector) -> None:
-        """Forget what the last event left: whose it was."""
+        """Reset the memory of the last event: the number of its body."""
         memory[HELD_PLACE + self.body_count] = 0.0
 
     @inlined
     def behind_events(self) -> int:
-        """Give the place behind what is remembered of the last event."""
+        """Give the index in the memory behind the numbers of the last event."""
         return HELD_PLACE + self.body_count + 1
 
     @inlined
     def link_place(self) -> int:
-        """Give the place of the last event's link in the memory of a chain that has links."""
+        """Give the index in the memory of the last event's link, in a chain with links."""
         return self.behind_events()
 
     @inlined
     def switch_on_base(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out the switch of a body on a base that gives way."""
+        """Carry out the switch of a body on a deformable base."""
         k = guard // GUARDS
         new = switch_part(self, self.on_base(k), k, guard - k * GUARDS, mode, state, ground, memory)
         for above in range(k):
@@ -129,9 +129,9 @@ class Chain(MovingBodies):
 
     @kernel
     def waits_on(self, k: int, mode: int, state: Vector, ground: Ground) -> bool:
-        """Whether an end that has left goes on waiting for its pad beside an event elsewhere.
+        """Whether an end that lifted off while pressed keeps this contact after an event elsewhere.
 
-        Unless that is an impact, it does as long as its pad presses less and less.
+        It does as long as the force of its pad decreases, unless the event is an impact.
         """
         contact = self.part_mode(mode, k).contact
         for side in range(2):
@@ -141,14 +141,14 @@ class Chain(MovingBodies):
 
     @kernel
     def presses_less(self, k: int, left: bool, mode: int, state: Vector, ground: Ground) -> bool:
-        """Whether the force of a base that gives way on an end does not rise."""
+        """Whether the force of a deformable base on an end does not rise."""
         part, rises = self.on_base(k), self.end_accelerations(k, mode, state, ground)
         line = part.body.base_line_at(self.state_of(k, state))
         return not part.base.will_press(left, accelerated(line, rises[0], rises[1]), ())
 
     @kernel
     def disturb(self, k: int, mode: int, state: Vector) -> int:
-        """Give the mode after an event of another body, which changed the speeds of this one."""
+        """Give the mode after an event of another body has changed the speeds of this one."""
         if self.is_rigid(k):
             return mode
         part, was = self.on_base(k), self.part_mode(mode, k)
@@ -200,7 +200,7 @@ class Chain(MovingBodies):
 
     @inlined
     def observe_slip(self, k: int, mode: int, state: Vector, memory: Vector, out: Vector) -> None:
-        """Write how far a body has slipped on its base: none does here."""
+        """Write slip and rate of slip of a body on its base: none slips here."""
 
     @inlined
     def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:
@@ -208,12 +208,12 @@ class Chain(MovingBodies):
 
     @inlined
     def observed_base(self, k: int, standing: Mode, body: BodyState) -> Variables:
-        """Give what users see of a base."""
+        """Give the base's columns in the results."""
         return self.observed_on(k, standing, body)
 
     @kernel
     def observed_on(self, k: int, standing: Mode, body: BodyState) -> Variables:
-        """Give what users see of a base that gives way."""
+        """Give the columns of a deformable base in the results."""
         part = self.on_base(k)
         if self.is_slippery(k):
             return part.base.observed(standing.contact, part.body.base_line_at(body), ())

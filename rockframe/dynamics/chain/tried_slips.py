@@ -1,10 +1,10 @@
 """Which corners on rigid bases bear and which bodies slip, found together.
 
-Whether a base has friction, and how it presses, are matters of its row. A body is held along its
-rigid base as long as friction can, :eq:`eq-stack-friction`, and slips otherwise: then the force at
-each corner that bears has friction in it, :eq:`eq-stack-slip`. On a base that gives way what
-presses is known, :eq:`eq-mixed-slips`. So it is under new forces, :eq:`eq-mixed-conditions`, and
-after an impact, :eq:`eq-stack-impact`.
+The row of a body says whether its base is rigid or deformable, and has friction. On a rigid base
+friction holds the body up to its bound, :eq:`eq-stack-friction`; beyond, the force at each corner
+that bears includes kinetic friction, :eq:`eq-stack-slip`. On a deformable base the normal force is
+known, :eq:`eq-mixed-slips`. Conditions are :eq:`eq-mixed-conditions` under new forces,
+:eq:`eq-stack-impact` after an impact.
 """
 
 import math
@@ -42,36 +42,36 @@ NOWHERE: Final = -1
 SLICK: Final = 0.5
 """In place of a sense of 1, of a slip on which friction does not act."""
 MOST_WAYS: Final = 81
-"""Ways to slip that are tried of a set of corners: each base held, or slipping to a side."""
+"""Most combinations of slips tried for a set of corners; each base is held or slips to a side."""
 
 
 class TriedSlips(SlipperyBases, RigidChain):
-    """Bodies upon one another of which some slip, as corners are tried. A mixin of systems."""
+    """Trials of corners on rigid bases with bodies that may slip. A mixin of systems."""
 
     __slots__ = ()
 
     @inlined
     def slip_sense(self, k: int) -> float:
-        """Give the sense in which a body slips on its base as corners are tried: 0, held."""
+        """Give the sense of slip of a body on its base in the trial at hand: 0, held."""
         return float(self.places()[k * PLACES + at.SLIPS])
 
     @inlined
     def sense_in(self, mode: int, k: int) -> float:
-        """Give the sense in which a body slips on its base in a mode; 0 if it does not."""
+        """Give the sense of slip of a body on its base in a mode; 0 if it does not slip."""
         if (self.is_rigid(k) or self.is_slippery(k)) and self.part_mode(mode, k).slides:
             return self.sense(mode, k)
         return 0.0
 
     @kernel
     def note_slips(self, mode: int) -> None:
-        """Note which bodies slip in a mode."""
+        """Write the senses of slips of a mode as those of the trial at hand."""
         room = self.places()
         for k in range(self.body_count):
             room[k * PLACES + at.SLIPS] = self.sense_in(mode, k)
 
     @inlined
     def forget_slips(self, mode: int, impulsive: bool) -> None:
-        """Go back to what slipped in a mode; nothing does where all is held in an impact."""
+        """Restore the slips of a mode for the next trial; none in an impact, where all are held."""
         self.note_slips(mode)
         if impulsive:
             for k in range(self.body_count):
@@ -79,7 +79,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def standing_on(self, k: int, bears: int, mode: int) -> int:
-        """Give the mode in which a body slips on its base, if it does."""
+        """Give the mode with the slip, on a rigid base, that the last trial gave a body."""
         sense = self.slip_sense(k)
         if bears != 0 and sense != 0.0:
             return self.slipping(mode, k, sense)
@@ -88,7 +88,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def as_tried(self, mode: int, state: Vector, memory: Vector) -> int:
-        """Give the mode in which bodies slip on bases that give way as was tried."""
+        """Give the mode with the slips on deformable bases of the last trial."""
         for k in range(self.body_count):
             if self.is_slippery(k) and not self.on_base(k).flies(self.part_mode(mode, k).contact):
                 mode = self.with_slip(k, self.slip_sense(k), mode, state, memory)
@@ -98,7 +98,7 @@ class TriedSlips(SlipperyBases, RigidChain):
     def hold_as_tried(
         self, k: int, count: int, standing: Mode, state: Vector, room: Vector, rows: Vector
     ) -> int:
-        """Hold a body on a base that gives way, or load it by friction, as corners are tried."""
+        """Hold a body on a deformable base, or load it by friction, in the trial at hand."""
         if not self.is_slippery(k) or self.on_base(k).flies(standing.contact):
             return self.hold_or_slide(k, count, standing, state, room, rows)
         i, sense = k * PLACES, self.slip_sense(k)
@@ -112,12 +112,12 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def pin_on(self, bears: int) -> int:
-        """Give the pivot of corners that bear; both move alike."""
+        """Give the pivot at corners that bear; where both do they have one velocity."""
         return PIVOT_LEFT if bears == LEFT_ONLY else PIVOT_RIGHT
 
     @inlined
     def pressed(self, k: int) -> float:
-        """Give what presses a body on its base."""
+        """Give the normal force of a body's base on it, or its impulse."""
         if self.is_rigid(k):
             return self.corner_force(k, True) + self.corner_force(k, False)
         return float(self.places()[k * PLACES + at.PRESS])
@@ -133,7 +133,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def note_free_slips(self, mode: int, state: Vector) -> None:
-        """Note in which sense bodies that no corner bears would slip on landing."""
+        """Write the senses in which bodies in flight over rigid bases would slip on landing."""
         bearing, room = self.bearing(mode), self.places()
         for k in range(self.body_count):
             if self.is_rigid(k) and bearing >> 2 * k & BOTH == 0:
@@ -146,7 +146,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         self, k: int, which: int, sense: float, reach: float, impulsive: bool, room: Vector,
         rows: Vector,
     ) -> None:  # fmt: skip
-        """Let the force of a corner that slips have friction, :eq:`eq-stack-slip`."""
+        """Add friction to the force of a corner that slips, :eq:`eq-stack-slip`."""
         holds, i, ratio = which * CONSTRAINT + at.HOLDS, k * PLACES, 0.0
         if abs(sense) == 1.0:
             ratio = -sense * self.friction_of(k, IMPULSIVE if impulsive else KINETIC)
@@ -162,7 +162,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def stand_still(self, room: Vector, out: Vector) -> None:
-        """Write the friction of bodies that slip; of others take rounding from accelerations."""
+        """Write the friction of slipping bodies; set accelerations to zero in full contact."""
         for k in range(self.body_count):
             i = k * PLACES
             left, right = room[i + at.LEFT_CORNER], room[i + at.RIGHT_CORNER]
@@ -185,7 +185,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         first, ratio = which * CONSTRAINT, room[k * PLACES + at.RUBS]
         if ratio == 0.0:
             return 0.0
-        # the same at both corners, where both bear
+        # both corners have the same slip where both bear
         left = room[k * PLACES + at.LEFT_CORNER] != NONE
         slip, _ = self.slip_on(k, PIVOT_LEFT if left else PIVOT_RIGHT, state)
         leaned = of_both(self.body_count, k, first + at.HOLDS, room, rows) - rows[first + at.VALUE]
@@ -193,9 +193,9 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def must_meet_anew(self, closed: int, mode: int) -> bool:
-        """Whether rigid bases that have friction, or would have to pull, did something.
+        """Whether impulses must be found again: a base with friction acted, or a corner pulled.
 
-        Or one that is closed did nothing, since it had not borne.
+        Or a closed corner did not act, as it did not bear before.
         """
         room = self.places()
         for k in range(self.body_count):
@@ -209,15 +209,15 @@ class TriedSlips(SlipperyBases, RigidChain):
     def try_corners(
         self, mode: int, some: int, closed: int, impulsive: bool, noise: float, state: Vector
     ) -> Attempt:
-        """Let a set of the closed corners bear, and find which of their bodies slip.
+        """Let a set of the closed corners bear, and find which of their bodies slip, base by base.
 
-        In an impact by the velocities after it; under new forces what slips goes on, and what is
-        held slips where friction cannot hold it, which is found base by base.
+        In an impact the velocities after it decide. Under new forces bodies that slip go on, and
+        held ones start to slip if friction cannot hold them.
         """
         self.note_first_slips(mode, some, impulsive, state)
         found = Attempt(0, math.inf)
         most = TRIES * self.body_count
-        # what kinetic friction holds is held, too, if static friction leaves no other set
+        # where static friction leads to no solution, kinetic friction decides what is held
         for tries in range(2 * most):
             holding = IMPULSIVE if impulsive else STATIC if tries < most else KINETIC
             found = attempt(self, mode, some, closed, False, impulsive, noise, state)
@@ -228,7 +228,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def note_first_slips(self, mode: int, some: int, impulsive: bool, state: Vector) -> int:
-        """Note the slips with which a trial of corners begins; give the bodies that may do else."""
+        """Write the slips with which a trial begins; give the set of bodies whose slip is open."""
         room, loose = self.places(), 0
         for k in range(self.body_count):
             i, pivot = k * PLACES, self.tried_at(k, mode, some, impulsive)
@@ -247,10 +247,10 @@ class TriedSlips(SlipperyBases, RigidChain):
     def try_all_slips(
         self, mode: int, some: int, closed: int, noise: float, state: Vector
     ) -> Attempt:
-        """Let a set of the closed corners bear in the first way to slip that is one under forces.
+        """Let a set of the closed corners bear with the first consistent combination of slips.
 
-        Base by base none is found where a slip, of an end on pads say, makes another base push
-        the more the more it is held back.
+        The search base by base may fail where the slip of one body, say of an end on pads, makes
+        another base push harder the more it is held back.
         """
         loose = self.note_first_slips(mode, some, False, state)
         for way in range(min(3 ** size_of(loose), MOST_WAYS)):
@@ -263,7 +263,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def note_way(self, way: int, bodies: int) -> None:
-        """Note how some bodies slip, or are held, by the number of that way, in base 3."""
+        """Write the slips of a set of bodies: digits, in base 3, of the number `way`."""
         for k in range(self.body_count):
             if bodies >> k & 1 != 0:
                 self.places()[k * PLACES + at.SLIPS] = float((way + 1) % 3 - 1)
@@ -271,7 +271,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def noted_way(self) -> int:
-        """Give the number of the way that is noted, of all bodies."""
+        """Give the number, in base 3, of the slips of all bodies in the trial at hand."""
         way = 0
         for k in range(self.body_count - 1, -1, -1):
             way = 3 * way + int(self.places()[k * PLACES + at.SLIPS]) % 3
@@ -279,10 +279,10 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def other_ways(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> int:
-        """Count the ways, beside that tried last, in which bodies on a set of corners may slip.
+        """Count the consistent combinations of slips on a set of corners other than the last one.
 
-        In each what friction can hold, with the others as they are, is held: a body that alone may
-        slip has but one.
+        A body that friction can hold, with the slips of the others unchanged, does not count as
+        slipping: where only one body may slip there is one combination.
         """
         room, found, taken = self.places(), 0, self.noted_way()
         loose = self.note_first_slips(mode, some, False, state)
@@ -304,7 +304,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def is_motion(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> bool:
-        """Whether bodies may bear on a set of corners, and slip as is noted, under forces."""
+        """Whether a set of corners that bear, with the slips as written, is admissible."""
         way = self.noted_way()
         found = attempt(self, mode, some, closed, False, False, noise, state)
         k = self.otherwise(mode, some, closed, False, STATIC, noise, state)
@@ -313,10 +313,10 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def try_standing(self, mode: int, corners: int, state: Vector) -> None:
-        """Let bodies stand on corners after an impact: those that slip go on, the others are held.
+        """Find the impulses by which bodies stand on corners: slipping ones go on, others are held.
 
-        So is one whose slip would turn round: no friction does that. Nor does friction act where
-        a base pulls: it would drive the slip.
+        A body whose slip would be reversed, as no friction can do, is held, too. Friction does not
+        act at a base in tension, where it would drive the slip.
         """
         room, turned = self.places(), True
         self.note_slips_before(mode, corners, state)
@@ -338,7 +338,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def try_stops(self, mode: int, some: int, closed: int, noise: float, state: Vector) -> Attempt:
-        """Let a set of the closed corners bear by impulses that stop a slip, of each in turn."""
+        """Let a set of closed corners bear by impulses that stop a slip, each slip in turn."""
         room = self.places()
         for stopped in range(self.body_count):
             self.note_slips_before(mode, some, state)
@@ -356,7 +356,7 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @kernel
     def note_slips_before(self, mode: int, some: int, state: Vector) -> None:
-        """Note in which sense bodies that may slip in an impact have slipped before it."""
+        """Write the senses of the slips before an impact, of bodies that may slip in it."""
         for k in range(self.body_count):
             pivot, i = self.tried_at(k, mode, some, True), k * PLACES
             self.places()[i + at.SLIPS] = 0.0
@@ -367,9 +367,9 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def tried_at(self, k: int, mode: int, some: int, impulsive: bool) -> int:
-        """Give the pivot at which a body is held or slips as corners are tried, or `NOWHERE`.
+        """Give the pivot at which a body is held or slips in a trial of corners, or `NOWHERE`.
 
-        On a base that gives way friction takes no part in impacts.
+        On a deformable base friction has no part in impacts.
         """
         bears, standing = some >> 2 * k & BOTH, self.part_mode(mode, k)
         if self.is_rigid(k):
@@ -379,9 +379,9 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def slip_before(self, k: int, pivot: int, mode: int, state: Vector) -> tuple[float, float]:
-        """Give the velocity of slip before corners are tried, and its rounding noise."""
+        """Give the velocity of slip before a trial of corners, and its rounding noise."""
         if not self.is_rigid(k) and not self.part_mode(mode, k).slides:
-            return 0.0, 0.0  # held: the state need not tell
+            return 0.0, 0.0  # held: the state need not have its velocity
         return self.slip_on(k, pivot, state)
 
     @kernel
@@ -389,10 +389,10 @@ class TriedSlips(SlipperyBases, RigidChain):
         self, mode: int, some: int, closed: int, impulsive: bool, holding: int, noise: float,
         state: Vector,
     ) -> int:  # fmt: skip
-        """Change how a body is tried that friction cannot hold, or that does not slip; else -1.
+        """Correct the slip of one body in the trial at hand, and give its number; else -1.
 
-        With the coefficient `holding` friction holds. Under forces accelerations up to `noise`
-        are none.
+        A held body slips if friction, of the coefficient `holding`, cannot hold it; a slipping one
+        is held if it does not slip. Accelerations up to `noise` count as zero.
         """
         room = self.places()
         for k in range(self.body_count):
@@ -421,16 +421,16 @@ class TriedSlips(SlipperyBases, RigidChain):
 
     @inlined
     def thrust_of(self, k: int) -> float:
-        """Give the force along its base of a body that is held as corners are tried."""
+        """Give the force along its base that holds a body in the trial at hand."""
         which = int(self.places()[k * PLACES + at.HOLDS_ALONG])
         return float(self.constraints()[which * CONSTRAINT + at.FORCE])
 
     @kernel
     def cannot_hold(self, k: int, friction: float, impulsive: bool) -> bool:
-        """Whether friction cannot hold a body that is held as corners are tried."""
+        """Whether the force that holds a body in the trial at hand exceeds its friction."""
         press = self.pressed(k)
         least = NOISE * abs(press)
-        if not impulsive:  # what has just lost its hold may not be held at the bound
+        if not impulsive:  # a body that has just started to slip is not held at the bound
             least = ROUNDING * self.number(k, at.FORCE_SIZE)
             least = least if self.places()[k * PLACES + at.STARTS] == 0.0 else -least
         return abs(self.thrust_of(k)) > friction * max(press, 0.0) + least
@@ -441,7 +441,7 @@ class TriedSlips(SlipperyBases, RigidChain):
         i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
         room, rows, rate = self.places(), self.constraints(), body.angular_velocity
         reach = part.body.reach(part.body.pin(pivot), part.body.attitude(body.rotation))
-        spare = MOST_CONSTRAINTS * self.body_count - 1  # what slips is not held, so there is room
+        spare = MOST_CONSTRAINTS * self.body_count - 1  # a slipping body has no hold: free
         keeps = spare * CONSTRAINT + at.KEEPS
         write_direction(self, k, 1.0, 0.0, -reach.rate, keeps, room, rows)
         found = of_both(self.body_count, k, keeps, room, rows)

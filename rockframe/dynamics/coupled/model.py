@@ -44,11 +44,11 @@ class StackRest(NamedTuple):
 
 
 UPRIGHT: Final = StackRest(0.0, 0.0, 0.0, 0.0)
-"""Where symmetric bodies rest on a level base."""
+"""Rest of symmetric bodies on a level base."""
 
 
 def system_of(block: ChainBody, cap: ChainBody) -> Coupled:
-    """Give the equations of a block on a cap."""
+    """Give the system of a block on a cap."""
     return Coupled(
         OnBase(block.body, block.base.law), OnBase(cap.body, cap.base.law), cap.mass, cap.top,
         block.beside,
@@ -61,11 +61,11 @@ def coupled(block: ChainBody, cap: ChainBody, mass: float, rest: StackRest) -> C
     Parameters
     ----------
     block, cap : ChainBody
-        On their bases, per unit mass of the block.
+        Block and cap on their bases, per unit mass of the block.
     mass : float
-        Of the block [kg].
+        Mass of the block [kg].
     rest : StackRest
-        Where block and cap are at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest`.
+        Placement of block and cap at rest, :meth:`rockframe.dynamics.statics.StandingChain.rest`.
 
     Returns
     -------
@@ -106,7 +106,7 @@ def _scales(block: ChainBody, cap: ChainBody) -> Vector:
 
 
 def _rounding(block: ChainBody, cap: ChainBody, fastest: float) -> Callable[[float], Vector]:
-    """Estimate the rounding noise of everything in the state, as of a body on its base."""
+    """Estimate the rounding noise of each state variable, as :func:`rounding_at` does."""
     body, pads, soil = block.body, block.base, cap.base
     rotating = 0.5 * (body.left + body.right) / (body.inertia + body.height**2)
     sizes = radius_of(body), radius_of(cap.body)
@@ -118,7 +118,7 @@ def _rounding(block: ChainBody, cap: ChainBody, fastest: float) -> Callable[[flo
 def state_at(
     system: Coupled, place: StackRest, rate: float = 0.0, vertical_velocity: float = 0.0
 ) -> tuple[int, Vector, Vector]:
-    """Give mode, state and memory of a block on a cap at rest, where they are placed.
+    """Give mode, state and memory of a block on a cap at given places, the cap at rest.
 
     `rate` and `vertical_velocity` are those of the block.
     """
@@ -130,7 +130,7 @@ def state_at(
     contact = upper.base.starting(upper.body.base_line_at(block), system.upper_own(state))
     under = lower.base.starting(lower.body.base_line_at(cap), system.lower_own(state))
     standing = upper.standing(contact, block)
-    # upright and at rest the cap leans nowhere yet; it follows the block
+    # a cap at rest upright has no side yet: it takes that of the block
     leaning = cap if cap.rotation != 0.0 else block
     of_cap = lower.standing(under, leaning)
     pin, beside = upper.starting_pin(standing, block), system.beside
@@ -153,7 +153,7 @@ def state_at(
 
 
 def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, Vector, Vector]]:
-    """Make the function that starts a run: the cap at rest, the block as told on it."""
+    """Give the function that makes the initial state: the cap at rest, the block as given."""
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         place = rest

@@ -1,4 +1,4 @@
-"""Where two bodies are, one on the other, and how they accelerate under given forces.
+"""Kinematics of two bodies, one on the other, and their accelerations under given forces.
 
 Kinematics :eq:`eq-coupled-kinematics` and the solution of the equations of motion. The upper
 body is called the block and the lower one the cap; all is per unit mass of the block.
@@ -19,12 +19,12 @@ class Pair(NamedTuple):
     upper: OnBase  # the block on its base, in the frame of the cap
     lower: OnBase  # the cap on the ground
     cap_mass: float  # m_c/m; the cap's inertia is I_c/m
-    top: float  # of the cap above its centre of mass
-    beside: float  # of the block's centre of mass to the right of the middle of its base
+    top: float  # of the cap above its centre of mass [m]
+    beside: float  # block's centre of mass to the right of the cap's, both upright [m]
 
 
 class Configuration(NamedTuple):
-    """Where cap and block are, and how they can move.
+    """Places of cap and block, and the derivatives of these by the rotations.
 
     The sine and cosine are those of the cap's frame. `cap_reach`: x_c' and x_c'', the cap's
     centre about the point that the ground holds; `block_reach`: xi' and xi'', the block's
@@ -46,17 +46,16 @@ class Forces(NamedTuple):
     """Forces, or impulses, of both bases, and generalised forces on the bodies' rotations."""
 
     press: float  # of the cap on the block, along the cap's normal
-    moment: float
+    moment: float  # on the block's rotation
     soil: float  # of the ground on the cap, upwards
-    soil_moment: float
+    soil_moment: float  # on the cap's rotation
 
 
 class KnownTerms(NamedTuple):
-    """What accelerates the bodies beside forces.
+    """Known accelerations in the equations of motion, besides forces.
 
-    `swing` and `drift` are the parts of the cap's horizontal acceleration and of the block's
-    along the cap that do not depend on the unknowns; the loads are those on the cap per unit
-    of its mass.
+    `swing` is the part of the cap's horizontal acceleration, `drift` that of the block's along the
+    cap, that does not depend on the unknowns; the loads are those on the cap per unit of its mass.
     """
 
     swing: float
@@ -79,7 +78,7 @@ class CoupledMotion(NamedTuple):
 def configuration(
     pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude
 ) -> Configuration:
-    """Give the geometry of states, in the restraints of modes."""
+    """Give the geometry of states, with the held points of modes."""
     return configuration_with(
         pair, modes, states, upper, lower,
         pair.upper.is_free(modes.upper), pair.lower.is_free(modes.lower),
@@ -91,10 +90,10 @@ def configuration_with(
     pair: Pair, modes: Modes, states: States, upper: Attitude, lower: Attitude, block_free: bool,
     cap_free: bool,
 ) -> Configuration:  # fmt: skip
-    """Give the geometry of states, with bodies that are held at their pivots or free."""
+    """Give the geometry of states, with each body held at its pivot or free as given."""
     block, cap = pair.upper.body, pair.lower.body
     sine, cosine = lower.sine, lower.cosine
-    if cap.small:  # the frame of the cap turns exactly, whatever the kinematics on the bases
+    if cap.small:  # the frame's rotation is exact even with small-rotation kinematics on the bases
         sine, cosine = sine_cosine(states.lower.rotation)
     return Configuration(
         sine,
@@ -139,7 +138,7 @@ def block_velocity(place: Configuration, states: States) -> tuple[float, float]:
 
 @inlined
 def block_height(place: Configuration, states: States) -> float:
-    """Give the rise of the block's centre of mass from rest, to all digits."""
+    """Give the rise of the block's centre of mass from rest, without cancellation [m]."""
     s, c = place.sine, place.cosine
     versine = s * s / (1.0 + c) if c > 0.0 else 1.0 - c
     normal = states.upper.vertical
@@ -190,7 +189,7 @@ def solve_motion(
 
 @inlined
 def normal_change(place: Configuration, motion: CoupledMotion) -> float:
-    """Give what the cap's motion takes from the block's acceleration along the cap's normal."""
+    """Give what the cap's motion adds to the block's acceleration relative to it, normal to it."""
     s, c = place.sine, place.cosine
     lift = s * motion.cap_horizontal + c * motion.cap_vertical
     return place.across * motion.cap_angular - lift

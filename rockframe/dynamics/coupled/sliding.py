@@ -35,7 +35,7 @@ class Rises(NamedTuple):
 
 
 class Slips(NamedTuple):
-    """Accelerations of slip that keep what slides at its level, and the power of the holds."""
+    """Accelerations of slip that keep sliding ends at their levels, and the power of the holds."""
 
     swing: float
     drift: float
@@ -44,7 +44,7 @@ class Slips(NamedTuple):
 
 @kernel
 def sliding_end(part: OnBase, mode: Mode, attitude: Attitude, line: BaseLine) -> SlidingEnd:
-    """Give the end that touches; without meaning where nothing slides."""
+    """Give the sliding end of a body; the result has no meaning where none slides."""
     left = part.base.is_held(mode.contact, True)
     on_left, on_right = part.body.end_accelerations(attitude, 1.0, 0.0, 0.0)
     if left:
@@ -56,7 +56,7 @@ def sliding_end(part: OnBase, mode: Mode, attitude: Attitude, line: BaseLine) ->
 def rises(
     place: Configuration, motion: CoupledMotion, press: float, block: SlidingEnd, cap: SlidingEnd
 ) -> Rises:
-    """Give what a motion adds to the accelerations of both ends."""
+    """Give the contributions of a motion to the accelerations of both sliding ends."""
     normal = press + normal_change(place, motion)
     return Rises(
         normal + block.lever * motion.angular, motion.cap_vertical + cap.lever * motion.cap_angular
@@ -68,16 +68,16 @@ def slide_both(
     pair: Pair, modes: Modes, states: States, place: Configuration, block: SlidingEnd,
     cap: SlidingEnd, forces: Forces, given: KnownTerms, normal: float,
 ) -> Slips:  # fmt: skip
-    """Give the slips that keep what slides at its level, :eq:`eq-sliding-contact`.
+    """Give the slips that keep sliding ends at their levels, :eq:`eq-sliding-contact`.
 
-    They come as what they add to `swing` and `drift`, with the power that the holds take from
-    the slips (negative). `place` is held, `normal` is the block's acceleration along the cap's
-    normal that is no part of a motion.
+    They are given as additions to `swing` and `drift`, with the power of the holds on the slips,
+    which is negative. `place` has both bodies held; `normal` is the known part of the block's
+    acceleration along the cap's normal.
     """
     cap_rate, block_rate = states.lower.angular_velocity, states.upper.angular_velocity
     motion = solve_motion(pair, place, forces, given)
     found = rises(place, motion, forces.press, block, cap)
-    # an end below its base's level rises with the base, which returns without pressing
+    # an end below its base's level rises with the base, which returns without a force
     of_block = found.block + normal + block.bend * block_rate * block_rate
     of_block += pair.upper.base.following_rate() * block.speed
     of_cap = found.cap + cap.bend * cap_rate * cap_rate

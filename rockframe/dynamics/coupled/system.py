@@ -1,7 +1,7 @@
 """A block on a base on a cap on its base, section "Coupled" of the theory manual.
 
-Equations :eq:`eq-coupled`. Each base acts as under one body; momentum is projected, and
-impulses act, in the coupled system: :eq:`eq-coupled-impulse`. Per unit mass of the block.
+Equations :eq:`eq-coupled`. Each base acts as it does under a single body; held points and
+impulses act on both bodies together: :eq:`eq-coupled-impulse`. Per unit mass of the block.
 """
 
 from typing import NamedTuple
@@ -46,7 +46,7 @@ class Holding(NamedTuple):
     """Forces on the bodies of a stack, per unit mass of the block."""
 
     thrust: float  # of the cap on the block, along the cap
-    press: float  # along its normal
+    press: float  # of the cap on the block, along the cap's normal
     push: float  # of the ground on the cap, horizontally
 
 
@@ -57,7 +57,7 @@ class Coupled(Stacked, Pair):
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give how many coordinates move: all, or all but that of a cap that is held."""
+        """Give the number of coordinates that move: all, or all but a held cap's horizontal one."""
         return COORDINATES if self.lower.is_free(self.modes_in(mode).lower) else LOWER_HORIZONTAL
 
     @inlined
@@ -68,7 +68,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def place_in(self, mode: int, states: States) -> Configuration:
-        """Give the geometry of states, in the restraints of a mode."""
+        """Give the geometry of states, with the held points of a mode."""
         upper, lower = self.attitudes(states)
         return configuration(self, self.modes_in(mode), states, upper, lower)
 
@@ -163,7 +163,7 @@ class Coupled(Stacked, Pair):
         place = self.place_in(mode, states)
         s, c, cap_rate = place.sine, place.cosine, states.lower.angular_velocity
         sway = slope[LOWER_HORIZONTAL]
-        if not place.cap_free:  # a coordinate that rests has no acceleration of its own
+        if not place.cap_free:  # the slope has no acceleration of a coordinate that is held
             sway = (
                 place.cap_reach.rate * slope[LOWER_ROTATION]
                 + place.cap_reach.bend * cap_rate * cap_rate
@@ -219,7 +219,7 @@ class Coupled(Stacked, Pair):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of block and cap, reactions, and what both bases show."""
+        """Give motion of block and cap, reactions, and the columns of both bases."""
         states = self.states_in(state)
         place = self.place_in(mode, states)
         across, up = block_velocity(place, states)
@@ -248,7 +248,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give the horizontal place of a centre of mass: along the cap, or from the ground."""
+        """Give the place of a centre of mass: a block's along the cap, a cap's on the ground."""
         if k == UPPER:
             return state[HORIZONTAL]
         standing, body = self.modes_in(mode).lower, self.state_of(LOWER, state)
@@ -259,7 +259,7 @@ class Coupled(Stacked, Pair):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give how velocities change by an impulse, or as a hold stops a slip."""
+        """Give the changes of velocities by an impulse, or by a hold that stops a slip."""
         states = self.states_in(state)
         place = self.place_in(mode, states)
         if k == UPPER:
@@ -287,7 +287,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def respond(self, k: int, mode: int, response: VelocityChange, state: Vector) -> None:
-        """Change the velocities."""
+        """Change the velocities of both bodies by a response."""
         for i in range(COORDINATES):
             state[COORDINATES + i] += response.others[i]
         place = self.place_in(mode, self.states_in(state))
@@ -299,7 +299,7 @@ class Coupled(Stacked, Pair):
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the accelerations of the ends of a base in a mode, seen from what it stands on."""
+        """Give the accelerations of the left and right end away from the surface beneath them."""
         slope, states = self.accelerate(mode, state, ground), self.states_in(state)
         if k == UPPER:
             return self.upper.end_rises(states.upper, slope[VERTICAL], slope[ROTATION])
@@ -307,7 +307,7 @@ class Coupled(Stacked, Pair):
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the side to which a body will rotate; a first guess will do at rest."""
+        """Give the sign of the rotation that will follow; at rest it is a guess."""
         if ground.x != 0.0:
             return -ground.x
         other = state[ROTATION] if k == LOWER else -state[COORDINATES + LOWER_ROTATION]
