@@ -48,6 +48,7 @@ def kinds_of(found):
     return [names[kind - 1] for kind in found.event_kind.values]
 
 
+@pytest.mark.long
 @BASES
 def test_friction_without_end_holds_the_base(base):
     """To rounding; on rigid ground the equations are others, and what happens at once is so."""
@@ -66,6 +67,7 @@ def test_friction_without_end_holds_the_base(base):
     assert sorted(kinds_of(far)[:last]) == sorted(kinds_of(held)[:last])
 
 
+@pytest.mark.long
 @BASES
 @pytest.mark.parametrize("stiffness", ["60 kN/m", "1 GN/m"])
 def test_a_tie_that_is_never_taut_changes_nothing(base, stiffness):

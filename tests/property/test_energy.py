@@ -225,6 +225,7 @@ def test_the_residual_of_a_quiet_run_is_that_of_a_strong_one(base):
     assert residuals == pytest.approx([residuals[0]] * 3, rel=0.05)
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
 @pytest.mark.parametrize("number", [47, 295])
 def test_each_loss_only_grows_where_bodies_take_back_some_of_a_blow(number):
