@@ -109,3 +109,12 @@ def test_the_ground_stands_still_after_a_jump():
     excitation = response.ground_acceleration.sel(time=slice(1.01, None))
     assert len(excitation) > 5
     assert not np.any(excitation)
+
+
+def test_the_first_sample_shows_the_contact_after_a_jump_at_the_start():
+    block = rf.Block(width="1 m", height="4 m", mass="1 t")
+    steady = rf.GroundMotion.from_arrays((np.full(100, -6.0), "m/s^2"), time_step="5 ms")
+    run = rf.System(block).simulate(steady)
+    assert run.event_time[0] == 0.0
+    meanings = run.contact_state.attrs["flag_meanings"].split()
+    assert [meanings[one] for one in run.contact_state.values[:2]] == ["right"] * 2
