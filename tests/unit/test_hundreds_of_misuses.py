@@ -238,7 +238,7 @@ VALUES = {
     "pads(frequency_ratio='40 Hz')": "frequency_ratio needs a pure ratio, got '40 Hz'",
     "pads(damping_ratio=-0.1)": "damping_ratio must be zero or more",
     "pads(restitution=2)": "restitution must be above 0 and at most 1",
-    "pads(friction=0.3, kinetic_friction=0.5)": "kinetic_friction, here 0.5",
+    "pads(friction=0.3, kinetic_friction=0.5)": "kinetic_friction must be at most",
     "rf.RigidGround(impact='newtonian')": "impact must be 'coulomb' or 'stick', got 'newtonian'",
     "rf.RigidGround('0.9')": "takes 1 positional argument but 2 were given. It takes restitution",
     "rf.WinklerSoil(stiffness='20 MN/m^3', damping_ratio=0.2)": "from_subgrade_modulus",
