@@ -37,7 +37,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         named["units"] = values_by_name(arguments.units, "--units", "force=kN")
     if arguments.panels:
         if name != plot.response.__name__:
-            msg = "--panels: only a run along time has panels to choose from"
+            msg = "--panels: only a run over time has panels to choose from"
             raise ComponentError(msg)
         named["panels"] = tuple(arguments.panels)
     save(getattr(plot, name)(dataset, **named), arguments.output, outputs, arguments.format)

@@ -313,7 +313,7 @@ def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, fol
     with xr.open_dataset("out.nc") as kept:
         rf.report(kept, "python.html", certify=False)
     text = (folder / "python.html").read_text()
-    assert "Not checked</strong>Asked for: circolare_2019 confidence_factor=1.2; asce_7_22" in text
+    assert "Not checked</strong>Requested: circolare_2019 confidence_factor=1.2; asce_7_22" in text
     for wrong, said in (
         ("circolare", "there is no 'circolare'"),
         ("circolare_2019 factor=1", "circolare_2019 has no 'factor'"),
@@ -467,7 +467,7 @@ def test_a_report_of_a_case_names_each_axis_once(typed, folder):
     code, _, problem = typed(*given, "scale=1", "motions=2")
     assert (code, "there is no axis 'motions'" in problem) == (2, True)
     code, _, problem = typed("report", "runs.nc", "--motion", "record.AT2")
-    assert (code, "those of a study are motions=" in problem) == (2, True)
+    assert (code, "a study takes motions=" in problem) == (2, True)
 
 
 @pytest.mark.usefixtures("no_pictures")

@@ -80,7 +80,7 @@ FILES = {
     "critical scene.toml -o run.nc": "not the result of a critical scale that rockframe wrote",
     "critical scene.toml --picture x.txt": "ends in .png or .svg or .pdf",
     "run scene.toml -o x.nc -m scene.toml": "no format recognises",
-    "report run.nc --motions record.AT2": "found motions=, which are those of a study",
+    "report run.nc --motions record.AT2": "found motions=, which is for a study",
     "report run.nc --case scale=1": "expected a study, which has axes",
     "plot run.nc -o scene.toml": "ends in .png or .svg or .pdf",
     "run scene.toml -o shut/x.nc": "shut",
