@@ -74,7 +74,7 @@ LIMITS: Final = (
     ),
     Limit(
         "Cap",
-        "The cap is rigid and does not slide.",
+        "The cap is rigid, and slides only if the soil has a coefficient of friction.",
         lambda parts: parts.cap is not None,
     ),
     Limit(
