@@ -1,4 +1,4 @@
-"""Runs that are drawn: one, or several to compare, and a part of their time."""
+"""The runs of a figure: one, or several to compare, and the window of time."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ RunsLike: TypeAlias = xr.Dataset | Sequence[xr.Dataset] | Mapping[Any, xr.Datase
 
 @dataclass(frozen=True)
 class Run:
-    """A run with its label, colour and dashes; without a label where there is but one."""
+    """A run with its label, colour and dashes; a single run has no label."""
 
     dataset: xr.Dataset
     label: str | None
@@ -39,7 +39,7 @@ class Run:
 
 
 def runs_of(given: object, function: str, window: Window) -> list[Run]:
-    """Read one or several runs, and take the part of them that is drawn."""
+    """Read one or several runs, and cut out the window that is drawn."""
     cut = window_of(window, function)
     labelled = _labelled(given)
     if labelled is None:
@@ -52,15 +52,15 @@ def runs_of(given: object, function: str, window: Window) -> list[Run]:
 
 
 def window_of(window: object, function: str, name: str = "window") -> tuple[float, float]:
-    """Read a part of the time, or of periods; infinite where an end is not given [s]."""
+    """Read a window of times or of periods; an end that is not given is infinite [s]."""
     if window is None:
         return -np.inf, np.inf
     owner = f"rf.plot.{function}"
     ends = list(cast("Any", window)) if isinstance(window, tuple | list) else []
     if len(ends) != 2:
         msg = (
-            f"{owner}: {name} must be a pair of times, of which None leaves an end open, such as "
-            f"('2 s', '8 s'), got {shown(window)}"
+            f"{owner}: {name} must be a pair of times, such as ('2 s', '8 s'), or None for an open "
+            f"end, got {shown(window)}"
         )
         raise ComponentError(msg)
     start, end = (
@@ -74,7 +74,7 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
 
 
 def runs_title(runs: list[Run], units: ReaderUnits) -> str:
-    """Give the title of a figure: the verdict of a run; of several, what they have in common."""
+    """Give the title of a figure: the verdict of a run; of several, their common motion."""
     if len(runs) == 1:
         return units.of_sentence(str(runs[0].dataset.attrs.get("verdict", "")))
     motions = {str(run.dataset.attrs.get("motion", "")) for run in runs}
@@ -82,7 +82,7 @@ def runs_title(runs: list[Run], units: ReaderUnits) -> str:
 
 
 def _labelled(given: object) -> dict[str, Any] | None:
-    """Give several runs by their labels; None where there is but one."""
+    """Give several runs by their labels; None for a single run."""
     if isinstance(given, Mapping) and not isinstance(given, xr.Dataset):
         told = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
         return told if told and _all_runs(list(told.values())) else None
@@ -103,7 +103,7 @@ def _all_runs(given: list[Any]) -> bool:
 
 
 def _part(run: xr.Dataset, cut: tuple[float, float], function: str) -> xr.Dataset:
-    """Cut out a part of the time, and the events in it."""
+    """Cut out a window of time, with the events in it."""
     if not np.isfinite(cut).any():
         return run
     time = run["time"].to_numpy()

@@ -1,4 +1,4 @@
-"""Spectra of a set of motions beside the target that they are to fit."""
+"""Spectra of a set of motions and the target spectrum to which they are fitted."""
 
 from typing import Final
 
@@ -39,18 +39,19 @@ def selection(
 ) -> Panels:
     """Draw the scaled spectra of a set, their median and spread, and the target.
 
-    Left the accelerations; right the misfit of each motion, in the order of the set.
+    The left panel shows the accelerations, the right one the misfit of each motion, in the order
+    of the set.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :meth:`rockframe.MotionSuite.scaling_to` or :meth:`rockframe.MotionSuite.selection_for`.
+        Result of :meth:`rockframe.MotionSuite.scaling_to` or
+        :meth:`rockframe.MotionSuite.selection_for`.
 
     Returns
     -------
     Panels
-        Bands reach one standard deviation of the logarithm to both
-        sides.
+        Dashed lines are one standard deviation of the logarithm above and below.
 
     Examples
     --------
