@@ -206,16 +206,20 @@ class TestGeonet:
     @pytest.mark.parametrize("place", [4, 5])
     def test_absurd_numbers_of_what_is_skipped(self, write, place):
         lines = geonet().split("\n")
-        for number in (99999999, -1):
+        for number, words in ((99999999, "end of the file in component 1"), (-1, "none or more")):
             changed = list(lines)
             row = changed[19]
             changed[19] = row[: 8 * place] + f"{number:8d}" + row[8 * place + 8 :]
-            try:
-                motion = self.read(write, "\n".join(changed), component="S16W")
-            except RecordError:
-                assert number < 0
-            else:  # nothing after the first component is looked for then
-                assert len(motion) == COUNT
+            with pytest.raises(RecordError, match=words):
+                self.read(write, "\n".join(changed), component="S16W")
+
+    @pytest.mark.parametrize("from_end", [4, 5])
+    def test_a_line_that_is_missing_in_the_last_component(self, write, from_end):
+        # the velocities that follow would take the place of its last accelerations
+        lines = geonet().rstrip("\n").split("\n")
+        del lines[-from_end - 1]
+        with pytest.raises(RecordError, match=r"found the end of the file in component 3"):
+            self.read(write, "\n".join(lines) + "\n", component="Up")
 
     def test_a_vertical_axis_of_another_name(self, write):
         text = geonet().replace("Component Up    Some", "Component Vert. Vertical")
