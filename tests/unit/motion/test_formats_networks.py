@@ -82,7 +82,8 @@ class TestKnet:
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-12, atol=1e-15)
         assert abs(motion.si.horizontal.samples.mean()) < 1e-15
         assert motion.metadata["offset_removed"] == pytest.approx(COUNTS.mean())
-        assert motion.metadata["scale_factor"] == GAL_PER_COUNT
+        assert motion.metadata["gal_per_count"] == GAL_PER_COUNT
+        assert "scale_factor" not in motion.metadata  # that of motions that were scaled
         sentence = motion.history[1]
         assert "scale factor 3920(gal)/6182761" in sentence
         assert f"less their mean of {COUNTS.mean():.9g} counts" in sentence
