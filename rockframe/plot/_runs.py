@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, shown
-from rockframe.plot._axes import colour_of, style_of
+from rockframe.plot._axes import colour_of, plain_names, style_of
 from rockframe.plot._checks import checked_run
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.shown import ReaderUnits
@@ -44,10 +44,10 @@ def runs_of(given: object, function: str, window: Window) -> list[Run]:
     labelled = _labelled(given)
     if labelled is None:
         return [Run(_part(checked_run(given, function), cut, function), None, colour_of(0), "-")]
-    runs = {label: checked_run(one, function) for label, one in labelled.items()}
+    runs = [checked_run(one, function) for one in labelled.values()]
     return [
         Run(_part(one, cut, function), label, colour_of(number), style_of(number))
-        for number, (label, one) in enumerate(runs.items())
+        for number, (label, one) in enumerate(zip(plain_names(labelled), runs, strict=True))
     ]
 
 
