@@ -31,7 +31,14 @@ USUAL_OFFSET: Final = 1e-3
 OFFSET_SHARE: Final = 0.15
 """Offsets above are warned about, as a share of the largest distance from them."""
 
-MISSING: Final = (999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38)
+MISSING: Final = (
+    *(999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38),
+    *(
+        float(f"{nines}.{tail}")
+        for nines in ("999", "9999", "99999")
+        for tail in ("9", "99", "999")
+    ),
+)
 """What agencies write, with either sign, where a sample is missing."""
 
 PEAK_SHARE: Final = 0.015

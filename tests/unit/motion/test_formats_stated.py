@@ -161,7 +161,7 @@ RANDOM = np.random.default_rng(3)
 SHAKING = 200.0 * np.exp(-(((np.arange(2000) - 700.0) / 300.0) ** 2)) * RANDOM.standard_normal(2000)
 
 
-@pytest.mark.parametrize("mark", [-999.0, 9999.0, -99999.0, -12345.0, -999999.0])
+@pytest.mark.parametrize("mark", [-999.0, 9999.0, -99999.0, -12345.0, -999999.0, -999.9, 9999.99])
 @pytest.mark.parametrize("places", [[400], [0], [1999], [50, 51, 52], [10, 900]])
 def test_marks_of_missing_samples_are_refused(write, mark, places):
     values = 0.5 * SHAKING
