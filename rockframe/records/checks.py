@@ -227,6 +227,16 @@ def surplus(source: Source, index: int, what: str, end: int | None = None) -> li
     ]
 
 
+def unfinished(source: Source, line: int, rows: int) -> list[str]:
+    """Say of a file that it ends among the rows below a line, so that others may be missing."""
+    if line + rows <= source.last_line:
+        return []
+    return [
+        f"{source.path}, line {source.last_line}: the file ends inside what line {line} announces; "
+        "components may be missing"
+    ]
+
+
 def _printed(text: str) -> tuple[float | None, float]:
     """Give a number and half of its last printed digit."""
     text = text.strip()

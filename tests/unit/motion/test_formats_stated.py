@@ -153,6 +153,18 @@ def test_a_component_whose_first_line_is_damaged_is_not_passed_over(text, mark, 
         GroundMotion.read(write(before + behind, "record"))
 
 
+@pytest.mark.parametrize(
+    ("text", "rows"),
+    [(formats.cosmos(), -1), (formats.cosmos(), 5), (formats.csmip(2), 0), (formats.csmip(2), 5)],
+)
+def test_a_file_that_ends_inside_a_velocity_is_told(text, rows, write):
+    lines = text.split("\n")
+    announced = [k for k, line in enumerate(lines) if "velocity pts" in line or "of vel" in line]
+    path = write("\n".join([*lines[: announced[0] + 1 + rows], ""]), "record")
+    with pytest.warns(RecordWarning, match="the file ends inside what line .* announces"):
+        GroundMotion.read(path)
+
+
 def column(values, unit="gal") -> str:
     return f"# unit: {unit}, dt = 0.01 s\n" + "".join(f"{value:.6f}\n" for value in values)
 
