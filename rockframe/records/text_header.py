@@ -21,6 +21,7 @@ _STATED: Final = re.compile(
 _ACCELERATION_NAME: Final = re.compile(r"\W*(acc|a\b|ag\b)", re.IGNORECASE)
 _TIME_NAME: Final = re.compile(r"\W*(time|t)\b", re.IGNORECASE)
 _OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
+_LIKE_UNIT: Final = re.compile(r"\S*[/^*²]\S*|m?v(?:olts?)?|counts?|cnts?|lsb", re.IGNORECASE)
 _BESIDE_A: Final = ("v", "d", "u")
 _PERIOD_NAME: Final = re.compile(r"\W*(period|freq|omega|t_?n\b)", re.IGNORECASE)
 _SPECTRAL_NAME: Final = re.compile(
@@ -214,6 +215,8 @@ def unit_of_header(
         elif certain and name.casefold() not in TIME_UNITS:
             if other_quantity(name) is not None:
                 other = other or (name, line)
+            elif not known and _LIKE_UNIT.fullmatch(name):
+                return name, line  # not that of a line farther from the numbers
             else:
                 unknown = unknown or (name, line)
     if known:
