@@ -129,7 +129,7 @@ def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, g
     # the last full row of the samples, once more and twice
     extra = [lines[end - 2]] * 2
     path = write("\n".join([*lines[:end], *extra, *lines[end:]]) + "\n", "record")
-    with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers behind"):
+    with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers after"):
         assert GroundMotion.read(path, **given).sha256 == own.sha256
 
 
