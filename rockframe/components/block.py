@@ -192,7 +192,8 @@ class Block(Component):
             place = _pair(type(self).__name__, changes.pop("centre_of_mass"), height, beside)
             changes |= {"centre_height": place[0], "eccentricity": place[1]}
         made = super().replace(**changes)
-        behind = self.left_behind([*changes])
+        same = {name for name in _SIZES if getattr(made.si, name) == getattr(self.si, name)}
+        behind = self.left_behind(changes.keys() - same)
         if behind:
             left = " and ".join(
                 f"{name}, {getattr(self.si, name):.4g} {self._declared[name].unit}"

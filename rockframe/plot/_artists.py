@@ -1,4 +1,4 @@
-"""A drawn scene: what is drawn where, and the artists that move from one instant to the next."""
+"""Drawing of a scene: the places of its parts, and the artists that follow them over time."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -19,6 +19,7 @@ from rockframe.plot._axes import (
     Shown,
     ink,
     measured_in,
+    plain,
 )
 from rockframe.plot._panels import Axes
 from rockframe.results.points import Placement
@@ -28,26 +29,26 @@ from rockframe.system.links import link_labels
 from rockframe.system.parts import Parts
 
 _PAD_WIDTH: Final = 0.17
-"""Over that of the base."""
+"""Width of a pad over that of the base."""
 _PAD_THICKNESS: Final = 0.06
 _LEAST_THICKNESS: Final = 0.15
-"""Of a pressed pad, over that of a pad at rest, however much the drawing magnifies."""
+"""Least thickness of a compressed pad over that at rest, at any magnification."""
 _SPRINGS: Final = 81
-"""Places at which the surface of the soil is drawn beneath a base."""
+"""Number of points of the surface of the soil beneath a base."""
 
 
 @dataclass(frozen=True)
 class Layout:
     """A scene in the coordinates of the drawing [m]."""
 
-    block: Array  # outlines; None where there is no cap
-    cap: Array | None
+    block: Array  # outline
+    cap: Array | None  # outline
     members: tuple[Array, ...]  # of a frame
     centre: Array  # the block's centre of mass
-    pads: tuple[Array, ...]  # left and right one, or none
-    pads_bear: tuple[bool, ...]  # whether each of them bears
+    pads: tuple[Array, ...]  # left and right, or none
+    pads_bear: tuple[bool, ...]  # whether each of them is in contact
     soil: Array | None  # its surface, from the left edge of the drawing to the right one
-    touching: tuple[Array, ...]  # where contact is: points, shape (1, 2), and lines
+    touching: tuple[Array, ...]  # contacts: points, shape (1, 2), and lines
     ground: Array  # surface of rigid ground, where there is no soil
     lower: tuple[Array, ...]  # outlines of the bodies of a stack beneath the block
     ties: tuple[Array, ...]  # both ends of each restrainer, shape (2, 2)
@@ -56,15 +57,15 @@ class Layout:
 
 @dataclass(frozen=True)
 class Drawer:
-    """Lays scenes out for drawing."""
+    """Lays out a scene for drawing."""
 
     geometry: Geometry  # of the scene
-    magnify: float = 1.0  # by which displacements are multiplied [1]
-    least_reach: float = 0.0  # half the width of the ground that is drawn at least [m]
+    magnify: float = 1.0  # factor of displacements [1]
+    least_reach: float = 0.0  # least half width of the ground in the drawing [m]
 
     @property
     def pad_thickness(self) -> float:
-        """With which pads are drawn; those of the equations have none [m]."""
+        """Thickness with which pads are drawn; those of the equations have none [m]."""
         sink = self.geometry.pads_sink
         if sink is None:
             return 0.0
@@ -72,7 +73,7 @@ class Drawer:
 
     @property
     def reach(self) -> float:
-        """Half the width of the ground that is drawn [m]."""
+        """Half width of the ground in the drawing [m]."""
         size = max(2.0 * self.geometry.base_half_width, 0.5 * self.geometry.height)
         return max(self.geometry.base_half_width + 0.6 * size, self.least_reach)
 
@@ -114,17 +115,17 @@ class Drawer:
         ends = list[Array]()
         for point, k in zip(tie.points, tie.bodies, strict=True):
             place = at.block if k == 0 else partial(at.lower, k - 1)
-            if self.geometry.columns:  # tendons end in the beam
+            if self.geometry.columns:  # tendons of a frame end in the beam
                 place = at.beam
             ends.append(point if k < 0 else self._moved(place, point[None])[0])
         return np.array(ends)
 
     def points(self, at: Placement, places: Array) -> Array:
-        """Lay out points of the body that results are of, from the middle of its base."""
+        """Lay out points of the body to which results refer, from the middle of its base."""
         geometry = self.geometry
         below = geometry.place if geometry.stacked or geometry.lower else np.zeros(2)
         drawn = self._moved(at.block, places + below) + self._lift(at)
-        if geometry.columns:  # points of a column are drawn on the first
+        if geometry.columns:  # points of a column are drawn on the first column
             beside = np.where(places[:, 1:] > geometry.height, 0.0, geometry.columns[0])
             drawn = drawn + beside * np.array([1.0, 0.0])
         return self._turned(drawn)
@@ -134,7 +135,7 @@ class Drawer:
         return points + self.magnify * (moved - points)
 
     def _lift(self, at: Placement) -> Array:
-        """Give by how much pads between cap and block raise the block."""
+        """Give the displacement of the block in the drawing by the thickness of pads on a cap."""
         if not self.geometry.stacked:
             return np.zeros(2)
         angle = self.magnify * at.cap_rotation
@@ -192,7 +193,7 @@ class Drawer:
         return np.vstack(edges), touching
 
     def _turned(self, points: Array) -> Array:
-        """Turn the base line up to the right."""
+        """Rotate points by the inclination of the base, which rises to the right."""
         sine, cosine = np.sin(self.geometry.inclination), np.cos(self.geometry.inclination)
         return points @ np.array([(cosine, sine), (-sine, cosine)])
 
@@ -208,11 +209,11 @@ class Drawer:
 CONTACT: Final = VERMILLION
 SOIL: Final = "#a6794f"
 _DEPTH: Final = 0.3
-"""Of the ground that is drawn, over half its width."""
+"""Depth of the ground in the drawing, over half its width."""
 
 
 class SceneArtist:
-    """A drawing that follows a scene."""
+    """The artists of a scene, which follow it over time."""
 
     def __init__(
         self,
@@ -230,7 +231,7 @@ class SceneArtist:
             axes.spines[side].set_visible(False)
 
     def frame(self, shown: Iterable[Placement]) -> None:
-        """Set limits that hold the scene at all instants."""
+        """Set limits of the axes within which the scene is at all instants."""
         found = [self.drawer.lay_out(at) for at in shown]
         shown_parts = [
             part
@@ -256,11 +257,11 @@ class SceneArtist:
             self.axes.add_patch(dashed).set_zorder(1)
 
     def mark(self, points: Mapping[str, tuple[float, ...]]) -> None:
-        """Name the points of the body that are to be marked."""
+        """Set the points of the body that are marked, by their names."""
         self._marked = {name: np.array([place]) for name, place in points.items()}
 
     def draw(self, at: Placement) -> None:
-        """Draw, or move, all artists."""
+        """Draw all artists, or move them."""
         found = self.drawer.lay_out(at)
         self._ground(found)
         if self.drawer.geometry.wall is not None:
@@ -286,7 +287,7 @@ class SceneArtist:
             self._point(name, self.drawer.points(at, place))
 
     def legend(self) -> None:
-        """Name the parts beside the drawing."""
+        """Write the names of the parts next to the drawing."""
         handles = [
             (self._artists[key], words)
             for slot, words in self._names.items()
@@ -325,8 +326,8 @@ class SceneArtist:
         key = f"name of {name}"
         if key not in self._artists:
             self._artists[key] = self.axes.annotate(
-                name, (0.0, 0.0), xytext=(5, 3), textcoords="offset points", fontsize="small",
-                zorder=7,
+                plain(name), (0.0, 0.0), xytext=(5, 3), textcoords="offset points",
+                fontsize="small", zorder=7,
             )  # fmt: skip
         self._artists[key].xy = tuple(place[0])
 
@@ -353,7 +354,7 @@ class SceneArtist:
 
 
 def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
-    """Give what the parts of a scene are called, with their numbers, by their slots."""
+    """Give the names of the parts of a scene, with their parameters, by their slots."""
     found: dict[str, str] = {}
     lower = () if parts.stack is None else parts.stack.bodies
     named = {slot: parts.components.get(slot) for slot in ("block", "wall", "pads", "cap", "soil")}
@@ -367,7 +368,7 @@ def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
             ]
             found[slot] = "\n   ".join([type(part).__name__, *numbers])
     for number, name in enumerate(link_labels(parts.links)[: len(geometry.ties)]):
-        found[f"tie {number}"] = name
+        found[f"tie {number}"] = plain(name)
     if geometry.bed_sinks is None:
         found["ground"] = "rigid ground"
     return {**found, "centre": "centre of mass", "touching": "contact"}

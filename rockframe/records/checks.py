@@ -41,7 +41,7 @@ LENGTH_SHARE: Final = 0.01
 
 _NUMBERS_ONLY: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
 _LONGEST: Final = 30
-_MOST_LINES: Final = 200
+_MOST_ROWS: Final = 200
 _FEWEST_SHARE: Final = 0.9
 _FEWEST_MISSING: Final = 5
 _ROUNDING: Final = 1e-6
@@ -195,20 +195,27 @@ def _compare_length(source: Source, count: int, time_step: float, stated: Stated
     ]
 
 
-def surplus(source: Source, index: int, what: str) -> list[str]:
-    """Warn of rows of numbers after the last sample that a header announces."""
-    rows = 0
-    for line in source.lines[index : index + _MOST_LINES]:
+def surplus(source: Source, index: int, what: str, end: int | None = None) -> list[str]:
+    """Warn of rows of numbers after the last sample that a header announces.
+
+    The search ends at the first text, or at the line `end`, if nothing else is read before it.
+    """
+    rows, first = 0, index
+    for place, line in enumerate(source.lines[index:end], start=index):
+        if rows == _MOST_ROWS:
+            break
         if not line.strip():
             continue
-        if _NUMBERS_ONLY.fullmatch(line[:_LONGEST]) is None:
+        if _NUMBERS_ONLY.fullmatch(line[:_LONGEST]) is not None:
+            first = place if rows == 0 else first
+            rows += 1
+        elif end is None:
             break
-        rows += 1
     if not rows:
         return []
-    many = f"{rows} or more rows" if rows >= _MOST_LINES - 1 else f"{rows} row{'s' * (rows > 1)}"
+    many = f"{rows} or more rows" if rows == _MOST_ROWS else f"{rows} row{'s' * (rows > 1)}"
     return [
-        f"{source.path}, line {index + 1}: {many} of numbers after the last sample that "
+        f"{source.path}, line {first + 1}: {many} of numbers after the last sample that "
         f"{what} announces; they are not read"
     ]
 

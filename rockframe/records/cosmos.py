@@ -109,6 +109,7 @@ class _Header:
     real_count: int
     comments: str  # comment lines
     data_at: int  # index of the line that announces the data
+    end: int  # index of the line after the block
     unknown: tuple[int, float]  # marks of an unknown integer and an unknown real
 
     def line(self, place: int) -> str:
@@ -142,7 +143,9 @@ def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Head
         comments = "\n".join(source.top(min(data_at - first, _MOST_COMMENTS), first))
     text = source.top(min(text_lines, end - start), start)
     unknown = _unknown(source.top(text_lines, start))
-    return _Header(text, integers, reals, integer_count, real_count, comments, data_at, unknown)
+    return _Header(
+        text, integers, reals, integer_count, real_count, comments, data_at, end, unknown
+    )
 
 
 def _section(
@@ -231,8 +234,16 @@ def _read(source: Source, request: Request) -> Record:
 
 def _blocks(source: Source) -> list[_Block]:
     starts: list[tuple[int, re.Match[str]]] = []
+    data_lines = 0
     for index, line in enumerate(source.lines):
-        if "(format v" in line[:_FIRST_LINE_WIDTH].casefold():
+        top = line[:_FIRST_LINE_WIDTH].casefold()
+        data_lines += "pts" in top and _DATA_LINE.match(line) is not None
+        if data_lines > len(starts) > 0:
+            # else it would be skipped like other lines after the samples
+            found = f"{quoted_first_line(line)}, the second in this block"
+            expected = "a first line with '(Format v01.20 with ... text lines)' above each"
+            raise source.refuse(found=found, expected=expected, line=index + 1)
+        if "(format v" in top:
             match = _FIRST_LINE.search(line)
             if match is not None:
                 starts.append((index, match))
@@ -303,7 +314,7 @@ def _samples(source: Source, request: Request, header: _Header) -> Record:
     if peak is not None and quantity == ACCELERATION:
         peak_unit = chosen[1] if request.unit is None else name
         stated.append(Stated(f"{peak:.12g}", peak_unit, header.reals.line(64)))
-    behind = surplus(source, line + layout.rows(count), f"line {line}")
+    behind = surplus(source, line + layout.rows(count), f"line {line}", header.end)
     metadata = _description(header)
     return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
 

@@ -31,6 +31,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 from typing import Final
 
 from rockframe.errors import RecordError
@@ -204,9 +205,9 @@ class Pairs:
         return self.data_at + -(-2 * self.count // _FULL)
 
 
-def find_pairs(source: Source, first: int) -> Pairs | None:
-    """Find pairs below the first line of a channel."""
-    top = [line.rstrip() for line in source.top(_LONGEST_PAIR_HEADER, first)]
+def find_pairs(source: Source, first: int, end: int) -> Pairs | None:
+    """Find pairs between the first line of a channel and that of the next one."""
+    top = [line.rstrip() for line in source.top(min(_LONGEST_PAIR_HEADER, end - first), first)]
     points, units = first_match(_POINTS, top), first_match(_UNITS, top, 0)
     if points is None or units is None:
         return None
@@ -267,6 +268,8 @@ _LAYOUT: Final = re.compile(r"\(\s*(\d{1,3})F(\d{1,3})\.\d{1,2}\s*\)", re.IGNORE
 _INTERVAL: Final = re.compile(r"EQUALLY-SPACED INTERVALS OF\s+([\d.]{1,12})\s+SEC", re.IGNORECASE)
 _LONGEST_HEADER: Final = 200
 _MOST_CHANNELS: Final = 500
+_SECOND_LINE: Final = 10  # lines in which a first line may be followed by a second of its kind
+_SUCH_AS: Final = "a line such as '1138 points of accel data equally spaced at .020 sec'"
 _PER_LINE: Final = 8
 _WIDTHS: Final = range(7, 16)
 
@@ -293,16 +296,59 @@ def _read(source: Source, request: Request) -> Record:
     if _SPECTRA.match(source.top(1)[0]):
         found = "response spectra (volume 3)"
         raise source.refuse(found=found, expected="an acceleration (volume 1 or 2)", line=1)
-    components = [
-        _named(block.header, block.first, partial(_samples, source, request, block))
-        for block in _blocks(source)
-    ]
-    components = components or _components_of_pairs(source, request)
+    components = _components(source, request)
     if not components:
         found = f"no evenly sampled accelerations below {quoted_first_line(source.start)}"
-        expected = "a line such as '1138 points of accel data equally spaced at .020 sec'"
-        raise source.refuse(found=found, expected=expected, line=1)
+        raise source.refuse(found=found, expected=_SUCH_AS, line=1)
     return choose_component(source, request, components)
+
+
+def _components(source: Source, request: Request) -> list[FileComponent]:
+    """Find the channels, also those without data, whose reading raises an error."""
+    blocks = _blocks(source)
+    components: list[FileComponent] = []
+    there = False
+    for first, end in pairwise(_starts(source, blocks)):
+        held = [block for block in blocks if first <= block.line < end]
+        pairs = None if blocks else find_pairs(source, first, end)
+        for block in held:
+            read = partial(_samples, source, request, block)
+            components.append(_named(block.header, block.first, read))
+        if pairs is not None:
+            components.append(_component_of_pairs(source, request, first, pairs))
+        elif not held:
+            components.append(_without_data(source, first, end))
+        there = there or bool(held) or pairs is not None
+        if len(components) > _MOST_CHANNELS:
+            raise _too_many(source, first + 1)
+    return components if there else []
+
+
+def _starts(source: Source, blocks: list[_Block]) -> list[int]:
+    """Give the indices of the first lines of channels, and that of the line after the file."""
+    named = [
+        index
+        for index, line in enumerate(source.lines)
+        if "accelerogram" in line[:60].casefold() and FIRST_LINE.match(line[:200])
+    ]
+    if blocks and not (named and named[0] < blocks[0].line):
+        named.insert(0, blocks[0].first)
+    starts: list[int] = []
+    for index in named:
+        if not starts or index > starts[-1] + _SECOND_LINE:
+            starts.append(index)
+    return [*starts, len(source.lines)]
+
+
+def _without_data(source: Source, first: int, end: int) -> FileComponent:
+    """Give a channel that has only a header."""
+    header = source.top(min(end - first, _LONGEST_HEADER), first)
+
+    def samples() -> Record:
+        found = f"no evenly sampled accelerations below {quoted_first_line(source.lines[first])}"
+        raise source.refuse(found=found, expected=_SUCH_AS, line=first + 1)
+
+    return _named(header, first, samples)
 
 
 def _blocks(source: Source) -> list[_Block]:
@@ -364,21 +410,6 @@ def _samples(source: Source, request: Request, block: _Block) -> Record:
         stated=_stated(block.header, block.first),
         behind=surplus(source, line + layout.rows(block.count), f"line {line}"),
     )
-
-
-def _components_of_pairs(source: Source, request: Request) -> list[FileComponent]:
-    components: list[FileComponent] = []
-    last = -2
-    for index, line in enumerate(source.lines):
-        if "accelerogram" not in line[:60].casefold() or FIRST_LINE.match(line[:200]) is None:
-            continue
-        pairs = None if index == last + 1 else find_pairs(source, index)
-        last = index
-        if pairs is not None:
-            components.append(_component_of_pairs(source, request, index, pairs))
-        if len(components) > _MOST_CHANNELS:
-            raise _too_many(source, index + 1)
-    return components
 
 
 def _component_of_pairs(

@@ -78,7 +78,7 @@ def _read(source: Source, request: Request) -> Record:
         offset = math.fsum(counts) / counts.size
         values = (counts - offset) * scale
         words = _compare_peak(source, header, values)
-        described: Metadata = {**metadata, **held, "scale_factor": scale, "offset_removed": offset}
+        described: Metadata = {**metadata, **held, "gal_per_count": scale, "offset_removed": offset}
         history = (
             f"counts times the scale factor {header['Scale Factor'][0]}, "
             f"less their mean of {offset:.9g} counts ({offset * scale:.6g} gal)",

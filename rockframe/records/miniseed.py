@@ -19,8 +19,9 @@ import sys
 import warnings
 from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
-from typing import Any, Final, cast
+from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
@@ -75,10 +76,10 @@ def _read(source: Source, request: Request) -> Record:
     if not _recognises(source):
         raise begins_otherwise(source, _EXPECTED)
     check_unit_or_response(source, request)
-    channels = _channels(source)
+    channels, damage = _channels(source)
     responses = None if request.unit is not None else InstrumentResponses(source, request)
     components = [
-        _component(source, request, name, label, channels[name], responses)
+        _component(source, request, name, label, channels[name], responses, damage)
         for name, label in _labels(channels).items()
     ]
     return choose_component(source, request, components)
@@ -139,25 +140,49 @@ def _rate(factor: int, multiplier: int) -> float:
 
 
 @contextmanager
-def _quietly() -> Generator[None]:
-    """Keep what ObsPy says of damaged files from the terminal."""
+def _quietly() -> Generator[list[warnings.WarningMessage]]:
+    """Collect the warnings of ObsPy about damaged files instead of printing them."""
     # it raises errors in callbacks of the C library under it, which Python cannot pass on and
     # prints; what is wrong shows in what comes back
     hook = sys.unraisablehook
     sys.unraisablehook = lambda _: None
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            yield said
     finally:
         sys.unraisablehook = hook
 
 
-def _channels(source: Source) -> dict[str, list[Any]]:
+_MISFIT: Final = re.compile(r"(\S{1,40})_[DRQM]: .{0,20}integrity check for (\w{1,12}) failed")
+_SKIPPED: Final = re.compile(r"Will skip bytes (\d{1,12}) to (\d{1,12})")
+
+
+class _Damage(NamedTuple):
+    """Damage that the library under ObsPy reports without an error."""
+
+    # encoding by channel, for channels with a record whose last sample is not the stated one:
+    # compressed samples are differences, so that a wrong one shifts all later samples
+    misfits: dict[str, str]
+    skipped: int  # number of bytes between and after records
+
+    @classmethod
+    def of(cls, said: Iterable[warnings.WarningMessage]) -> "_Damage":
+        """Read the warnings of ObsPy."""
+        texts = [str(one.message) for one in said]
+        misfits = [match for text in texts if (match := _MISFIT.search(text)) is not None]
+        skipped = [match for text in texts if (match := _SKIPPED.search(text)) is not None]
+        return cls(
+            {".".join(codes_of(match[1].replace("_", "."))): match[2] for match in misfits},
+            sum(int(match[2]) - int(match[1]) + 1 for match in skipped),
+        )
+
+
+def _channels(source: Source) -> tuple[dict[str, list[Any]], _Damage]:
     obspy = _obspy(source)
     _check_pieces(source)
     try:
-        with _quietly():
+        with _quietly() as said:
             # the headers first: they may announce more than fits in memory
             announced = obspy.read(io.BytesIO(source.data), format="MSEED", headonly=True)
             total = sum(int(trace.stats.npts) for trace in announced)
@@ -165,6 +190,7 @@ def _channels(source: Source) -> dict[str, list[Any]]:
                 expected = f"at most {_MOST_SAMPLES_IN_ALL} in {_MOST_TRACES} pieces"
                 found = f"{total} samples in {len(announced)} pieces"
                 raise source.refuse(found=found, expected=expected)
+            said.clear()  # the second reading gives the same warnings
             stream = obspy.read(io.BytesIO(source.data), format="MSEED")
     except RecordError:
         raise
@@ -175,7 +201,7 @@ def _channels(source: Source) -> dict[str, list[Any]]:
     channels = by_channel(stream)
     if not channels:
         raise source.refuse(found="no data records", expected=_EXPECTED)
-    return channels
+    return channels, _Damage.of(said)
 
 
 def _component(
@@ -185,6 +211,7 @@ def _component(
     label: str,
     traces: list[Any],
     responses: InstrumentResponses | None,
+    damage: _Damage,
 ) -> FileComponent:
     channel = codes_of(name)[3]
     first = min(traces, key=lambda trace: trace.stats.starttime)
@@ -201,10 +228,18 @@ def _component(
     def samples() -> Record:
         if problem is not None:
             raise problem
+        if name in damage.misfits:
+            samples = f"{damage.misfits[name]} samples of {name}"
+            found = f"{samples} that end at another value than their record states"
+            raise source.refuse(found=found, expected="miniSEED records that are not damaged")
         counts, time_step, start = joined_traces(source, traces)
         settle_time_step(source, request, time_step, None)
         metadata: Metadata = {**about_codes(name), "record_time": start}
-        return record_of_counts(source, request, counts, time_step, metadata, response)
+        record = record_of_counts(source, request, counts, time_step, metadata, response)
+        if not damage.skipped:
+            return record
+        words = f"{source.path}: {damage.skipped} bytes that are no miniSEED record are not read"
+        return replace(record, warnings=(*record.warnings, words))
 
     return FileComponent(label, samples, direction, aliases=(name, channel))
 

@@ -121,7 +121,8 @@ def _samples(source: Source, request: Request, kind: str, integers: Fields) -> R
     time_step = _time_step(source, request, reals)
     chosen = choose_unit(source, request, UNIT, None)
     values = _DATA_LAYOUT.read(source, first, count)
-    said, behind = [], surplus(source, first + _DATA_LAYOUT.rows(count), "integer 17 (line 14)")
+    said, what = [], "integer 17 (line 14)"
+    behind = surplus(source, first + _DATA_LAYOUT.rows(count), what, len(source.lines))
     if kind.upper() == UNKNOWN_KIND:
         words = f"{source.path}, line 1: the file does not state its quantity; an accelerogram "
         said = [f"{words}in {chosen[1]} is assumed"]

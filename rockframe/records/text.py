@@ -31,6 +31,7 @@ from rockframe.records.text_columns import (
     ROWS,
     FirstLines,
     Table,
+    breaks,
     check_last_row,
     find_first_lines,
     looks_like_step,
@@ -102,6 +103,7 @@ def _read(source: Source, request: Request) -> Record:
     else:
         time_step = _step_without_times(source, request, table)
         first, warnings = _first_sample(source, request, table)
+        warnings += breaks(source, table)
 
     def samples(column: TextColumn) -> Record:
         values = table.values[first:, column.place].copy()
@@ -140,8 +142,8 @@ def _row_by_row(source: Source, request: Request, table: Table, metadata: Metada
     single = replace(table, values=values[:, np.newaxis], rest=[])
 
     def samples() -> Record:
-        only = TextColumn(0, "")
-        record = _record(source, request, single, only, time_step, values, metadata, [])
+        only, said = TextColumn(0, ""), breaks(source, table)
+        record = _record(source, request, single, only, time_step, values, metadata, said)
         return replace(record, history=(*record.history, f"{words}, read row by row"))
 
     return choose_component(source, request, [FileComponent(None, samples, aliases=(BY_ROWS,))])

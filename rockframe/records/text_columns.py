@@ -45,6 +45,8 @@ _ANY_NUMBER: Final = re.compile(rf"{NUMBER}|[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?", re
 _WHOLE_OR_COMMA: Final = r"[-+]?\d+(?:,\d+)?(?:[EeDd][-+]?\d+)?"
 _SPREAD: Final = re.compile(rf"{_WHOLE_OR_COMMA}(?:\s+{_WHOLE_OR_COMMA})+", re.ASCII)
 _GLUED_COMMA: Final = re.compile(r"\d,\d")
+# with a decimal point, which dates do not have
+_LIKE_NUMBERS: Final = re.compile(r"[-+\dEeDd*,;\s]*\.[-+.\dEeDd*,;\s]*", re.ASCII)
 _NOT_A_WORD: Final = re.compile(r"[-+.\d*]|(?:nan|inf|infinity)$", re.IGNORECASE)
 
 
@@ -109,6 +111,21 @@ def check_last_row(source: Source, table: Table) -> None:
     """Refuse columns with an incomplete last row."""
     if table.rest:
         raise _uneven(source, table.rest, table.values.shape[1], table.lines, -1)
+
+
+def breaks(source: Source, table: Table) -> list[str]:
+    """Warn of blank or comment lines among numbers without times, which may be two records."""
+    apart = np.diff(table.lines)
+    places = np.flatnonzero(apart != apart[:1])  # the lines of some files are all two apart
+    if not places.size:
+        return []
+    line = table.lines[int(places[0])] + 1
+    found = next((text for text in source.lines[line - 1 : line + 2] if text.strip()), "")
+    what = quoted_first_line(found) if found.lstrip().startswith(COMMENT_MARKS) else "a blank line"
+    return [
+        f"{source.path}, line {line}: {what} among the numbers, in {places.size} places; the "
+        "numbers before and after it are read as one record"
+    ]
 
 
 def split_header(text: str, separator: str | None) -> list[str]:
@@ -226,7 +243,8 @@ def _check_header(
             raise source.refuse(
                 found=quoted_first_line(odd[0] if odd else text), expected="a number", line=line
             )
-        if len(parts) == columns and all(_NOT_A_WORD.match(part) for part in parts):
+        whole_row = len(parts) == columns and all(_NOT_A_WORD.match(part) for part in parts)
+        if whole_row or (len(parts) > 1 and _LIKE_NUMBERS.fullmatch(text)):
             raise source.refuse(found=quoted_first_line(text), expected="numbers", line=line)
 
 

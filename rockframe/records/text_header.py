@@ -21,6 +21,7 @@ _STATED: Final = re.compile(
 _ACCELERATION_NAME: Final = re.compile(r"\W*(acc|a\b|ag\b)", re.IGNORECASE)
 _TIME_NAME: Final = re.compile(r"\W*(time|t)\b", re.IGNORECASE)
 _OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
+_BESIDE_A: Final = ("v", "d", "u")
 _PERIOD_NAME: Final = re.compile(r"\W*(period|freq|omega|t_?n\b)", re.IGNORECASE)
 _SPECTRAL_NAME: Final = re.compile(
     r"\W*(?:pseudo|p?s_?[adv](?![a-z])|f(?:ourier|as\b|ft\b))|.*spectr", re.IGNORECASE
@@ -130,13 +131,22 @@ def acceleration_columns(
         # for a single column the unit is searched in the whole header
         return [TextColumn(place, f"column {place + 1}") for place in places]
     units = _unit_row(table, columns)
+    plain_names = [_BRACKETED.sub("", name).strip() or name for name in names]
+    # next to an "a" they are velocity and displacement, not directions
+    letters = _BESIDE_A if "a" in map(str.casefold, plain_names) else ()
     found: list[TextColumn] = []
     for place in places:
         own = [*in_brackets(names[place])[-1:], *units[place : place + 1]]
-        if _is_other(names[place]) or any(map(other_quantity, own)):
+        plain = plain_names[place]
+        if _IN_TIME.match(plain) or any(unit.casefold() in TIME_UNITS for unit in own):
+            if timed:
+                continue
+            found_name = f"the times {names[place]!r} after another column"
+            expected = "the times in the first column"
+            raise source.refuse(found=found_name, expected=expected, line=line)
+        if _is_other(names[place]) or any(map(other_quantity, own)) or plain.casefold() in letters:
             continue
         known = next((unit for unit in own if acceleration_unit(unit) is not None), None)
-        plain = _BRACKETED.sub("", names[place]).strip() or names[place]
         found.append(TextColumn(place, plain, _direction(plain), known))
     if not found:
         names_found = ", ".join(names[:6])
@@ -247,12 +257,12 @@ _OTHER_TIME_UNITS: Final = ("us", "ns", "min", "minutes", "h", "hours", "hz")
 _STEP: Final = re.compile(
     rf"(?:\bd_?t|\bdelta[ _]?t|\btime[ _-]?(?:step|increment|interval)|"
     rf"\bsampl(?:ing|e)[ _-]?(?:interval|period))\s*(?:[(\[]\s*([a-z]{{1,7}})\.?\s*[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})\s*([a-z]{{0,7}})",
+    rf"\s*[:=]\s*({NUMBER})(?![\d.]*\s*/)\s*([a-z]{{0,7}})",  # 1/200 is not read as 1
     re.IGNORECASE | re.ASCII,
 )
 _RATE: Final = re.compile(
     rf"(?:\bsampl(?:ing|e)[ _-]?(?:rate|frequency))\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})",
+    rf"\s*[:=]\s*({NUMBER})(?!\s*kHz)",
     re.IGNORECASE | re.ASCII,
 )
 _PEAK: Final = re.compile(

@@ -10,6 +10,7 @@ the files themselves.
 import math
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 from rockframe.records.checks import (
@@ -121,6 +122,11 @@ def _geonet_blocks(source: Source) -> list[tuple[_Block, int]]:
         if block.corrected:
             counts += [block.quantity(35, "velocities"), block.quantity(36, "displacements")]
         index = block.data + sum(map(_GEONET_LAYOUT.rows, counts))
+        if index > source.last_line:
+            # if a line is missing, the next one takes its place, even one of velocities
+            found = f"the end of the file in component {len(blocks)}"
+            expected = f"{index} lines, with all of its numbers"
+            raise source.refuse(found=found, expected=expected, line=source.last_line)
     return blocks
 
 
@@ -238,26 +244,36 @@ def _is_bhrc(source: Source) -> bool:
 
 def _read_bhrc(source: Source, request: Request) -> Record:
     starts: list[int] = []
+    named = 0
     for index, line in enumerate(source.lines):
         if line.startswith("* VOL") and _BHRC_FIRST.match(line[:80]):
             starts.append(index)
+        named += _BHRC_NAME.match(line[:80]) is not None
+        if named > len(starts) > 0:
+            # else it would be skipped like other lines after the samples
+            found = f"{quoted_first_line(line)}, the second below one first line"
+            expected = "a line such as '* VOL1DS FILE:  5526/01' above each component"
+            raise source.refuse(found=found, expected=expected, line=index + 1)
         if len(starts) > _MOST_COMPONENTS:
             expected = f"at most {_MOST_COMPONENTS} components"
             raise source.refuse(found="more", expected=expected, line=index + 1)
     if not starts:
         expected = "a first line such as '* VOL1DS FILE:  5526/01'"
         raise source.refuse(found=quoted_first_line(source.start), expected=expected, line=1)
-    components = [_bhrc_component(source, request, first) for first in starts]
+    components = [
+        _bhrc_component(source, request, first, end)
+        for first, end in pairwise((*starts, len(source.lines)))
+    ]
     return choose_component(source, request, components)
 
 
-def _bhrc_component(source: Source, request: Request, first: int) -> FileComponent:
+def _bhrc_component(source: Source, request: Request, first: int, end: int) -> FileComponent:
     text = source.top(_BHRC_TEXT, first)
     found, line = needed_match(source, _BHRC_NAME, text, "COMP L1", first + 1)
     name = found[1]
     return FileComponent(
         name,
-        lambda: _bhrc_samples(source, request, first, text),
+        lambda: _bhrc_samples(source, request, first, end, text),
         _bhrc_orientation(name, text),
         aliases=(name.rstrip("0123456789"),),
         line=line,
@@ -274,7 +290,9 @@ def _bhrc_orientation(name: str, text: list[str]) -> Orientation:
     return azimuth_of(float(said[0][1 if letter == "L" else 2]))
 
 
-def _bhrc_samples(source: Source, request: Request, first: int, text: list[str]) -> Record:
+def _bhrc_samples(
+    source: Source, request: Request, first: int, end: int, text: list[str]
+) -> Record:
     volume = _BHRC_FIRST.match(text[0])
     if volume is None or volume[1] != "1":
         expected = "uncorrected accelerations (volume 1)"
@@ -296,7 +314,7 @@ def _bhrc_samples(source: Source, request: Request, first: int, text: list[str])
         if station is not None:
             metadata["station_name"] = station[1]
     stated = [Stated(points[2], LENGTH, line)]
-    behind = surplus(source, data + _BHRC_LAYOUT.rows(count), f"line {line}")
+    behind = surplus(source, data + _BHRC_LAYOUT.rows(count), f"line {line}", end)
     return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
 
 

@@ -171,7 +171,7 @@ def test_all_figures_are_here_and_take_the_three():
         shared = {"units", "title"} if name == "player" else {"units", "ax", "title"}
         assert shared <= set(taken)
         assert all(taken[one].default is None for one in shared)
-        assert "mapping of str to str, optional\n    Units by what they are of" in inspect.getdoc(
+        assert "mapping of str to str, optional\n    Units by quantity" in inspect.getdoc(
             getattr(rf.plot, name)
         )
 

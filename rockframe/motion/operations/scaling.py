@@ -158,15 +158,19 @@ def times(signal: Signal, ratio: float) -> Signal:
 
 
 def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
-    added: dict[str, str | float] = {}
-    sense, azimuth = motion.metadata.get(SENSE), motion.metadata.get("azimuth")
+    added: dict[str, str | float] = {"scale_factor": ratio}
+    known = motion.metadata
+    sense, azimuth, component = (known.get(key) for key in (SENSE, "azimuth", "component"))
     # a negative factor reverses the positive direction
     if ratio < 0.0 and sense in _OPPOSITE:
         added[SENSE] = _OPPOSITE[str(sense)]
     if ratio < 0.0 and isinstance(azimuth, int | float):
         added["azimuth"] = (azimuth + 180.0) % 360.0
+    if ratio < 0.0 and component is not None:  # no name from which the old direction is read
+        name = str(component)
+        added["component"] = name[1:] if name.startswith("-") else f"-{name}"
     for name in ("scale_factor", "vertical_scale_factor"):
-        factor = motion.metadata.get(name)
+        factor = known.get(name)
         if isinstance(factor, int | float):
             added[name] = factor * ratio
     return following(

@@ -133,6 +133,26 @@ def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, g
         assert GroundMotion.read(path, **given).sha256 == own.sha256
 
 
+@pytest.mark.parametrize("text", [formats.smc() * 2, made.resorce() * 2], ids=["smc", "resorce"])
+def test_a_second_record_behind_the_first_is_said_to_be_left_out(text, write):
+    with pytest.warns(RecordWarning, match="rows of numbers after the last sample"):
+        GroundMotion.read(write(text, "record"))
+
+
+@pytest.mark.parametrize(
+    ("text", "mark", "words"),
+    [
+        (formats.cosmos(), "(Format v", "acceleration pts.*the second in this block"),
+        (made.bhrc(), "* VOL", "'COMP T3', the second below one first line"),
+    ],
+    ids=["cosmos", "bhrc"],
+)
+def test_a_component_whose_first_line_is_damaged_is_not_passed_over(text, mark, words, write):
+    before, _, behind = text.rpartition(mark)
+    with pytest.raises(RecordError, match=words):
+        GroundMotion.read(write(before + behind, "record"))
+
+
 def column(values, unit="gal") -> str:
     return f"# unit: {unit}, dt = 0.01 s\n" + "".join(f"{value:.6f}\n" for value in values)
 
