@@ -129,13 +129,13 @@ def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, g
     # the last full row of the samples, once more and twice
     extra = [lines[end - 2]] * 2
     path = write("\n".join([*lines[:end], *extra, *lines[end:]]) + "\n", "record")
-    with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers behind"):
+    with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers after"):
         assert GroundMotion.read(path, **given).sha256 == own.sha256
 
 
 @pytest.mark.parametrize("text", [formats.smc() * 2, made.resorce() * 2], ids=["smc", "resorce"])
 def test_a_second_record_behind_the_first_is_said_to_be_left_out(text, write):
-    with pytest.warns(RecordWarning, match="rows of numbers behind the last sample"):
+    with pytest.warns(RecordWarning, match="rows of numbers after the last sample"):
         GroundMotion.read(write(text, "record"))
 
 

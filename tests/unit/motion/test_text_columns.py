@@ -100,7 +100,7 @@ class TestNames:
     def test_times_behind_another_column_are_no_accelerations(self, write, head):
         text = head + "".join(f"{k},{0.01 * k:.2f},{a:.7f}\n" for k, a in enumerate(VALUES))
         for given in ({}, {"time_step": "0.02 s"}, {"time_step": "0.01 s", "component": "acc"}):
-            with pytest.raises(RecordError, match=r"line 1: found the times 't.* behind"):
+            with pytest.raises(RecordError, match=r"line 1: found the times 't.* after"):
                 read(write, text, **given)
 
     def test_velocity_and_displacement_by_their_letters_are_not_vertical(self, write):
