@@ -190,7 +190,8 @@ def player(
     shown_at = drawn.nearest(np.linspace(start, end, count))
     store = _Numbers()
     layers = _layers(moving, shown_at, store)
-    label = _label("rotation", "-" if unit is None else unit.words)
+    whose = " of body 1" if "body" in drawn.dataset.dims else ""
+    label = _label(f"rotation{whose}", "-" if unit is None else unit.words)
     length = chosen.of(LENGTH)
     traces = [
         _trace(of_rotation(drawn, unit), label, BLUE, store),
