@@ -68,8 +68,8 @@ def dynamic_analysis(
 ) -> Panels:
     """Draw the intensity over the peak rotation that it brings, and the share that overturned.
 
-    Left, a line in grey for each motion, up to where it first overturns, with a mark there; hollow
-    marks where the verdict changes again. Of four motions or more, fractiles: the peaks below which
+    Left, a line in grey for each motion, with a mark where it first overturns; hollow marks where
+    the verdict changes again. Of four motions or more, fractiles: the peaks below which
     16, 50 and 84 % of the motions stay at an intensity; where one turns level, that share has
     overturned. Fewer motions have a colour each. Right, the share of motions whose capacity is
     below an intensity, for each limit state.
