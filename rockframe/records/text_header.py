@@ -206,19 +206,15 @@ def unit_of_header(
 ) -> tuple[str | None, int | None]:
     """Find the unit of the accelerations in the header."""
     unknown: tuple[str, int] | None = None
-    other: tuple[str, int] | None = None
     known: list[tuple[str, int, float]] = []
     for line, name, certain in _unit_candidates(table):
         unit = acceleration_unit(name)
         if unit is not None:
             known.append((name, line, unit.factor))
-        elif certain and name.casefold() not in TIME_UNITS:
-            if other_quantity(name) is not None:
-                other = other or (name, line)
-            elif not known and _LIKE_UNIT.fullmatch(name):
+        elif certain and name.casefold() not in TIME_UNITS and not known:
+            if other_quantity(name) is not None or _LIKE_UNIT.fullmatch(name):
                 return name, line  # not that of a line farther from the numbers
-            else:
-                unknown = unknown or (name, line)
+            unknown = unknown or (name, line)
     if known:
         name, line, factor = known[0]
         differing = [entry for entry in known if not math.isclose(entry[2], factor)]
@@ -226,7 +222,7 @@ def unit_of_header(
             found = f"the units {name!r} and {differing[0][0]!r} (line {differing[0][1]})"
             raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
         return name, line
-    return other or unknown or (None, None)
+    return unknown or (None, None)
 
 
 def in_brackets(text: str) -> list[str]:
