@@ -227,7 +227,7 @@ def surplus(source: Source, index: int, what: str, end: int | None = None) -> li
     ]
 
 
-def unfinished(source: Source, line: int, rows: int) -> list[str]:
+def ends_inside(source: Source, line: int, rows: int) -> list[str]:
     """Say of a file that it ends among the rows below a line, so that others may be missing."""
     if line + rows <= source.last_line:
         return []

@@ -16,9 +16,9 @@ from rockframe.records.checks import (
     Stated,
     check_asked_time_step,
     check_time_step,
+    ends_inside,
     record_of,
     surplus,
-    unfinished,
 )
 from rockframe.records.components import (
     DOWNWARDS,
@@ -229,19 +229,19 @@ def _read(source: Source, request: Request) -> Record:
         kinds = ", ".join(sorted({quoted_first_line(block.kind) for block in blocks})[:4])
         expected = "an acceleration"
         raise source.refuse(found=f"only {kinds}", expected=expected, line=blocks[0].index + 1)
-    cut = [] if blocks[-1] in wanted else _unfinished(source, blocks[-1])
+    cut = [] if blocks[-1] in wanted else _ends_inside(source, blocks[-1])
     components = [_component(source, request, block, cut) for block in wanted]
     return choose_component(source, request, components)
 
 
-def _unfinished(source: Source, block: _Block) -> list[str]:
+def _ends_inside(source: Source, block: _Block) -> list[str]:
     """Say of a file that it ends inside a block, whatever that holds."""
     for line, text in enumerate(source.lines[block.index : block.end], start=block.index + 1):
         match = _DATA_LINE.match(text) if "pts" in text else None
         if match is not None:
             layout = FixedWidth(int(match.group(5)), max(int(match.group(4) or 1), 1))
-            return unfinished(source, line, layout.rows(int(match.group(1))))
-    return unfinished(source, block.index + 1, len(source.lines))
+            return ends_inside(source, line, layout.rows(int(match.group(1))))
+    return ends_inside(source, block.index + 1, len(source.lines))
 
 
 def _blocks(source: Source) -> list[_Block]:

@@ -40,10 +40,10 @@ from rockframe.records.checks import (
     Stated,
     check_asked_time_step,
     check_time_step,
+    ends_inside,
     record_of,
     settle_time_step,
     surplus,
-    unfinished,
 )
 from rockframe.records.components import (
     FileComponent,
@@ -309,7 +309,7 @@ def _read(source: Source, request: Request) -> Record:
 def _components(source: Source, request: Request) -> list[FileComponent]:
     """Find the channels, also those without data, whose reading raises an error."""
     blocks = _blocks(source)
-    cut = _unfinished(source)
+    cut = _ends_inside(source)
     components: list[FileComponent] = []
     there = False
     for first, end in pairwise(_starts(source, blocks)):
@@ -328,7 +328,7 @@ def _components(source: Source, request: Request) -> list[FileComponent]:
     return components if there else []
 
 
-def _unfinished(source: Source) -> list[str]:
+def _ends_inside(source: Source) -> list[str]:
     """Say of a file that it ends inside velocities or displacements, which are not read."""
     for line in range(len(source.lines), 0, -1):
         text = source.lines[line - 1][:_LONGEST_DATA_LINE]
@@ -336,7 +336,7 @@ def _unfinished(source: Source) -> list[str]:
         if match is not None:
             said = _LAYOUT.search(text)
             per_line = _PER_LINE if said is None else max(int(said.group(1)), 1)
-            return unfinished(source, line, FixedWidth(1, per_line).rows(int(match.group(1))))
+            return ends_inside(source, line, FixedWidth(1, per_line).rows(int(match.group(1))))
     return []
 
 

@@ -19,6 +19,8 @@ from rockframe.signals.arrays import Array
 # no digit can be matched in two ways, so that a failed match takes linear time
 NUMBER: Final = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
 ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
+WHOLE_NUMBER: Final = rf"({NUMBER})(?!\d|\.\d|[EeDd][-+]?\d)"
+"""A number in a pattern that goes on behind it, of which no part is to be taken."""
 _SHAPE: Final = re.compile(r"[-+]?\d*(\.\d*)?(?:[EeDd][-+]?(\d+))?", re.ASCII)
 _SAME_SHAPE: Final = 20
 _FEWEST: Final = 4

@@ -27,19 +27,18 @@ from rockframe.records.components import (
     orientation_of,
 )
 from rockframe.records.headers import first_match
-from rockframe.records.numbers import NUMBER, all_numbers, whole, with_e
+from rockframe.records.numbers import NUMBER, WHOLE_NUMBER, all_numbers, whole, with_e
 from rockframe.records.reader import Format, Metadata, Record, Request, Source, quoted_first_line
-from rockframe.records.unit_names import choose_unit
+from rockframe.records.unit_names import SLASHED, STATED_UNIT, choose_unit
 
 _SUFFIX: Final = ".at2"
 
 HEADER_LINES: Final = 20
 _POINTS: Final = re.compile(r"NPTS\s*[=:]\s*([-+]?[\d.]+)", re.IGNORECASE)
-_STEP: Final = re.compile(rf"\bDT\s*[=:]\s*({NUMBER})", re.IGNORECASE)
+# neither a fraction nor milliseconds are read as so many seconds
+_STEP: Final = re.compile(rf"\bDT\s*[=:]\s*{WHOLE_NUMBER}(?!\s*(?:/|m(?:illi)?s))", re.IGNORECASE)
 _WEST1: Final = re.compile(rf"^\s*([-+]?\d+)\s+({NUMBER})\s+NPTS\b", re.IGNORECASE)
-_UNIT: Final = re.compile(
-    r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*\(?\s*([^\s(),;]+)", re.IGNORECASE
-)
+_UNIT: Final = re.compile(rf"{STATED_UNIT}\(?\s*([^\s(),;]+{SLASHED})", re.IGNORECASE)
 _OTHER_KIND: Final = re.compile(r"\b(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
 _END_MARK: Final = re.compile(r"\*{2,}\s*END\b.{0,20}", re.IGNORECASE)
 _LAST_LINES: Final = 50

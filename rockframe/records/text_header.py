@@ -8,16 +8,19 @@ from typing import Final
 
 from rockframe.records.checks import Stated
 from rockframe.records.components import UNKNOWN, Orientation, orientation_of
-from rockframe.records.numbers import NUMBER, with_e
+from rockframe.records.numbers import NUMBER, WHOLE_NUMBER, with_e
 from rockframe.records.reader import Source, quoted_first_line
 from rockframe.records.text_columns import Table, split_header
-from rockframe.records.unit_names import acceleration_unit, other_quantity
+from rockframe.records.unit_names import (
+    SLASHED,
+    STATED_UNIT,
+    acceleration_unit,
+    other_quantity,
+)
 
 # with one level of inner brackets, as in [1/(s^2)]; no blank can be matched in two ways
 _BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")
-_STATED: Final = re.compile(
-    r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*[(\[]?\s*([^\s()\[\],;]+)", re.IGNORECASE
-)
+_STATED: Final = re.compile(rf"{STATED_UNIT}[(\[]?\s*([^\s()\[\],;]+{SLASHED})", re.IGNORECASE)
 _ACCELERATION_NAME: Final = re.compile(r"\W*(acc|a\b|ag\b)", re.IGNORECASE)
 _TIME_NAME: Final = re.compile(r"\W*(time|t)\b", re.IGNORECASE)
 _OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
@@ -206,19 +209,15 @@ def unit_of_header(
 ) -> tuple[str | None, int | None]:
     """Find the unit of the accelerations in the header."""
     unknown: tuple[str, int] | None = None
-    other: tuple[str, int] | None = None
     known: list[tuple[str, int, float]] = []
     for line, name, certain in _unit_candidates(table):
         unit = acceleration_unit(name)
         if unit is not None:
             known.append((name, line, unit.factor))
-        elif certain and name.casefold() not in TIME_UNITS:
-            if other_quantity(name) is not None:
-                other = other or (name, line)
-            elif not known and _LIKE_UNIT.fullmatch(name):
+        elif certain and name.casefold() not in TIME_UNITS and not known:
+            if other_quantity(name) is not None or _LIKE_UNIT.fullmatch(name):
                 return name, line  # not that of a line farther from the numbers
-            else:
-                unknown = unknown or (name, line)
+            unknown = unknown or (name, line)
     if known:
         name, line, factor = known[0]
         differing = [entry for entry in known if not math.isclose(entry[2], factor)]
@@ -226,7 +225,7 @@ def unit_of_header(
             found = f"the units {name!r} and {differing[0][0]!r} (line {differing[0][1]})"
             raise source.refuse(found=found, expected="one unit, or the argument unit", line=line)
         return name, line
-    return other or unknown or (None, None)
+    return unknown or (None, None)
 
 
 def in_brackets(text: str) -> list[str]:
@@ -279,12 +278,12 @@ _OTHER_TIME_UNITS: Final = ("us", "ns", "min", "minutes", "h", "hours", "hz")
 _STEP: Final = re.compile(
     rf"(?:\bd_?t|\bdelta[ _]?t|\btime[ _-]?(?:step|increment|interval)|"
     rf"\bsampl(?:ing|e)[ _-]?(?:interval|period))\s*(?:[(\[]\s*([a-z]{{1,7}})\.?\s*[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})(?![\d.]*\s*/)\s*([a-z]{{0,7}})",  # 1/200 is not read as 1
+    rf"\s*[:=]\s*{WHOLE_NUMBER}(?!\s*/)\s*([a-z]{{0,7}})",  # 1/200 is not read as 1
     re.IGNORECASE | re.ASCII,
 )
 _RATE: Final = re.compile(
     rf"(?:\bsampl(?:ing|e)[ _-]?(?:rate|frequency))\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})(?!\s*kHz)",
+    rf"\s*[:=]\s*{WHOLE_NUMBER}(?!\s*kHz)",
     re.IGNORECASE | re.ASCII,
 )
 _PEAK: Final = re.compile(

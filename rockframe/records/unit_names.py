@@ -78,6 +78,12 @@ OTHER_QUANTITIES: Final[dict[str, str]] = {
 """Units of other quantities than an acceleration, spelt as above."""
 
 
+STATED_UNIT: Final = r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*"
+SLASHED: Final = r"(?:\s{0,3}[/*^]\s{0,3}[^\s()\[\],;]{1,12}){0,4}"
+"""Patterns of what stands before a unit in a header, and of its parts behind slashes and signs
+of multiplication, with blanks between them."""
+
+
 def normalised(name: str) -> str:
     """Spell a unit name as the tables here do."""
     text = re.sub(r"\s+", "", name.casefold())

@@ -88,8 +88,8 @@ def read_suite(
     >>> import tempfile
     >>> from pathlib import Path
     >>> folder = Path(tempfile.mkdtemp())
-    >>> for name in ("north", "east"):
-    ...     text = "time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n"
+    >>> for name, peak in (("north", 0.1), ("east", 0.2)):
+    ...     text = f"time (s),acceleration (g)\n0,0\n0.01,{peak}\n0.02,-0.1\n"
     ...     _ = (folder / f"{name}.csv").write_text(text)
     >>> list(read_suite(folder))
     ['east', 'north']

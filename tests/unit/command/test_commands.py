@@ -134,7 +134,7 @@ def test_a_certificate_is_told_and_kept(typed):
 
 
 def test_motions_are_listed_with_their_measures(typed, folder):
-    shutil.copy("record.AT2", "other.AT2")
+    rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz").to_at2("other.AT2")
     code, told, _ = typed(
         "motion", "record.AT2", "other.AT2", "--picture", "m.png", "--csv", "m.csv"
     )

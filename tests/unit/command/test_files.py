@@ -156,9 +156,8 @@ rtol = 1e-6
 
 def test_files_are_found_beside_the_scene(file, tmp_path, monkeypatch):
     (tmp_path / "records").mkdir()
-    pulse = rf.GroundMotion.sine_pulse("-3 m/s^2")
-    for name in ("a", "b"):
-        pulse.to_at2(tmp_path / "records" / f"{name}.AT2")
+    for name, peak in (("a", "-3 m/s^2"), ("b", "-2 m/s^2")):
+        rf.GroundMotion.sine_pulse(peak).to_at2(tmp_path / "records" / f"{name}.AT2")
     path = file(
         f'{BLOCK}[motion]\nfile = "records/a.AT2"\noperations = [{{scaled = {{factor = 2}}}}]'
     )

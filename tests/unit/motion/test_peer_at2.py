@@ -39,6 +39,13 @@ def test_points_line(write, dialect):
     assert motion.metadata["date"] == "10/18/1989"
 
 
+@pytest.mark.parametrize("step", ["10/2000", "5.25 MSEC", "5.0E-0 ms"])
+def test_a_time_step_that_is_written_in_another_way_is_not_read_in_part(write, step):
+    text = at2(f"NPTS= {COUNT}, DT= {step}", VALUES)
+    with pytest.raises(RecordError, match="NPTS= <count>, DT= <seconds> SEC"):
+        GroundMotion.read(write(text))
+
+
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 @pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
 def test_line_ends_and_byte_order_mark(write, end, mark):
@@ -106,10 +113,13 @@ def test_eight_columns_and_a_unit_in_parentheses(write):
 
 @pytest.mark.parametrize(
     ("spelling", "factor"),
-    [("G", G), ("G. FILTER POINTS: HP=0.05 Hz", G), ("CM/S/S", 0.01), ("CM/SEC2", 0.01)],
+    [
+        *(("G", G), ("G. FILTER POINTS: HP=0.05 Hz", G), ("G / 10", 0.1 * G)),
+        *((spelling, 0.01) for spelling in ("CM/S/S", "CM/SEC2", "CM / S / S")),
+    ],
 )
 def test_unit_of_the_header(write, spelling, factor):
-    scale = 1.0 if factor == G else 100.0
+    scale = 100.0 if factor == 0.01 else 1.0
     text = at2(
         DIALECTS["SMD"], VALUES * scale, unit=f"ACCELERATION TIME HISTORY IN UNITS OF {spelling}"
     )

@@ -167,6 +167,13 @@ def test_columns_of_something_else(write, header, words):
     assert caught.value.line == 1
 
 
+@pytest.mark.parametrize(("unit", "words"), [("cm/s", "a velocity"), ("cm", "a displacement")])
+def test_the_unit_of_a_remark_is_not_that_of_another_quantity(write, unit, words):
+    path = write(table(header=f"# peak of 0.3 (g)\ntime (s),x ({unit})\n"), "r.csv")
+    with pytest.raises(RecordError, match=f"{words} in {unit}"):
+        GroundMotion.read(path)
+
+
 def test_times_in_milliseconds(write):
     path = write(table(header="time (ms),acceleration (g)\n", step=5.3, form="{:.1f}"), "r.csv")
     expect(GroundMotion.read(path), step=0.0053)

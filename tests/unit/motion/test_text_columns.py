@@ -84,7 +84,7 @@ class TestStatedSteps:
         with pytest.raises(RecordError, match=r"line \d: .*expected the 0\.03 s asked for"):
             read(write, column(head), time_step="0.03 s")
 
-    @pytest.mark.parametrize("head", ["# dt = 1/200 s\n", "# sampling rate = 0.2 kHz\n"])
+    @pytest.mark.parametrize("head", ["# dt = 10/2000 s\n", "# sampling rate = 0.25 kHz\n"])
     def test_that_is_written_in_another_way_is_not_read_in_part(self, write, head):
         with pytest.raises(RecordError, match="no times"):
             read(write, column(head), unit="g")
