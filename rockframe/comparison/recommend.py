@@ -119,6 +119,11 @@ def recommend(
             f"For an error of at most {_share(limit, 3)}, take {rung}: {found}, {cost}, "
             f"{_without_exponent(slowest, 3)} times faster than the slowest rung."
         )
+        if error == "peak_error" and "overturned" in dataset and dataset["overturned"][row, column]:
+            sentence += (
+                " It overturns, and its peak is where that ends the run, in any model: "
+                "error='history_error' compares them along time."
+            )
     elif np.isfinite(errors[row, column]):
         within = _share(limit, 3)
         sentence = f"No rung tried comes within {within}; the nearest is {rung}: {found}."

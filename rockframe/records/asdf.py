@@ -16,6 +16,7 @@ import json
 import math
 import re
 import warnings
+from collections import Counter
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -128,10 +129,16 @@ def _components(source: Source, request: Request, file: Any) -> list[FileCompone
     stations = {one.group for one in held}
     tags = {one.tag for one in held}
 
+    pieces = Counter((one.codes, one.tag) for one in held)
+
     def component(one: _Waveform) -> FileComponent:
         short = one.channel if len(stations) == 1 else one.codes
 
         def samples() -> Record:
+            count = pieces[one.codes, one.tag]
+            if request.every and count > 1:  # asked for by its whole name a piece is read
+                found = f"{count} pieces of {one.codes} {one.tag}"
+                raise source.refuse(found=found, expected="a channel without gaps")
             with _sound(source):
                 return _samples(source, request, file, one)
 

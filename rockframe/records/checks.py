@@ -31,7 +31,14 @@ USUAL_OFFSET: Final = 1e-3
 OFFSET_SHARE: Final = 0.15
 """Offset over the largest distance from it, up to which there is no warning [1]."""
 
-MISSING: Final = (999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38)
+MISSING: Final = (
+    *(999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38),
+    *(
+        float(f"{nines}.{tail}")
+        for nines in ("999", "9999", "99999")
+        for tail in ("9", "99", "999")
+    ),
+)
 """Values, of either sign, by which agencies mark missing samples."""
 
 PEAK_SHARE: Final = 0.015
@@ -217,6 +224,16 @@ def surplus(source: Source, index: int, what: str, end: int | None = None) -> li
     return [
         f"{source.path}, line {first + 1}: {many} of numbers after the last sample that "
         f"{what} announces; they are not read"
+    ]
+
+
+def unfinished(source: Source, line: int, rows: int) -> list[str]:
+    """Say of a file that it ends among the rows below a line, so that others may be missing."""
+    if line + rows <= source.last_line:
+        return []
+    return [
+        f"{source.path}, line {source.last_line}: the file ends inside what line {line} announces; "
+        "components may be missing"
     ]
 
 

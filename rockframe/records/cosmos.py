@@ -18,6 +18,7 @@ from rockframe.records.checks import (
     check_time_step,
     record_of,
     surplus,
+    unfinished,
 )
 from rockframe.records.components import (
     DOWNWARDS,
@@ -228,8 +229,19 @@ def _read(source: Source, request: Request) -> Record:
         kinds = ", ".join(sorted({quoted_first_line(block.kind) for block in blocks})[:4])
         expected = "an acceleration"
         raise source.refuse(found=f"only {kinds}", expected=expected, line=blocks[0].index + 1)
-    components = [_component(source, request, block) for block in wanted]
+    cut = [] if blocks[-1] in wanted else _unfinished(source, blocks[-1])
+    components = [_component(source, request, block, cut) for block in wanted]
     return choose_component(source, request, components)
+
+
+def _unfinished(source: Source, block: _Block) -> list[str]:
+    """Say of a file that it ends inside a block, whatever that holds."""
+    for line, text in enumerate(source.lines[block.index : block.end], start=block.index + 1):
+        match = _DATA_LINE.match(text) if "pts" in text else None
+        if match is not None:
+            layout = FixedWidth(int(match.group(5)), max(int(match.group(4) or 1), 1))
+            return unfinished(source, line, layout.rows(int(match.group(1))))
+    return unfinished(source, block.index + 1, len(source.lines))
 
 
 def _blocks(source: Source) -> list[_Block]:
@@ -257,7 +269,7 @@ def _blocks(source: Source) -> list[_Block]:
     ]
 
 
-def _component(source: Source, request: Request, block: _Block) -> FileComponent:
+def _component(source: Source, request: Request, block: _Block, cut: list[str]) -> FileComponent:
     header = _read_header(source, block.index, block.end, block.text_lines)
     channel, direction = _channel(header)
     code = _SCNL.search(header.comments)
@@ -267,7 +279,7 @@ def _component(source: Source, request: Request, block: _Block) -> FileComponent
         aliases.append(".".join((code.group(3), code.group(1), code.group(4), code.group(2))))
     return FileComponent(
         name,
-        lambda: _samples(source, request, header),
+        lambda: _samples(source, request, header, cut),
         _orientation(header, direction, code.group(2) if code else ""),
         channel=channel,
         aliases=tuple(aliases),
@@ -296,7 +308,7 @@ def _orientation(header: _Header, direction: str, code: str) -> Orientation:
     return said if said != Orientation() else seed
 
 
-def _samples(source: Source, request: Request, header: _Header) -> Record:
+def _samples(source: Source, request: Request, header: _Header, cut: list[str]) -> Record:
     line, match = _data_line(source, header)
     quantity = header.integer(2)
     if quantity is not None and quantity != ACCELERATION and quantity in QUANTITIES:
@@ -314,7 +326,7 @@ def _samples(source: Source, request: Request, header: _Header) -> Record:
     if peak is not None and quantity == ACCELERATION:
         peak_unit = chosen[1] if request.unit is None else name
         stated.append(Stated(f"{peak:.12g}", peak_unit, header.reals.line(64)))
-    behind = surplus(source, line + layout.rows(count), f"line {line}", header.end)
+    behind = [*surplus(source, line + layout.rows(count), f"line {line}", header.end), *cut]
     metadata = _description(header)
     return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
 

@@ -43,6 +43,7 @@ from rockframe.records.checks import (
     record_of,
     settle_time_step,
     surplus,
+    unfinished,
 )
 from rockframe.records.components import (
     FileComponent,
@@ -261,6 +262,8 @@ _DATA_LINE: Final = re.compile(
     r"([\d.]{1,12})\s+SEC|ACCELEROGRAM POINTS AT\s+([\d.]{1,12})\s+(?:PTS|POINTS|SAMPLES)/SEC)",
     re.IGNORECASE,
 )
+_OTHER_SERIES: Final = re.compile(r"^\s*(\d{1,12})\s+POINTS OF (?:VEL|DISP)", re.IGNORECASE)
+_LONGEST_DATA_LINE: Final = 200
 _UNIT: Final = re.compile(
     r"(?:\bUNITS?\s*(?:[:=]|\bOF\b)?\s*|,\s*IN\s+)\(?([^\s(),;:=]{1,20})", re.IGNORECASE
 )
@@ -306,13 +309,14 @@ def _read(source: Source, request: Request) -> Record:
 def _components(source: Source, request: Request) -> list[FileComponent]:
     """Find the channels, also those without data, whose reading raises an error."""
     blocks = _blocks(source)
+    cut = _unfinished(source)
     components: list[FileComponent] = []
     there = False
     for first, end in pairwise(_starts(source, blocks)):
         held = [block for block in blocks if first <= block.line < end]
         pairs = None if blocks else find_pairs(source, first, end)
         for block in held:
-            read = partial(_samples, source, request, block)
+            read = partial(_samples, source, request, block, cut)
             components.append(_named(block.header, block.first, read))
         if pairs is not None:
             components.append(_component_of_pairs(source, request, first, pairs))
@@ -324,6 +328,18 @@ def _components(source: Source, request: Request) -> list[FileComponent]:
     return components if there else []
 
 
+def _unfinished(source: Source) -> list[str]:
+    """Say of a file that it ends inside velocities or displacements, which are not read."""
+    for line in range(len(source.lines), 0, -1):
+        text = source.lines[line - 1][:_LONGEST_DATA_LINE]
+        match = _OTHER_SERIES.match(text) if "points" in text.casefold() else None
+        if match is not None:
+            said = _LAYOUT.search(text)
+            per_line = _PER_LINE if said is None else max(int(said.group(1)), 1)
+            return unfinished(source, line, FixedWidth(1, per_line).rows(int(match.group(1))))
+    return []
+
+
 def _starts(source: Source, blocks: list[_Block]) -> list[int]:
     """Give the indices of the first lines of channels, and that of the line after the file."""
     named = [
@@ -333,22 +349,18 @@ def _starts(source: Source, blocks: list[_Block]) -> list[int]:
     ]
     if blocks and not (named and named[0] < blocks[0].line):
         named.insert(0, blocks[0].first)
-    starts: list[int] = []
-    for index in named:
-        if not starts or index > starts[-1] + _SECOND_LINE:
-            starts.append(index)
-    return [*starts, len(source.lines)]
+    apart = [b for a, b in pairwise((-_SECOND_LINE - 1, *named)) if b > a + _SECOND_LINE]
+    return [*apart, len(source.lines)]
 
 
 def _without_data(source: Source, first: int, end: int) -> FileComponent:
     """Give a channel that has only a header."""
-    header = source.top(min(end - first, _LONGEST_HEADER), first)
 
     def samples() -> Record:
         found = f"no evenly sampled accelerations below {quoted_first_line(source.lines[first])}"
         raise source.refuse(found=found, expected=_SUCH_AS, line=first + 1)
 
-    return _named(header, first, samples)
+    return _named(source.top(min(end - first, _LONGEST_HEADER), first), first, samples)
 
 
 def _blocks(source: Source) -> list[_Block]:
@@ -360,7 +372,7 @@ def _blocks(source: Source) -> list[_Block]:
             continue
         if "points" not in line[:40].casefold():
             continue  # fast: most lines have only numbers
-        match = _DATA_LINE.match(line[:200])
+        match = _DATA_LINE.match(line[:_LONGEST_DATA_LINE])
         if match is not None:
             start = max(first, index - _LONGEST_HEADER)
             header = source.top(index - start, start)
@@ -388,7 +400,7 @@ def _named(header: list[str], first: int, samples: Callable[[], Record]) -> File
     )
 
 
-def _samples(source: Source, request: Request, block: _Block) -> Record:
+def _samples(source: Source, request: Request, block: _Block, cut: list[str]) -> Record:
     text = source.top(1, block.line)[0]
     said = _UNIT.search(text)
     name, line = said.group(1).rstrip(".") if said else None, block.line + 1
@@ -408,7 +420,7 @@ def _samples(source: Source, request: Request, block: _Block) -> Record:
         chosen,
         description(block.header),
         stated=_stated(block.header, block.first),
-        behind=surplus(source, line + layout.rows(block.count), f"line {line}"),
+        behind=[*surplus(source, line + layout.rows(block.count), f"line {line}"), *cut],
     )
 
 

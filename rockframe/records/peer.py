@@ -219,7 +219,8 @@ def peer_table(source: Source) -> dict[str, Known] | None:
         raise source.refuse(found=found, expected=expected, line=first + 1)
     known: dict[str, Known] = {}
     for place, row in enumerate(rows[1:], start=first + 2):
-        if len(row) < len(heads):
+        # a comma inside a name would shift all that stands behind it
+        if len(row) < len(heads) or any(field.strip() for field in row[len(heads) :]):
             found = f"{len(row)} fields"
             raise source.refuse(found=found, expected=f"{len(heads)}", line=place)
         fields = dict(zip(heads, (field.strip() for field in row), strict=False))

@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from rockframe.records.checks import Stated
@@ -21,6 +21,7 @@ _STATED: Final = re.compile(
 _ACCELERATION_NAME: Final = re.compile(r"\W*(acc|a\b|ag\b)", re.IGNORECASE)
 _TIME_NAME: Final = re.compile(r"\W*(time|t)\b", re.IGNORECASE)
 _OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
+_LIKE_UNIT: Final = re.compile(r"\S*[/^*²]\S*|m?v(?:olts?)?|counts?|cnts?|lsb", re.IGNORECASE)
 _BESIDE_A: Final = ("v", "d", "u")
 _PERIOD_NAME: Final = re.compile(r"\W*(period|freq|omega|t_?n\b)", re.IGNORECASE)
 _SPECTRAL_NAME: Final = re.compile(
@@ -50,7 +51,7 @@ class TextColumn:
 def column_names(source: Source, table: Table) -> tuple[list[str], int]:
     """Find the names of the columns; refuse another quantity or a spectrum."""
     columns = table.values.shape[1]
-    names, line = _names(table, columns)
+    names, line = _names(source, table, columns)
     _check_no_spectrum(source, table, names, line)
     if not names or columns > 2:
         return names, line
@@ -68,17 +69,31 @@ def column_names(source: Source, table: Table) -> tuple[list[str], int]:
     return names, line
 
 
-def _names(table: Table, columns: int) -> tuple[list[str], int]:
+def _names(source: Source, table: Table, columns: int) -> tuple[list[str], int]:
     for line, text in reversed(table.header):
         names = split_header(text, table.separator)
         if len(names) == columns and not all(map(_is_unit, names)):
             return names, line
+        if table.separator is not None and _names_times(names[0]):
+            count = len(split_header(text.rstrip(f" {table.separator}"), table.separator))
+            if 1 < count != columns:
+                found = f"{count} names ({quoted_first_line(text)})"
+                expected = f"{columns}, as there are columns"
+                raise source.refuse(found=found, expected=expected, line=line)
         if table.separator is None:  # single blanks, and units in brackets after the names
             told = _BRACKETED.sub(lambda match: match.group().replace(" ", ""), text)
             parts = re.sub(r"\s+(?=[(\[])", "", told.lstrip("#% \t")).split()
             if len(parts) == columns > 1 and not all(map(_is_unit, parts)):
                 return parts, line
     return [], 1
+
+
+def _names_times(name: str) -> bool:
+    """Tell whether a name says nothing but that there are times below it."""
+    plain = _BRACKETED.sub("", name).strip().casefold()
+    return plain in ("t", "time") or any(
+        unit.casefold() in TIME_UNITS for unit in in_brackets(name)
+    )
 
 
 def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int) -> None:
@@ -135,6 +150,7 @@ def acceleration_columns(
     # next to an "a" they are velocity and displacement, not directions
     letters = _BESIDE_A if "a" in map(str.casefold, plain_names) else ()
     found: list[TextColumn] = []
+    stated: dict[int, str | None] = {}
     for place in places:
         own = [*in_brackets(names[place])[-1:], *units[place : place + 1]]
         plain = plain_names[place]
@@ -148,9 +164,13 @@ def acceleration_columns(
             continue
         known = next((unit for unit in own if acceleration_unit(unit) is not None), None)
         found.append(TextColumn(place, plain, _direction(plain), known))
+        stated[place] = known or next(iter(in_brackets(names[place])[-1:]), None)
     if not found:
         names_found = ", ".join(names[:6])
         raise source.refuse(found=f"the columns {names_found}", expected="accelerations", line=line)
+    if any(column.unit is not None for column in found):
+        # the unit of another column is not that of one whose own is unknown
+        return [replace(column, unit=stated[column.place]) for column in found]
     return found
 
 
@@ -195,6 +215,8 @@ def unit_of_header(
         elif certain and name.casefold() not in TIME_UNITS:
             if other_quantity(name) is not None:
                 other = other or (name, line)
+            elif not known and _LIKE_UNIT.fullmatch(name):
+                return name, line  # not that of a line farther from the numbers
             else:
                 unknown = unknown or (name, line)
     if known:

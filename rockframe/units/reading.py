@@ -322,7 +322,10 @@ def _converted(given: Any, measure: Measure) -> Any:
         number = number.item()
     if not isinstance(number, int | float):
         return given.m_as(unit)
-    return _product(float(number), float(type(given)(1.0, given.units).m_as(unit)))
+    size = float(type(given)(1.0, given.units).m_as(unit))
+    rounded = float(f"{size:.15g}")  # a foot of 0.30479999999999996 m is 0.3048 m
+    short = len(repr(rounded)) <= _LONGEST_FACTOR
+    return _product(float(number), rounded if short else size)
 
 
 def _product(number: float, factor: float) -> float:

@@ -453,6 +453,9 @@ def test_a_number_of_few_digits_stays_one(unit):
     for given in (f"70 {unit}", (70.0, unit), *(pint.Quantity(one, unit) for one in numbers)):
         assert make_block(width=given) == make_block(width="0.7 m")
     assert "width='0.7 m'" in repr(make_block(width=f"70 {unit}"))
+    feet = make_block(height="8 ft", mass="2500 lb")  # 1 ft is 0.30479999999999996 m to pint
+    assert (feet.si.height, feet.si.mass) == (2.4384, 1133.980925)
+    assert to_si_values(([8.0], "ft"), LENGTH, owner="sweep", name="height") == [2.4384]
     held = rf.System(make_block()).moment_rotation(([70.0, 7.0], "mrad"))
     assert held.angle.values.tolist() == [0.07, 0.007]
 

@@ -153,6 +153,18 @@ def test_a_component_whose_first_line_is_damaged_is_not_passed_over(text, mark, 
         GroundMotion.read(write(before + behind, "record"))
 
 
+@pytest.mark.parametrize(
+    ("text", "rows"),
+    [(formats.cosmos(), -1), (formats.cosmos(), 5), (formats.csmip(2), 0), (formats.csmip(2), 5)],
+)
+def test_a_file_that_ends_inside_a_velocity_is_told(text, rows, write):
+    lines = text.split("\n")
+    announced = [k for k, line in enumerate(lines) if "velocity pts" in line or "of vel" in line]
+    path = write("\n".join([*lines[: announced[0] + 1 + rows], ""]), "record")
+    with pytest.warns(RecordWarning, match="the file ends inside what line .* announces"):
+        GroundMotion.read(path)
+
+
 def column(values, unit="gal") -> str:
     return f"# unit: {unit}, dt = 0.01 s\n" + "".join(f"{value:.6f}\n" for value in values)
 
@@ -161,7 +173,7 @@ RANDOM = np.random.default_rng(3)
 SHAKING = 200.0 * np.exp(-(((np.arange(2000) - 700.0) / 300.0) ** 2)) * RANDOM.standard_normal(2000)
 
 
-@pytest.mark.parametrize("mark", [-999.0, 9999.0, -99999.0, -12345.0, -999999.0])
+@pytest.mark.parametrize("mark", [-999.0, 9999.0, -99999.0, -12345.0, -999999.0, -999.9, 9999.99])
 @pytest.mark.parametrize("places", [[400], [0], [1999], [50, 51, 52], [10, 900]])
 def test_marks_of_missing_samples_are_refused(write, mark, places):
     values = 0.5 * SHAKING

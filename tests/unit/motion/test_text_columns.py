@@ -111,6 +111,21 @@ class TestNames:
             GroundMotion.read(path, unit="g", component="v")
         assert read(write, table("t,h,v\n", [VALUES] * 2), unit="g", component="v").si.peak > 0.0
 
+    @pytest.mark.parametrize("unit", ["V", "mm/s^9", "cm//s^2"])
+    def test_an_unknown_unit_is_not_that_of_another_column(self, write, unit):
+        path = write(table(f"time (s),N ({unit}),E (g)\n", [VALUES, VALUES]), "r.csv")
+        with pytest.raises(RecordError, match="the unknown unit"):
+            GroundMotion.read(path, component="N")
+        assert GroundMotion.read(path, component="E").si.peak == pytest.approx(G * VALUES.max())
+        assert GroundMotion.read(path, component="N", unit="gal").metadata["unit_as_read"] == "gal"
+
+    @pytest.mark.parametrize("head", ["time (s),N (g)\n", "t,N,E,vN (cm/s)\n", "time,N,E,U,\n"])
+    def test_as_many_as_there_are_columns(self, write, head):
+        path = write(table(head, [VALUES, VALUES]), "r.csv")
+        with pytest.raises(RecordError, match=r"line 1: found \d names .* expected 3, as there"):
+            rf.read_suite(path, unit="g")
+        assert len(rf.read_suite(write(table("time,N,E\n", [VALUES] * 2), "r.csv"), unit="g")) == 2
+
 
 class TestBreaks:
     @pytest.mark.parametrize("between", ["# a second record\n", "\n", "\n\n# more\n"])
