@@ -491,7 +491,7 @@ class RearWall(Link):
             raise ComponentError(msg)
         of_spring = [name for name in _OF_SPRING if getattr(given, name) is not None]
         if of_spring and given.stiffness is None:
-            msg = f"RearWall: {' and '.join(of_spring)} goes with a stiffness, which is missing"
+            msg = f"RearWall: give a stiffness with {' and '.join(of_spring)}, for an elastic wall"
             raise ComponentError(msg)
         if given.stiffness is not None and given.restitution is not WallImpact.SORRENTINO:
             msg = "RearWall: give restitution or stiffness, not both; a spring has no restitution"

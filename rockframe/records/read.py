@@ -81,7 +81,7 @@ def read_record(
     entry = chosen or recognised(source)
     if request.response is not None and entry.own and entry.name not in WITH_RESPONSE:
         kinds = ", ".join(WITH_RESPONSE)
-        expected = f"a file of counts ({kinds}), which the argument response goes with"
+        expected = f"a file of counts ({kinds}), to which the argument response applies"
         raise source.refuse(found=f"a {entry.title}", expected=expected)
     return _reading(entry, source, _read(entry, source, request))
 

@@ -372,7 +372,7 @@ def _check_text(text: str, start: str, source: Source) -> None:
     line = 1 + start.count("\n", 0, start.index(shown_start[0]))
     if _STATION_XML in shown_start:
         found = "StationXML, which describes an instrument and holds no motion"
-        expected = "the miniSEED file itself; this one goes with it as the argument response"
+        expected = "the miniSEED file itself; give this one as the argument response"
         raise source.refuse(found=found, expected=expected, line=line)
     found = f"a web page or other markup, {quoted_first_line(shown_start)}"
     expected = f"{_RECORD}; was an error page downloaded?"

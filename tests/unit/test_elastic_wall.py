@@ -118,7 +118,7 @@ def test_a_wall_that_stops_the_body_has_critical_damping():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"gap": "1 mm"}, "goes with a stiffness"),
+        ({"gap": "1 mm"}, "give a stiffness"),
         ({"stiffness": "1 MN/m", "restitution": -0.3}, "not both"),
     ],
 )

@@ -215,5 +215,5 @@ def test_what_an_added_reader_refuses_stays_as_it_is(write, registered):
 
 
 def test_a_response_goes_with_counts_only(write):
-    with pytest.raises(RecordError, match="which the argument response goes with"):
+    with pytest.raises(RecordError, match="to which the argument response applies"):
         GroundMotion.read(write("0,1\n1,2\n", "r.csv"), unit="g", response="response.xml")
