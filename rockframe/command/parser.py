@@ -19,7 +19,7 @@ _OWNER: Final = re.compile(
     r"^(case|critical_scale|fragility|incremental_dynamic_analysis|overturning_map|report|sweep|"
     r"simulate|rf\.plot\.\w+): "
 )
-"""Names of functions at the head of messages; on the command line nobody called them."""
+"""Names of functions at the head of messages, which do not help on the command line."""
 _CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
 
 EXIT_CODES: Final = """\
