@@ -551,7 +551,7 @@ LINES = {
     "fragility scene.toml --unit g": "--unit g: this says how a record is read",
     "fragility runs.nc --time-step '0.1 s'": "runs.nc: this is a result",
     "ida scene.toml record.AT2 --scales 1": "scale needs 2 to 100000 different numbers",
-    "map scene.toml --amplitude 1:10:1 --frequency '1 Hz'": "--amplitude: expected numbers followed by their unit",
+    "map scene.toml --amplitude 1:10:1 --frequency '1 Hz'": "--amplitude: expected numbers followed",
     "convert record.AT2 -o record.AT2": "record.AT2: this file is read",
     "convert record.AT2 -o x.dat": "x.dat: the ending gives no format",
     "serve --port x": "'x'",
