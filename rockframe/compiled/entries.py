@@ -6,10 +6,12 @@ types of its arrays and numbers.
 
 import logging
 import os
+import re
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
 from functools import update_wrapper, wraps
 from importlib.util import find_spec
+from pathlib import Path
 from threading import RLock
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar, cast
@@ -92,13 +94,25 @@ def table(values: Any) -> Vector:
     return kept if COMPILED else viewed(kept)
 
 
+_NO_REASONS: Final = ("Failed in", "- Resolution failure", "None")
+_PLACE: Final = re.compile(r'File "([^"]+)", line (\d+)')
+
+
+def _why(problem: Exception) -> str:
+    """Give what could not be compiled, and where: the innermost reason, which comes first."""
+    lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
+    reasons = [line for line in lines if not line.startswith(_NO_REASONS)]
+    reason = " ".join(reasons[:2]) if reasons and reasons[0].endswith(":") else "".join(reasons[:1])
+    place = _PLACE.search(str(problem))
+    at = f"; {Path(place[1]).name}, line {place[2]}" if place else ""
+    return f"{reason or 'no reason'}{at}"
+
+
 def _could_not(function: Callable[..., Any], problem: Exception) -> None:
     """Warn that a function could not be compiled, with the reason; log all of it for debugging."""
-    lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
-    reason = next((line for line in lines if not line.startswith("Failed in")), "no reason")
     _logger.warning(
         "%s.%s could not be compiled, and runs as plain Python, some hundred times slower (%s: "
-        "%s)", function.__module__, function.__qualname__, type(problem).__name__, reason,
+        "%s)", function.__module__, function.__qualname__, type(problem).__name__, _why(problem),
     )  # fmt: skip
     _logger.debug("%s", function.__qualname__, exc_info=problem)
 

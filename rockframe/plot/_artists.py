@@ -19,6 +19,7 @@ from rockframe.plot._axes import (
     Shown,
     ink,
     measured_in,
+    plain,
 )
 from rockframe.plot._panels import Axes
 from rockframe.results.points import Placement
@@ -325,8 +326,8 @@ class SceneArtist:
         key = f"name of {name}"
         if key not in self._artists:
             self._artists[key] = self.axes.annotate(
-                name, (0.0, 0.0), xytext=(5, 3), textcoords="offset points", fontsize="small",
-                zorder=7,
+                plain(name), (0.0, 0.0), xytext=(5, 3), textcoords="offset points",
+                fontsize="small", zorder=7,
             )  # fmt: skip
         self._artists[key].xy = tuple(place[0])
 
@@ -367,7 +368,7 @@ def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
             ]
             found[slot] = "\n   ".join([type(part).__name__, *numbers])
     for number, name in enumerate(link_labels(parts.links)[: len(geometry.ties)]):
-        found[f"tie {number}"] = name
+        found[f"tie {number}"] = plain(name)
     if geometry.bed_sinks is None:
         found["ground"] = "rigid ground"
     return {**found, "centre": "centre of mass", "touching": "contact"}

@@ -6,6 +6,7 @@ legible on white and on black. Text and axes have the colours of matplotlib's st
 """
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -42,6 +43,9 @@ _LETTER, _LINE, _HANDLE = 0.07, 0.19, 0.55
 before the words [in]."""
 
 
+_MOST_LETTERS: Final = 52
+"""Of names in legends."""
+_LEAST_LETTERS: Final = 12
 _FEW: Final = 4
 """Number of labels up to which all are written in full."""
 
@@ -56,6 +60,8 @@ def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> Non
         common, words = apart(words)
         style |= {"title": common, "title_fontsize": "small"} if common else {}
     title = str(style.get("title", ""))
+    room = int((0.95 * width - _HANDLE) / _LETTER)
+    words = [one if "$" in one else plain(one, max(room, _LEAST_LETTERS)) for one in words]
     entry = _HANDLE + _LETTER * max(map(len, words))
     columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
     rows = -(-len(words) // columns) + bool(title)
@@ -80,6 +86,29 @@ def apart(words: list[str]) -> tuple[str, list[str]]:
     common = [one for one in parts[0] if all(one in other for other in parts)]
     rest = [", ".join(one for one in other if one not in common) for other in parts]
     return (", ".join(common), rest) if all(rest) else ("", words)
+
+
+def escaped(text: str) -> str:
+    """Give a text so that matplotlib writes it letter by letter."""
+    return text.replace("$", r"\$")
+
+
+def plain(name: str, most: int = _MOST_LETTERS) -> str:
+    """Give a name as matplotlib writes it letter by letter, in legends too.
+
+    The middle of a long one is left out: it would take the room of what is drawn.
+    """
+    if len(name) > most:
+        name = f"{name[: most - most // 3 - 3]}...{name[-(most // 3) :]}"
+    # legends leave out what begins with an underscore
+    return escaped(f" {name}" if name.startswith("_") else name)
+
+
+def plain_names(names: Iterable[str], most: int = _MOST_LETTERS) -> list[str]:
+    """Give names as :func:`plain` does, numbered where they would be alike."""
+    found = [plain(name, most) for name in names]
+    alike = len(set(found)) < len(found)
+    return [f"{k}: {one}" for k, one in enumerate(found, 1)] if alike else found
 
 
 def ink() -> Any:
@@ -107,7 +136,7 @@ def label_of(values: xr.DataArray) -> str:
 def label_of_value(value: xr.DataArray) -> str:
     """Give a value along an axis with its unit, for a legend."""
     unit = str(value.attrs.get("units", "1"))
-    text = f"{value.item():.4g}" if value.dtype.kind == "f" else str(value.item())
+    text = f"{value.item():.4g}" if value.dtype.kind == "f" else plain(str(value.item()))
     return text if unit == "1" else f"{text} {powers_in_mathtext(unit)}"
 
 

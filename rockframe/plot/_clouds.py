@@ -11,7 +11,9 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
+    plain,
     plain_ticks,
+    raised,
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, single
@@ -91,7 +93,7 @@ def cloud(
     plain_ticks(axes)
     grid(axes)
     on.name_lines()
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes
 
 
@@ -148,7 +150,7 @@ def annual_rate(
     edges = np.exp(np.append(logs - 0.5 * step, logs[-1] + 0.5 * step))
     for number in range(given.sizes["limit_state"]):
         one = given.isel(limit_state=number)
-        state = str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"
+        state = plain(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"
         rate = float(one["annual_rate"])
         if np.isnan(rate):
             continue
@@ -164,5 +166,5 @@ def annual_rate(
     plain_ticks(axes)
     grid(axes)
     on.name_lines()
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes

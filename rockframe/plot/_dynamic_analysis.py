@@ -13,6 +13,8 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
+    plain,
+    raised,
     style_of,
     units_of,
 )
@@ -143,7 +145,9 @@ def _peaks(axes: Axes, given: xr.Dataset, intensity: xr.DataArray, flips: list[n
         one, along = given.isel(motion=number), intensity.isel(motion=number).to_numpy()
         line = _until_flips(along, one["peak_relative_rotation"].to_numpy(), places)
         colour = GREY if several else colour_of(number)
-        words = ("motions" if number == 0 else None) if several else str(one["motion"].item())
+        words = (
+            ("motions" if number == 0 else None) if several else plain(str(one["motion"].item()))
+        )
         axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
         for some, face in ((places[:1], colour), (places[1:], "none")):
             axes.plot(np.full(len(some), _CAPPED), some, "o", mfc=face, color=colour, ms=3)
@@ -169,7 +173,7 @@ def _shares(axes: Axes, given: xr.Dataset, intensity: xr.DataArray) -> None:
         ]
         ordered = np.sort(np.array([0.0, *places]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
-        axes.step(shares, ordered, where="pre", color=colour_of(number), label=str(state))
+        axes.step(shares, ordered, where="pre", color=colour_of(number), label=plain(str(state)))
     axes.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
 
 
@@ -265,5 +269,5 @@ def fractile_curves(
     )
     grid(axes)
     on.name_lines()
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes

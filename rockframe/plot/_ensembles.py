@@ -13,6 +13,8 @@ from rockframe.plot._axes import (
     label_of,
     label_of_intensity,
     label_of_value,
+    plain,
+    raised,
     style_of,
     units_of,
 )
@@ -69,7 +71,7 @@ def ensemble(
     axes.step(values, given["cumulative_probability"], where="post", color=COLOURS[0])
     axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes
 
 
@@ -210,7 +212,7 @@ def subset_simulation(
         ylabel="probability of reaching it [-]",
     )  # fmt: skip
     grid(axes)
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes
 
 
@@ -290,7 +292,7 @@ def fragility(
             _contours(axes, one, measures)
     if len(measures) == 1:
         on.name_lines()
-    on.entitle(verdict_of_fragility(given), title)
+    on.entitle(raised(verdict_of_fragility(given)), title)
     return on.axes if len(measures) == 1 and not structures else on.panels
 
 
@@ -363,4 +365,4 @@ def _contours(axes: Axes, one: xr.Dataset, measures: list[str]) -> None:
 
 
 def _name(one: xr.Dataset) -> str:
-    return str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"
+    return plain(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"

@@ -22,6 +22,7 @@ from rockframe.plot._axes import (
     grid,
     ink,
     key,
+    plain_names,
     style_of,
     units_of,
     zero_line,
@@ -72,7 +73,9 @@ def drawn_motions(given: object, function: str) -> list[Drawn]:
     if labelled and all(isinstance(one, GroundMotion) for one in labelled.values()):
         return [
             Drawn(one, label, colour_of(number), style_of(number))
-            for number, (label, one) in enumerate(labelled.items())
+            for number, (label, one) in enumerate(
+                zip(plain_names(labelled), labelled.values(), strict=True)
+            )
         ]
     if not isinstance(given, GroundMotion):
         raise ComponentError(refuse(function, given))

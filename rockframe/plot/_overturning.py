@@ -15,6 +15,7 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
+    plain_names,
     plain_ticks,
     units_of,
 )
@@ -211,9 +212,9 @@ def _by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: 
         lambda figure: figure.subplots(1, len(names), sharey=True),
     )  # fmt: skip
     for place, axes in enumerate(on.panels):
+        motions = plain_names(map(str, values["motion"].to_numpy()))
         for number, colour in enumerate(colour_steps(values["motion"])):
-            one = values.isel(slenderness=place, motion=number)
-            label = str(one["motion"].item())
+            one, label = values.isel(slenderness=place, motion=number), motions[number]
             axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)
         axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
         grid(axes)

@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.arguments import text
 from rockframe.errors import ComponentError, nearest, shown
-from rockframe.plot._axes import key
+from rockframe.plot._axes import escaped, key
 from rockframe.proposals import proposing
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class Sheet:
         if title is not None:
             text(title, owner="rf.plot", name="title")
         if self.own is not None:
-            set_title(self.own, title or usual)
+            set_title(self.own, title or escaped(usual))
         elif title:
             self.axes.set_title(title, fontsize="medium", wrap=True)
 
@@ -122,7 +122,7 @@ class Sheet:
 
         It has as many columns as there is room for, and `columns` at most.
         """
-        if self.own is None:
+        if self.own is None or not labels:
             key(self.panels[-1], (handles, labels))
             return
         width = _LETTERS_PER_INCH * self.own.bbox.width / self.panels.figure.get_dpi()

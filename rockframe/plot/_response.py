@@ -26,6 +26,7 @@ from rockframe.plot._axes import (
     colour_of,
     ink,
     key,
+    plain,
     units_of,
     zero_line,
 )
@@ -59,7 +60,7 @@ def draw_contact(axes: Axes, state: xr.DataArray, name: str) -> None:
     axes.imshow(colours, extent=ends, aspect="auto", interpolation="antialiased")
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
-    axes.set_ylabel(name, rotation=0, ha="right", va="center")
+    axes.set_ylabel("\n".join(wrap(name, 26)), rotation=0, ha="right", va="center")
 
 
 def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
@@ -151,6 +152,8 @@ CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
 _AT_REST: Final = 1e-12
 """Rotations below this are rounding [rad]."""
+_MOST_OF_PART: Final = 24
+"""Letters of the name of a point or a restrainer."""
 SLIP: Final = "slip"
 OF_BODIES: Final = "body_slip"
 OF_CAP: Final = "cap_slip"
@@ -363,7 +366,7 @@ def _history(axes: Axes, runs: list[Run], name: str, units: ReaderUnits) -> None
         rows = values if values.ndim > 1 else values.expand_dims("row")
         first = str(rows.dims[0])
         for number, row in enumerate(rows):
-            part = str(row[first].item()) if first in row.coords else ""
+            part = plain(str(row[first].item()), _MOST_OF_PART) if first in row.coords else ""
             label = ", ".join(filter(None, (run.label, part))) or None
             colour = run.colour if len(rows) == 1 else colour_of(number)
             axes.plot(run.time, unit.of(row), color=colour, linestyle=run.style, linewidth=0.9,

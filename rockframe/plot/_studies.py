@@ -17,6 +17,7 @@ from rockframe.plot._axes import (
     key,
     label_of,
     label_of_value,
+    plain_names,
     style_of,
     units_of,
     zero_line,
@@ -32,6 +33,8 @@ from rockframe.units.shown import UnitsLike, reader_units
 _MOST_AXES: Final = 2
 """Largest number of dimensions in a figure of a sweep."""
 _MOST_LINES: Final = 12
+_MOST_LETTERS: Final = 28
+"""Of a name below an axis."""
 _PANELS: Final = ("histories", "residual")
 
 
@@ -311,7 +314,7 @@ def _draw_lines(
             down = fell.isel(one).to_numpy().astype(bool)
             axes.plot(places[down], line[down], "x", color=ink(), markersize=6.0)
     if not _is_axis(given, along) and along in given.coords:
-        names = [str(name) for name in given[along].to_numpy()]
+        names = plain_names(map(str, given[along].to_numpy()), _MOST_LETTERS)
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
     elif places.dtype.kind in "iu":  # earthquakes and bodies are counted in integers
         axes.locator_params(axis="x", integer=True)

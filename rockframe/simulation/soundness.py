@@ -327,7 +327,7 @@ def friction_words(scalars: Mapping[str, Generic | float], found: Sequence[Slidi
     if not math.isfinite(most):
         return (
             " Friction needed: more than any, where the base holds without pressing "
-            f"({when:.4g} s); more than 1 for {lasted:.3g} s in all."
+            f"(at {when:.4g} s); more than 1 for {lasted:.3g} s in all."
         )
     if most == 0.0:
         return ""

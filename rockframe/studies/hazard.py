@@ -211,7 +211,7 @@ def _intensities(given: object, name: str, unit: str) -> Array:
     if len(pair) == 2 and pair[1] == unit and own_measure:
         check_own_unit(pair[0], unit, owner=_OWNER, name="intensity")
         return np.asarray(free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
-    values, own = free_values(given, "intensity", owner=_OWNER)
+    values, own = free_values(given, "intensity", owner=_OWNER, expected=unit)
     if own != unit:
         msg = f"{_OWNER}: {name} is in {unit}, got {shown(given)}"
         raise UnitsError(msg)

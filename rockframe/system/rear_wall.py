@@ -22,7 +22,7 @@ from rockframe.system.options import Options
 from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting
 from rockframe.system.statics import Statics
-from rockframe.system.words import Words
+from rockframe.system.words import TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.protocol import ContactModel
@@ -68,6 +68,11 @@ class RearWallSetting(RigidGroundSetting):
         """Ground accelerations at which it begins to rock; infinite towards the wall [m s^-2]."""
         left, right = super().uplift_accelerations
         return (math.inf, right) if self.direction > 0.0 else (left, math.inf)
+
+    def friction_to_rock(self) -> dict[str, float]:
+        """Give the friction below which it slides before it rocks away from the wall."""
+        half = self.body.right if self.direction > 0.0 else self.body.left
+        return {f"{TO_ROCK} b/h": half / self.body.centre_height}
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give the faults of an initial state; a rotation into the wall is one."""

@@ -52,23 +52,13 @@ class RigidBase(Support):
         """Refuse a vertical start: the base leaves no vertical freedom."""
         return [NO_VERTICAL_START] if has_vertical_start else []
 
-    def uplift_accelerations(self) -> tuple[float, float]:
-        """Ground accelerations [m s^-2] at which all above rocks, :eq:`eq-rigid-together`."""
-        body = self.load.body
-        left, right = body.left / body.centre_height, body.right / body.centre_height
-        return self.load.options.gravity * left, self.load.options.gravity * right
-
     def words(self) -> BaseWords:
         """Describe the base."""
-        left, right = self.uplift_accelerations()
-        starts = f"{left:.4g} m s^-2"
-        if left != right:
-            starts = f"{left:.4g} m s^-2 to the left, {right:.4g} m s^-2 to the right"
         return BaseWords(
             law="corners held by forces on rigid bases",
             equations=[],
             uplift=("uplift angle", uplift_words(self.uplift_angle)),
-            numbers=[("rigid, all above rocks as one at xg'' of", starts)],
+            numbers=[],
             left_out=["elasticity of the contacts"],
         )
 
@@ -106,6 +96,32 @@ def pressed(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Pressed:
                 couple += x * (end[1] - level[1]) - y * (end[0] - foot)
     lifts = force * load.body.left + couple, force * load.body.right - couple
     return Pressed(force, *lifts, along)
+
+
+class Lifting(NamedTuple):
+    """What lifts a corner of a rigid base, from which all above then rocks as one."""
+
+    tipping_left: float  # ground acceleration, to the right, that tips it to the left [m s^-2]
+    tipping_right: float  # likewise to the left [m s^-2]
+    friction: float  # below which it slides before either corner lifts [1]
+
+    def words(self) -> str:
+        """Write the accelerations; one where both sides are alike."""
+        left, right = (f"{one:.4g} m s^-2" for one in self[:2])
+        if left == right:
+            return left
+        return f"{left} to the right, which tips it to the left, or {right} to the left"
+
+
+def lifting(setting: "StackSetting", k: int, tied: "Sequence[Tied]") -> Lifting:
+    """Give what lifts a corner of the rigid base under body `k`, with the forces of links at rest.
+
+    Without links it is :eq:`eq-rigid-together`, and the friction b/h.
+    """
+    carried, body = pressed(setting, k, tied), setting.bases[k].load.body
+    shears = carried.to_left / body.centre_height, carried.to_right / body.centre_height
+    needed = min(abs(shears[0] - carried.along), abs(shears[1] + carried.along))
+    return Lifting(shears[0] / body.mass, shears[1] / body.mass, needed / carried.force)
 
 
 def rocking_moment(setting: "StackSetting", k: int, rotation: float) -> "tuple[float, list[Tied]]":

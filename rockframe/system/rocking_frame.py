@@ -19,7 +19,7 @@ from rockframe.system.parts import Parts
 from rockframe.system.rigid_ground import RigidGroundSetting, refuse_fall
 from rockframe.system.stack import refuse_options
 from rockframe.system.statics import Statics
-from rockframe.system.words import Words
+from rockframe.system.words import TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.links import LinkNumbers
@@ -177,6 +177,11 @@ class TiedFrameSetting(RockingFrameSetting):
         more = held / (self.body.mass * self.body.centre_height)
         left, right = super().uplift_accelerations
         return left + more, right + more
+
+    def friction_to_rock(self) -> dict[str, float]:
+        """Give the friction below which the columns slide before they rock against the preload."""
+        pressed = self.body.mass * self.gravity + self.pull(0.0)
+        return {TO_ROCK: self.body.mass * self.uplift_acceleration / pressed}
 
     def _held(self, rotation: float) -> Statics:
         """Give the equilibrium at a rotation, with the tendons."""

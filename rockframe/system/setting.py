@@ -14,7 +14,7 @@ from rockframe.system.options import Options
 from rockframe.system.rigid_base import NO_VERTICAL_START
 from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, required_states
 from rockframe.system.support import Support
-from rockframe.system.words import Words
+from rockframe.system.words import TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.chain.slips import SlippingBodies
@@ -171,6 +171,11 @@ class Setting(ABC):
     @abstractmethod
     def words(self) -> Words:
         """Describe equations, restraint, uplift angles, numbers, and what is left out."""
+
+    def friction_to_rock(self) -> dict[str, float]:
+        """Give, by what it is, the friction below which a base slides before an end lifts."""
+        body = self.body
+        return {f"{TO_ROCK} b/h": min(body.left, body.right) / body.centre_height}
 
     def start_faults(self, rotation: float, has_vertical_start: bool) -> list[str]:
         """Give the faults of an initial state, by the rotation and the base of the body.

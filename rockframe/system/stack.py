@@ -20,6 +20,7 @@ from rockframe.system.rigid_base import (
     REACTIONS,
     RigidBase,
     beyond_lift,
+    lifting,
     pressed,
     rocked_statics,
     rocking_energy,
@@ -27,7 +28,7 @@ from rockframe.system.rigid_base import (
 from rockframe.system.setting import Setting
 from rockframe.system.statics import SmallMotion, Statics, least_overturning_energy, static_values
 from rockframe.system.support import StandingBodies, Support
-from rockframe.system.words import Words
+from rockframe.system.words import TO_ROCK, Words
 
 if TYPE_CHECKING:
     from rockframe.dynamics.base_numbers import BaseNumbers
@@ -128,6 +129,20 @@ class StackSetting(Setting):
         ]
         return [*found, *self._leaning()]
 
+    def friction_to_rock(self) -> dict[str, float]:
+        """Give the friction to rock of all bodies above each base, as one.
+
+        Links stretch before an end lifts from a base that gives way: of these it is not given.
+        """
+        found = dict[str, float]()
+        for k, (rigid, body) in enumerate(zip(self.rigid, (self.body, *self.wholes), strict=True)):
+            name = TO_ROCK if len(self.bodies) == 1 else f"base {k + 1}: {TO_ROCK}"
+            if not self.ties:
+                found[f"{name} b/h"] = min(body.left, body.right) / body.centre_height
+            elif rigid:
+                found[name] = lifting(self, k, self._tied_at_rest).friction
+        return found
+
     def words(self) -> Words:
         """Describe bodies and bases, from the top down."""
         numbers = list[tuple[str, str]]()
@@ -136,6 +151,9 @@ class StackSetting(Setting):
             of_base = base.words()
             size = f"{2.0 * body.half_width:.6g} m wide, centre of mass {body.centre_height:.6g} m"
             numbers.append((f"body {k}", f"{size} above its base, {body.mass:.6g} kg"))
+            if self.rigid[k - 1]:
+                starts = lifting(self, k - 1, self._tied_at_rest).words()
+                numbers.append((f"base {k}: rigid, all above rocks as one at xg'' of", starts))
             numbers += [(f"base {k}: {name}", words) for name, words in of_base.numbers]
             left_out += [one for one in of_base.left_out if one not in left_out]
         numbers += [(one.name, one.words()) for one in self.ties]

@@ -79,17 +79,16 @@ _WIDTH = 100
 
 def describe(setting: "Setting", parts: "Parts") -> str:
     """Describe the model, its equations, its numbers and its limits."""
-    words, body, height = setting.words(), setting.body, setting.body.centre_height
-    theta = angle_words(setting.overturning_angle)
+    words, theta = setting.words(), angle_words(setting.overturning_angle)
+    angles = _of_both_sides(setting) if setting.leans else [(_THETA, theta)]
     sections = {
         "Parts": [("", repr(part)) for part in parts],
         "Contact states and their equations": words.equations,
         "Horizontal restraint": [("", words.restraint)],
         "Numbers": [
             ("gravity", f"{setting.gravity:.6g} m s^-2"),
-            *(_of_both_sides(setting) if setting.leans else [(_THETA, theta)]),
-            # with less friction the base slides before an end lifts, on the side of the lesser one
-            ("friction to rock, at least b/h", f"{min(body.left, body.right) / height:.6g}"),
+            *((f"body 1: {name}" if setting.wholes else name, value) for name, value in angles),
+            *((name, f"{least:.6g}") for name, least in setting.friction_to_rock().items()),
             *words.numbers,
         ],
         "Left out": [("", ", ".join(words.left_out))],
@@ -99,6 +98,7 @@ def describe(setting: "Setting", parts: "Parts") -> str:
 
 
 _THETA: Final = "overturning angle theta, Eq. (1)"
+TO_ROCK: Final = "friction to rock, at least"
 
 
 def _of_both_sides(setting: "Setting") -> list[tuple[str, str]]:

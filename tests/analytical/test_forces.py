@@ -1,6 +1,7 @@
 """Accelerations, reactions, friction demand and points against Newton's law and closed forms."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -348,6 +349,63 @@ def test_a_verdict_tells_the_friction_that_it_needed():
     for other in (at_rest, SCENES["rigid ground"].simulate(PULSE, outputs=None)):
         assert "Friction" not in other.attrs["verdict"]
     assert "friction to rock, at least b/h    0.25\n" in rf.System(BLOCK).describe()
+
+
+TENDON = rf.Tendon(stiffness="2 MN/m", preload="40 kN")
+FRAME = rf.RockingFrame(BLOCK, columns=2, beam_mass="80 t")
+DRUM = rf.Block(width="2.8 m", height="3 m", mass="60 t")
+DRY = rf.RigidGround()
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        rf.System(BLOCK, TENDON),
+        rf.System(BLOCK, rf.Load(at=("-0.2 m", "9.6 m"), vertical="90 kN", horizontal="-4 kN")),
+        rf.System(
+            BLOCK,
+            rf.Restrainer(
+                on=("-1.2 m", "8 m"), to=("-4 m", "1 m"), stiffness="2 MN/m", preload="15 kN"
+            ),
+        ),
+        rf.System(FRAME, TENDON),
+        rf.System(rf.Stack(BLOCK, DRUM, interfaces=[DRY]), DRY),
+    ],
+    ids=["tendon", "load", "tie", "frame", "stack"],
+)
+def test_the_friction_to_rock_is_that_needed_as_rocking_begins(system):
+    told = " ".join(system.describe().split())
+    least = min(map(float, re.findall(r"friction to rock, at least (?:b/h )?([\d.]+)", told)))
+    found = re.findall(r"as one at xg'' of ([\d.]+)|preload holds, ([\d.]+)", told)
+    starts = min(float(one or other) for one, other in found)
+    for share, rocks in ((0.998, False), (1.002, True)):
+        level = share * starts
+        motion = rf.GroundMotion.from_arrays(([0.0, level, level], "m/s^2"), time_step="0.2 s")
+        run = system.simulate(motion, points={"foot": ("0 m", "0 m")})
+        rotation = np.max(run.get("peak_body_rotation", run.peak_rotation))
+        assert (rotation > 0.0) == rocks
+        if not rocks and "body" not in run.dims:
+            assert run.peak_friction_demand.item() == pytest.approx(least, rel=4e-3)
+
+
+def test_frictions_to_rock_are_told_of_each_base_and_of_the_side_that_is_open():
+    told = " ".join(rf.System(rf.Stack(BLOCK, DRUM, interfaces=[DRY]), DRY).describe().split())
+    height = (50.0 * (3.0 + H) + 60.0 * 1.5) / 110.0
+    for words in (
+        "body 1: overturning angle theta, Eq. (1) 0.244979 rad",
+        "base 1: friction to rock, at least b/h 0.25 ",
+        f"base 2: friction to rock, at least b/h {1.4 / height:.6g} ",
+        f"base 2: rigid, all above rocks as one at xg'' of {G * 1.4 / height:.4g} m s^-2",
+    ):
+        assert words in told
+    leaning = rf.Block(
+        width="1 m", height="4 m", mass="4 t", inertia="5 t*m^2", centre_of_mass=("2 m", "0.2 m")
+    )
+    for side, least in (("left", 0.15), ("right", 0.35)):
+        wall = rf.RearWall(side=side, restitution=-0.3)
+        assert f"at least b/h    {least}\n" in rf.System(leaning, wall).describe()
+    on_pads = rf.System(BLOCK, PADS, rf.Load(at=("0 m", "9 m"), vertical="9 kN"))
+    assert "friction to rock" not in on_pads.describe()
 
 
 def test_too_little_friction_warns_with_time_and_duration():

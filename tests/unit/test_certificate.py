@@ -277,7 +277,7 @@ def test_a_course_that_cannot_be_followed_ends_the_margin():
     assert 0.09 < found.margin < 0.12
     assert math.isnan(found.flip)
     assert found.robust
-    assert "200 runs did not do to follow it farther" in found.sentence
+    assert "200 runs were too few to follow it farther" in found.sentence
     assert found.runs <= 200
     more = certify(
         SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(runs=400), run
@@ -297,7 +297,8 @@ def test_a_course_that_is_lost_beside_the_run_says_how_many_runs_lost_it():
     plan = planned()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert found.margin < 0.01
-    assert "Near the boundary: the body stands, but 200 runs did not do to follow" in found.sentence
+    told = "Near the boundary: the body stands, but 200 runs were too few to follow"
+    assert told in found.sentence
 
 
 def test_the_peak_of_a_standing_body_must_be_sure_to_stay_below():
@@ -400,7 +401,7 @@ def test_the_sentence_says_what_the_numbers_say():
         assert doubt != sure, text
         if not doubt and not math.isnan(margin):
             assert f"tried from {1.0 - margin:.6g} to {1.0 + margin:.6g}" in text
-            assert found.along.followed != ("did not do to follow it" in text)
+            assert found.along.followed != ("were too few to follow it" in text)
         if found.along.tried and margin <= max(NEAR, found.wanted.nudge):
             assert found.along.followed or "to follow how it" in text or scaled in text
         stops = found.plan.stop_at_overturning

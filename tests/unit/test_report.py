@@ -469,7 +469,7 @@ def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
 
 
 def test_the_limits_are_those_of_the_manual():
-    left_out = read("theory/validity.md").split("## Left out")[1].split("\n## ")[0]
+    left_out = read("theory/validity.md").split("## Omitted effects")[1].split("\n## ")[0]
     assert re.findall(r"^(\w.*)\n: ", left_out, re.MULTILINE) == [one.title for one in LIMITS]
 
 

@@ -300,7 +300,7 @@ def _near(found: Certificate, ends: _Ends) -> list[str]:
         way = "up" if change > 0.0 else "down"
         return [f"with {what} scaled {way} by {_share(abs(change))} {ends.of(along.ended)}"]
     return [
-        f"{found.wanted.runs} runs did not do to follow how it depends on the scale of {what} "
+        f"{found.wanted.runs} runs were too few to follow how it depends on the scale of {what} "
         f"farther than {_share(margin)}"
     ]
 
@@ -325,7 +325,7 @@ def _tried(found: Certificate) -> str:
         f"No other verdict was found at the {along.within(margin)} scales of {what} tried from "
         f"{low} to {high}"
     )
-    lost = f"; {found.wanted.runs} runs did not do to follow it farther"
+    lost = f"; {found.wanted.runs} runs were too few to follow it farther"
     return text if along.followed else f"{text}{lost}"
 
 

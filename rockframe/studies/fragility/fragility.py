@@ -261,9 +261,10 @@ def _of_counts(
         raise ComponentError(msg)
     intensity, exceeded, trials = (counts[name] for name in _COLUMNS)
     which = Intensity.read(measure, period, owner=_OWNER)
-    values, unit = free_values(intensity, "intensity", owner=_OWNER)
-    if unit != which.attributes()["units"]:
-        msg = f"{_OWNER}: {which.name} is in {which.attributes()['units']}, got {shown(intensity)}"
+    expected = which.attributes()["units"]
+    values, unit = free_values(intensity, "intensity", owner=_OWNER, expected=expected)
+    if unit != expected:
+        msg = f"{_OWNER}: {which.name} is in {expected}, got {shown(intensity)}"
         raise UnitsError(msg)
     over = np.asarray(exceeded, dtype=np.float64)
     count = np.broadcast_to(np.asarray(trials, dtype=np.float64), values.shape)

@@ -118,12 +118,17 @@ def words_of(given: object, read: Callable[[object], object]) -> Generic:
     return np.array([str(read(word)) for word in items_of(given)])
 
 
-def free_values(given: object, name: str, *, owner: str = OWNER) -> tuple[Generic, str | None]:
-    """Read values for an argument of which only the user knows what it is."""
+def free_values(
+    given: object, name: str, *, owner: str = OWNER, expected: str = ""
+) -> tuple[Generic, str | None]:
+    """Read values for an argument of which only the user knows what it is.
+
+    A unit of several quantities, such as ``g``, is of that which is `expected`.
+    """
     given = _beside_own_unit(given)
     unit = _unit_in(given)
     if unit is not None:
-        measure = _measure_of(unit, name, owner)
+        measure = _measure_of(unit, name, owner, expected)
         return numbers_of(given, measure, name, owner=owner), str(measure.unit)
     items = _as_python(items_of(given))
     array = np.array(items)
@@ -168,9 +173,9 @@ def _unit_in(given: object) -> str | None:
     return None
 
 
-def _measure_of(unit: str, name: str, owner: str) -> Measure:
-    """Find the kind of quantity that has a unit."""
-    for known in Unit:
+def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
+    """Find the kind of quantity that has a unit, the expected one before all others."""
+    for known in sorted(Unit, key=lambda one: one != expected):
         measure = Measure("a quantity", known, f"1 {known}")
         with suppress(UnitsError, ComponentError):
             if known == Unit.ONE:

@@ -139,8 +139,7 @@ def say_what_is_missing(dataset: xr.Dataset, histories: Iterable[str]) -> None:
         (~lacking & (message != NONE), ModelWarning, "have a result to be careful with"),
     ):
         if which.any():
-            text = str(message[which][0])
-            those = int((message[which] == text).sum())
+            text, those = Counter(message[which].tolist()).most_common(1)[0]
             said = "" if text == NONE else f"; of {those} of them it is said: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
             warn(f"{OWNER}: {count} {words} (status, message){said}", kind)

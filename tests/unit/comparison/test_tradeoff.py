@@ -249,6 +249,16 @@ def test_a_recommendation_in_words():
     )
 
 
+def test_peaks_of_runs_that_overturn_recommend_nothing_on_their_own():
+    fallen = made(TIMES, ERRORS)
+    fallen = fallen.assign(overturned=xr.ones_like(fallen.peak_error, bool))
+    told = "error='history_error' compares them along time."
+    assert str(rf.recommend(fallen, 0.05)).endswith(told)
+    along = fallen.assign(history_error=fallen.peak_error)
+    assert told not in str(rf.recommend(along, 0.05, error="history_error"))
+    assert told not in str(rf.recommend(fallen.assign(overturned=~fallen.overturned), 0.05))
+
+
 @pytest.mark.parametrize(
     ("tolerance", "error", "words"),
     [

@@ -4,6 +4,7 @@ import importlib
 import os
 import subprocess
 import sys
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -230,6 +231,28 @@ def test_what_cannot_be_compiled_runs_as_python_and_is_told_once(caplog, fallbac
     assert told[0].startswith(f"{__name__}.import_inside could not be compiled, and runs as plain")
     assert len(told[0].splitlines()) == 1
     assert fallbacks == told
+    fallbacks.clear()
+
+
+class Shade(IntEnum):
+    DARK = 4
+
+
+class Shaded(NamedTuple):
+    slope: float
+
+    @kernel
+    def force_at(self, x: float) -> float:
+        return self.slope * x + int(Shade.DARK)
+
+
+def test_what_cannot_be_compiled_is_told_with_its_innermost_reason_and_place(fallbacks):
+    pair = Pair(Shaded(2.0), Linear(0.5))
+    values, out = np.array([0.5]), np.zeros(3)
+    functions, numbers = bound((force_of, count_in), pair), numbers_in(pair)
+    call_all(*functions, numbers, values, out)
+    assert values.tolist() == [pair.total_at(0.5)]
+    assert "int(IntEnum<int64>(Shade)); test_entries.py, line " in fallbacks[0]
     fallbacks.clear()
 
 

@@ -378,5 +378,5 @@ def test_points_that_have_a_unit_of_their_own_have_no_other():
     points = xr.DataArray(np.array([[0, 0], [500, 0], [500, 2000], [0, 2000.0]]))
     points.attrs["units"] = "mm"
     assert rf.Block.from_outline(points, unit="mm", mass="1 t").si.width == pytest.approx(0.5)
-    with pytest.raises(UnitsError, match="points is in 'mm' itself, and 'm'"):
+    with pytest.raises(UnitsError, match="points has the unit 'mm', but 'm'"):
         rf.Block.from_outline(points, unit="m", mass="1 t")

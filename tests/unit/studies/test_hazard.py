@@ -149,6 +149,23 @@ def test_hazard_in_other_forms_is_the_same(curve):
     assert rf.annual_rate(curve, array).annual_rate.item() == pytest.approx(one, rel=1e-12)
 
 
+def test_where_an_acceleration_is_expected_g_is_that_of_gravity(curve):
+    """Elsewhere it is the gram."""
+    counted = rf.fragility({**COUNTS, "intensity": (LEVELS[0], "g")}, "PGA")
+    assert counted.median_intensity.item() == curve.median_intensity.item()
+    one = rf.annual_rate(curve, TABLE).annual_rate.item()
+    array = xr.DataArray(RATES, dims="pga", coords={"pga": ("pga", VALUES, {"units": "g"})})
+    for given in (array, *({**TABLE, "intensity": some} for some in (
+        (VALUES, "g"), [f"{value} g" for value in VALUES]
+    ))):  # fmt: skip
+        assert rf.annual_rate(curve, given).annual_rate.item() == pytest.approx(one, rel=1e-12)
+    ends = [
+        rf.annual_rate(curve, lambda a: a**-2.5, between=some).annual_rate.item()
+        for some in (["0.01 g", "90 g"], ["0.01 g_0", "90 g_0"])
+    ]
+    assert ends[0] == ends[1]
+
+
 @pytest.mark.parametrize(
     ("unit", "size"), [("g", G), ("cm/s^2", 0.01), ("1", 1.0), ("m s^-2", 1.0)]
 )

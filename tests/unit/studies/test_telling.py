@@ -7,7 +7,7 @@ from kept_sweep import alike
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
-from rockframe.studies.sweeps.words import MOST_ALIKE, summed_up
+from rockframe.studies.sweeps.words import MOST_ALIKE, say_what_is_missing, summed_up
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
@@ -80,6 +80,14 @@ def test_texts_of_many_cases_are_summed_up(tmp_path):
     assert "message" not in many.mean("scale").variables  # texts are no numbers
     alike(swept(chunk=5), many)
     alike(swept(chunk=7, store=tmp_path / "study"), many)
+
+
+def test_of_many_cautions_the_most_frequent_is_told():
+    texts = ["none", "slides beyond", "soft", "soft", "none"]
+    values = {"status": np.zeros(5), "peak_rotation": np.zeros(5), "message": np.array(texts)}
+    runs = xr.Dataset({name: ("case", some) for name, some in values.items()})
+    with pytest.warns(ModelWarning, match="3 of 5 cases .*; of 2 of them it is said: soft"):
+        say_what_is_missing(runs, ())
 
 
 def test_numbers_of_texts_become_ranges_and_words_stay():
