@@ -42,9 +42,9 @@ A scene is a text file with units:
 
 Questions:
 
-  rockframe critical scene.toml --motion record.AT2             at what shaking does it fall?
-  rockframe fragility scene.toml records --picture curve.png    how likely?
-  rockframe certify scene.toml --motion record.AT2              how sure is the verdict?
+  rockframe critical scene.toml --motion record.AT2             which scale overturns it?
+  rockframe fragility scene.toml records --picture curve.png    how probable is it?
+  rockframe certify scene.toml --motion record.AT2              how certain is the verdict?
 """
 
 
