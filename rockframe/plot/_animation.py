@@ -247,7 +247,7 @@ def animation(
     times = np.linspace(drawn.time[0], drawn.time[-1], count)
     chosen = units_of(units, "animation")
     trace_in = chosen.rotations(rotation)
-    moving = Moving(drawn.dataset, "animation", magnify, chosen)
+    moving = Moving(drawn.dataset, "animation", magnify, chosen, run)
     shown_at = drawn.nearest(times)
     width, height = figure_size(moving.drawer, wide=False)
     names = ["scene", "rotation", *strips_of([drawn])]
@@ -262,9 +262,9 @@ def animation(
     trace.tick_params(labelbottom=False)
     artist = SceneArtist(above, moving.drawer, length=chosen.of(LENGTH))
     spread = shown_at[np.linspace(0, count - 1, min(count, _FRAMED)).astype(int)]
-    artist.frame([moving.at(int(place)) for place in spread])
-    artist.rest(moving.upright)
     artist.mark(moving.points)
+    artist.frame([moving.upright, *(moving.at(int(place)) for place in spread)])
+    artist.rest(moving.upright)
     cursors = [axes.axvline(times[0], color=GREY, linewidth=1.0) for axes in (trace, *strips)]
     line = trace.get_lines()[0]
     across, up = (np.asarray(values, np.float64) for values in line.get_data())

@@ -32,6 +32,8 @@ COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 STYLES: Final[tuple[Any, ...]] = ("-", "--", "-.", (0, (1, 1)))
 """Dashes of lines that are compared, so that they differ without colours too."""
 STANDS: Final = "#dfe7ef"
+_LEAST_TICKS: Final = 3
+"""Of an axis that can be read."""
 _MANY_DECADES: Final = 200.0
 """Ratio of the ends of an axis above which only powers of ten have room as labels."""
 GREY: Final = "0.5"
@@ -177,15 +179,20 @@ def zero_line(axes: "Axes") -> None:
 
 
 def plain_ticks(axes: "Axes", which: str = "xy") -> None:
-    """Label logarithmic axes at powers of ten, and at 2 and 5 times these where there is room."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+    """Label logarithmic axes at powers of ten; on short ones more numbers, three at least."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
     both = (("x", axes.xaxis, axes.get_xscale()), ("y", axes.yaxis, axes.get_yscale()))
     for name, axis, scale in both:
         if scale == "log" and name in which:
             low, high = axis.get_view_interval()
             wide = high > _MANY_DECADES * low
-            axis.set_major_locator(LogLocator(subs=(1.0,) if wide else (1.0, 2.0, 5.0)))
+            for subs in ((1.0,) if wide else (1.0, 2.0, 5.0), tuple(range(1, 10)), ()):
+                locator = LogLocator(subs=subs) if subs else MaxNLocator(5)
+                axis.set_major_locator(locator)
+                places = np.asarray(locator.tick_values(low, high))
+                if np.count_nonzero((places >= low) & (places <= high)) >= _LEAST_TICKS:
+                    break
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_locator(NullLocator())
 

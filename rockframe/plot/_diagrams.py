@@ -28,6 +28,8 @@ from rockframe.units.kinds import ENERGY, MOMENT
 from rockframe.units.shown import UnitsLike
 
 _STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
+_FAR: Final = 0.2
+"""Peak over the rotation of unstable equilibrium below which that is outside of a phase diagram."""
 _ANGLES: Final = 401
 """Number of rotations at which a body is held for a curve of moments."""
 
@@ -57,7 +59,8 @@ def phase(
     Returns
     -------
     matplotlib.axes.Axes
-        A dot marks the start of each run; crosses mark the rotations of unstable equilibrium.
+        A dot marks the start of each run; crosses mark the rotations of unstable equilibrium, where
+        the runs come near them.
 
     Raises
     ------
@@ -81,6 +84,7 @@ def phase(
     chosen = units_of(units, "phase")
     unit = chosen.unless_relative(ANGLE, rotation=rotation)
     on = single(ax, "phase", (5.6, 4.4))
+    reach, end = 0.0, np.inf
     for run in given:
         across, up = of_rotation(run, unit), _rate(run, unit)
         on.axes.plot(across, up, color=run.colour, ls=run.style, lw=0.9, label=run.label)
@@ -89,6 +93,9 @@ def phase(
         ends = np.array([-left, right])
         ends = relative(ends, left, right) if unit is None else unit.of(ends)
         on.axes.plot(ends, [0.0, 0.0], "x", color=ink(), markersize=6.0)
+        reach, end = max(reach, float(np.abs(across).max())), min(end, float(np.abs(ends).min()))
+    if 0.0 < reach < _FAR * end:  # or what is drawn would be a line upwards
+        on.axes.set_xlim(-1.1 * reach, 1.1 * reach)
     _about_zero(on.axes)
     if unit is None:
         on.axes.set(xlabel=r"rotation $\alpha/\theta$ [-]")
@@ -204,7 +211,7 @@ def energies(
     -------
     matplotlib.axes.Axes
         Stacked areas are the changes of energies since the start, and the losses; a line is the
-        input. The balance holds where the areas reach the line.
+        input. The balance holds where the areas above zero less those below it reach the line.
 
     Raises
     ------
@@ -277,6 +284,9 @@ def _rate(run: Run, unit: Shown | None) -> Any:
 def _held(system: System, largest: float) -> xr.Dataset:
     left, right = system.setting.overturning_angles
     largest = above_zero(largest, "moment_rotation", "largest")
+    wall = system.parts.wall
+    if wall is not None and not wall.elastic:  # the body is held to the other side alone
+        left, right = (left, 0.0) if wall.direction > 0.0 else (0.0, right)
     angles = np.linspace(-largest * left, largest * right, _ANGLES)
     return system.moment_rotation((angles, str(ANGLE.unit)))
 

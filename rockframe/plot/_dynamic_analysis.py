@@ -70,10 +70,10 @@ def dynamic_analysis(
 
     The left panel has a grey line for each motion. A filled marker shows where the motion first
     overturns, hollow markers show where the verdict changes again. Of four motions or more the
-    fractiles of 16, 50 and 84 % of the peaks at an intensity are drawn too; where a fractile
-    reaches 1, only about that share of the motions still stands. Fewer motions have a colour each.
-    The right panel shows the share of motions whose capacity is below an intensity, for each limit
-    state.
+    fractiles are drawn too: the peaks below which 16, 50 and 84 % of the motions stay at an
+    intensity; where one becomes horizontal, only that share still stands. Fewer motions have a
+    colour each. The right panel shows the share of motions whose capacity is below an intensity,
+    for each limit state.
 
     Parameters
     ----------

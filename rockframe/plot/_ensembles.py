@@ -14,6 +14,7 @@ from rockframe.plot._axes import (
     label_of_intensity,
     label_of_value,
     plain,
+    plain_names,
     raised,
     style_of,
     units_of,
@@ -118,8 +119,12 @@ def probability(
     on = sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
     left, right = on.panels
     names = [str(name).replace("_", " ") for name in given["parameter"].to_numpy()]
-    left.barh(names[::-1], given["first_order_index"].to_numpy()[::-1], color=COLOURS[0])
-    left.set(xlabel="first-order index [-]", xlim=(0.0, None))
+    indices = given["first_order_index"].fillna(0.0).to_numpy()
+    left.barh(names[::-1], indices[::-1], color=COLOURS[0])
+    left.set(xlabel="first-order index [-]", xlim=(0.0, None), ylim=(-0.6, len(names) - 0.4))
+    if given["first_order_index"].isnull().all():
+        left.set_xticks([])
+        left.text(0.5, 0.5, "all verdicts are alike", ha="center", transform=left.transAxes)
     first = given[str(given["parameter"].to_numpy()[0])]
     verdict = overturns(given).to_numpy()
     known = ~np.isnan(verdict)
@@ -134,6 +139,9 @@ def probability(
         shares = [verdict[known][place == k].mean() for k in range(len(labels))]
         right.bar(range(len(labels)), shares, color=COLOURS[1], alpha=0.6)
         right.set(xlabel="motion")
+        if len(labels) <= _MOST_NAMED:
+            ticks = plain_names(labels, 20)
+            right.set_xticks(range(len(labels)), ticks, rotation=90, fontsize="x-small")
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
@@ -208,7 +216,7 @@ def subset_simulation(
     else:
         axes.plot(place, ends[1], "v", ms=6.0, color="0.1")
     axes.set(
-        yscale="log", xlabel=label_of(given["demand"]), xlim=(0.0, None),
+        yscale="log", xlabel="response over its limit [-]", xlim=(0.0, None),
         ylabel="probability of reaching it [-]",
     )  # fmt: skip
     grid(axes)
@@ -216,6 +224,8 @@ def subset_simulation(
     return axes
 
 
+_MOST_NAMED: Final = 30
+"""Motions whose names stand below their bars."""
 _NAME: Final = "exceedance_probability"
 _LEVELS: Final = (0.05, 0.16, 0.5, 0.84, 0.95)
 _MOST_STRUCTURES: Final = 12

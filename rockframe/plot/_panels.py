@@ -27,7 +27,7 @@ _LETTERS_PER_INCH: Final = 12.0
 _USUAL_SIZE: Final = 10.0
 
 
-_NO_BREAK: Final = "\N{NO-BREAK SPACE}"
+NO_BREAK: Final = "\N{NO-BREAK SPACE}"
 _FACTOR: Final = r"(?:[kMGmc]?(?:m|N|Pa|J|g|rad|Hz|s)|t|°|%|deg|mm|ft|lbf)(?:\^-?\d+)?(?![\w^])"
 _NUMBER: Final = re.compile(rf"(?<![\w.])-?\d[\d.e+-]*(?: {_FACTOR}(?:/{_FACTOR})?)+")
 """A number with its unit, which lines of a title do not separate."""
@@ -40,9 +40,7 @@ def set_title(figure: "Figure | SubFigure", words: str) -> None:
     letters = _LETTERS_PER_INCH * _USUAL_SIZE / float(rcParams["font.size"])
     width = int(letters * figure.bbox.width / figure.get_dpi())
     lines = [
-        line.replace(_NO_BREAK, " ")
-        for given in words.splitlines()
-        for line in _lines(given, width)
+        line.replace(NO_BREAK, " ") for given in words.splitlines() for line in _lines(given, width)
     ]
     # matplotlib breaks lines that still do not fit, as those of wide letters
     figure.suptitle("\n".join(lines), fontsize="medium", wrap=True)
@@ -52,7 +50,7 @@ def _lines(words: str, width: int) -> list[str]:
     """Break lines after semicolons and sentences, and otherwise between words."""
     if len(words) <= width:
         return [words]
-    words = _NUMBER.sub(lambda one: one[0].replace(" ", _NO_BREAK), words)
+    words = _NUMBER.sub(lambda one: one[0].replace(" ", NO_BREAK), words)
     for mark in ("; ", ". "):
         for place in range(width - 1, width // 3, -1):
             if words.startswith(mark, place):

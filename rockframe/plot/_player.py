@@ -185,13 +185,14 @@ def player(
     chosen = units_of(units, "player")
     unit = chosen.unless_relative(ANGLE, rotation=chosen.rotations(rotation))
     ground = chosen.of(ACCELERATION)
-    moving = Moving(drawn.dataset, "player", magnify, chosen)
+    moving = Moving(drawn.dataset, "player", magnify, chosen, run)
     start, end = float(drawn.time[0]), float(drawn.time[-1])
     count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MOST_FRAMES))
     shown_at = drawn.nearest(np.linspace(start, end, count))
     store = _Numbers()
     layers = _layers(moving, shown_at, store)
-    label = _label("rotation", "-" if unit is None else unit.words)
+    whose = " of body 1" if "body" in drawn.dataset.dims else ""
+    label = _label(f"rotation{whose}", "-" if unit is None else unit.words)
     length = chosen.of(LENGTH)
     traces = [
         _trace(of_rotation(drawn, unit), label, BLUE, store),

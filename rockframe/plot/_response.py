@@ -144,12 +144,15 @@ def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
                 markersize=4.5, markeredgewidth=0.9, label=label, zorder=3,
             )  # fmt: skip
     if named:
-        key(axes)
+        several = any("event_body" in run.dataset for run in runs)
+        key(axes, title="events of all bodies" if several else "", title_fontsize="small")
 
 
 CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 """Histories drawn as strips of contact states, and their names where there are two."""
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
+_NEAR: Final = 5.0
+"""Uplift angle over the peak rotation beyond which its line would leave no room for the curve."""
 _AT_REST: Final = 1e-12
 """Rotations below this are rounding [rad]."""
 _MOST_OF_PART: Final = 24
@@ -336,23 +339,26 @@ def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
         for name in names:
             words = [] if run.label is None else [run.label]
             words += [CONTACTS[name]] if len(names) > 1 else []
+            words = words or ["body 1"] * ("body" in run.dataset.dims)
             text = ", ".join(words) or "contact"
             found[f"contact of {text}" if words else text] = run.dataset[name], text
     return found
 
 
 def _ground(axes: Axes, runs: list[Run], unit: Shown) -> None:
-    alike = all(
-        run.dataset["ground_acceleration"].identical(runs[0].dataset["ground_acceleration"])
-        for run in runs
-    )
+    across, upwards = "ground_acceleration", "vertical_ground_acceleration"
+    moved = [
+        run.dataset[[name for name in (across, upwards) if name in run.dataset]] for run in runs
+    ]
+    alike = all(one.equals(moved[0]) for one in moved)
     for run in runs[:1] if alike else runs:
-        colour = ink() if alike else run.colour
-        if alike and "vertical_ground_acceleration" in run.dataset:
-            upwards = unit.of(run.dataset["vertical_ground_acceleration"])
-            axes.plot(run.time, upwards, color=GREY, linewidth=0.6, label="vertical")
-        across = unit.of(run.dataset["ground_acceleration"])
-        axes.plot(run.time, across, color=colour, linewidth=0.8)
+        for name, style, width in ((upwards, "-" if alike else ":", 0.6), (across, "-", 0.8)):
+            if name not in run.dataset:
+                continue
+            colour = run.colour if not alike else ink() if name == across else GREY
+            label = "vertical" if name == upwards else None
+            values = unit.of(run.dataset[name])
+            axes.plot(run.time, values, style, color=colour, linewidth=width, label=label)
     key(axes)
     axes.set_ylabel(axis_label("ground\n", unit.words))
 
@@ -387,12 +393,12 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         dataset = run.dataset
         axes.plot(
             run.time, of_rotation(run, unit), color=run.colour, linestyle=run.style, linewidth=1.1,
-            label=run.label or "block",
+            label=run.label or ("body 1" if "body" in dataset.dims else "block"),
         )  # fmt: skip
         if _STACKED in dataset and not several:
             cap = of_rotation(run, unit, "cap_rotation")
             axes.plot(run.time, cap, color=ORANGE, linewidth=0.9, label="cap")
-        elif not several:
+        elif not several and "body" not in dataset.dims:  # of a stack it is that on the base
             _uplift(axes, dataset, unit)
         if bool(dataset["overturned"]):
             colour = run.colour if several else VERMILLION
@@ -412,9 +418,9 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
 
 
 def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
-    """Draw the rotations at which contact is first lost."""
-    uplift = float(dataset["uplift_angle"])
-    if not (np.isfinite(uplift) and uplift > 0.0):
+    """Draw the rotations at which contact is first lost, where the run comes near them."""
+    uplift, peak = float(dataset["uplift_angle"]), float(np.abs(dataset["rotation"]).max())
+    if not (np.isfinite(uplift) and 0.0 < uplift < _NEAR * peak):
         return
     both = np.array([-uplift, uplift])
     drawn = relative(both, *overturning_angles(dataset)) if unit is None else unit.of(both)

@@ -99,14 +99,18 @@ def scene(
         msg = f"rf.plot.scene: {'; '.join(faults)}"
         raise ComponentError(msg)
     on = single(ax, "scene", figure_size(drawer, wide=named))
-    names = part_labels(system.parts, drawer.geometry)
-    artist = SceneArtist(on.axes, drawer, names, units_of(units, "scene").of(LENGTH))
-    artist.frame([at])
+    chosen = units_of(units, "scene")
+    names = part_labels(system.parts, drawer.geometry, chosen.reader)
+    artist = SceneArtist(on.axes, drawer, names, chosen.of(LENGTH))
     artist.mark({point.name: (point.x, point.y) for point in marked})
+    artist.frame([at])
     artist.draw(at)
     if named:
         artist.legend()
     on.entitle("", title)
+    if named and on.own is not None:  # the layout finds the room of the legend step by step
+        for _ in range(2):
+            on.panels.figure.draw_without_rendering()
     return on.axes
 
 
@@ -137,7 +141,7 @@ def state(
     matplotlib.axes.Axes
         As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the block at rest is
         dashed. Contact has its own colour: points and lines of bases in contact, and compressed
-        pads.
+        pads. A broken restrainer is not drawn.
 
     Raises
     ------
@@ -162,9 +166,9 @@ def state(
     at = moving.at(place)
     on = single(ax, "state", figure_size(moving.drawer, wide=False))
     artist = SceneArtist(on.axes, moving.drawer, length=chosen.of(LENGTH))
-    artist.frame([at])
-    artist.rest(moving.upright)
     artist.mark(moving.points)
+    artist.frame([at, moving.upright])
+    artist.rest(moving.upright)
     artist.draw(at)
     on.entitle(moving.words(place), title)
     return on.axes
@@ -174,8 +178,9 @@ class Moving:
     """A run as a scene that moves."""
 
     def __init__(
-        self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None
-    ) -> None:
+        self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None,
+        whole: xr.Dataset | None = None,  # of which the run is a part
+    ) -> None:  # fmt: skip
         self.function = function
         self.angle = (units or units_of(None, function)).of(ANGLE, "deg")
         number = above_zero(magnify, function, "magnify")
@@ -191,6 +196,7 @@ class Moving:
                 "sweep has all histories if it is run alone, rf.case(runs, ...).simulate()"
             )
             raise SchemaError(msg)
+        self._breaks = _fractures(run if whole is None else whole)
         self._columns = {name: run[name].to_numpy() for name in _FOLLOWED if name in run}
 
     @property
@@ -218,7 +224,12 @@ class Moving:
         bodies = None
         if self.geometry.lower:
             bodies = np.column_stack([self.run[name].to_numpy()[:, place] for name in _OF_BODIES])
-        return Placement(self.geometry, values, self.system.restraint, bodies)
+        now = self.time[place]
+        broken = frozenset(number for number, when in self._breaks.items() if when <= now)
+        if self.geometry.columns:  # in each column there are all tendons
+            all_broke = 0 < self.run.sizes.get("restrainer", 0) == len(broken)
+            broken = frozenset(range(len(self.geometry.ties)) if all_broke else ())
+        return Placement(self.geometry, values, self.system.restraint, bodies, broken)
 
     def nearest(self, time: object) -> int:
         """Find the sample nearest to a time, or that of the largest rotation."""
@@ -237,13 +248,24 @@ class Moving:
 
     def words(self, place: int) -> str:
         """Write the time and rotation of a sample."""
-        angle = float(self.angle.of(self._columns["rotation"][place]))
-        share = float(self.run["relative_rotation"][place])
-        turned = f"{angle:.2f}°" if self.angle.words == "°" else f"{angle:.3g} {self.angle.words}"
+        angle = float(self.angle.of(self._columns["rotation"][place])) + 0.0  # no negative zero
+        share = abs(float(self.run["relative_rotation"][place]))
+        turned = f"{angle:.3g}{'' if self.angle.words == '°' else ' '}{self.angle.words}"
         whose = " of body 1" if "body" in self.run.dims else ""
-        text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.0f} % of overturning{whose}"
+        text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.3g} % of overturning{whose}"
         factor = self.drawer.magnify
         return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
+
+
+def _fractures(run: xr.Dataset) -> dict[int, float]:
+    """Give when restrainers broke, by their numbers from 0 [s]."""
+    if "event_restrainer" not in run:
+        return {}
+    kinds = dict(zip(str(run["event_kind"].attrs["flag_meanings"]).split(),
+                     run["event_kind"].attrs["flag_values"], strict=True))  # fmt: skip
+    broke = run["event_kind"].to_numpy() == kinds["restrainer_fracture"]
+    numbers, times = (run[f"event_{name}"].to_numpy()[broke] for name in ("restrainer", "time"))
+    return {int(number) - 1: float(when) for number, when in zip(numbers, times, strict=True)}
 
 
 def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:

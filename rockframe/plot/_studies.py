@@ -127,7 +127,8 @@ def sweep(
     Returns
     -------
     matplotlib.axes.Axes
-        On lines, crosses mark the runs that overturned, whichever scalar is drawn.
+        Crosses mark the runs that overturned, whichever scalar is drawn. Motions are points without
+        a line.
 
     Raises
     ------
@@ -159,8 +160,9 @@ def sweep(
         others = [dim for dim in dims if dim != along]
         _draw_lines(on.axes, given, values, fell, along, others)
     else:
-        _draw_map(on.axes, given, values.transpose(*dims), dims)
-    on.entitle(str(given.attrs.get("title", "")), title)
+        _draw_map(on.axes, given, values.transpose(*dims), fell, dims)
+    told = reader_units(units, owner="rf.plot.sweep").of_sentence(cases_verdict(runs))
+    on.entitle(told or str(given.attrs.get("title", "")), title)
     return on.axes
 
 
@@ -297,7 +299,7 @@ def _draw_lines(
     others: list[str],
 ) -> None:  # fmt: skip
     places, words = _along(given, along)
-    across = others[0] if others else ""
+    across, crosses = others[0] if others else "", list[tuple[Any, Any]]()
     for number in range(values.sizes.get(across, 1)):
         one = {across: number} if others else {}
         line = values.isel(one).to_numpy().astype(np.float64)
@@ -305,14 +307,17 @@ def _draw_lines(
         if others:
             known = across in given.coords
             text = label_of_value(given[across][number]) if known else str(number)
-            label = text if across == "motion" else f"{across.replace('_', ' ')} {text}"
+            named = across == "motion" or text.startswith(across)
+            label = text if named else f"{across.replace('_', ' ')} {text}"
         axes.plot(
-            places, line, marker="o", markersize=3.0, color=colour_of(number),
-            linestyle=style_of(number // 6), linewidth=1.0, label=label,
+            places, line, marker="o", markersize=3.0, color=colour_of(number), linewidth=1.0,
+            linestyle=style_of(number // 6) if _is_axis(given, along) else "none", label=label,
         )  # fmt: skip
-        if fell is not None:
-            down = fell.isel(one).to_numpy().astype(bool)
-            axes.plot(places[down], line[down], "x", color=ink(), markersize=6.0)
+        down = np.zeros(line.shape, bool) if fell is None else fell.isel(one).to_numpy()
+        crosses.append((places[down], line[down]))
+    if any(across.size for across, _ in crosses):
+        both = np.concatenate(crosses, axis=1)
+        axes.plot(*both, "x", color=ink(), markersize=6.0, label="overturned")
     if not _is_axis(given, along) and along in given.coords:
         names = plain_names(map(str, given[along].to_numpy()), _MOST_LETTERS)
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
@@ -320,14 +325,19 @@ def _draw_lines(
         axes.locator_params(axis="x", integer=True)
     axes.set(xlabel=words, ylabel=label_of(values))
     grid(axes)
-    if others:
-        key(axes)
+    key(axes)
 
 
-def _draw_map(axes: Axes, given: xr.Dataset, values: xr.DataArray, dims: list[str]) -> None:
+def _draw_map(
+    axes: Axes, given: xr.Dataset, values: xr.DataArray, fell: Any, dims: list[str]
+) -> None:
     (up, up_words), (across, across_words) = (_along(given, dim) for dim in dims)
     mesh = axes.pcolormesh(
         across, up, values.to_numpy().astype(np.float64), cmap="viridis", shading="nearest"
     )
+    if fell is not None and fell.any():
+        rows, columns = np.nonzero(fell.transpose(*dims).to_numpy())
+        axes.plot(across[columns], up[rows], "x", color=VERMILLION, ms=3.0, label="overturned")
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize="small", frameon=False)
     axes.set(xlabel=across_words, ylabel=up_words)
     axes.figure.colorbar(mesh, ax=axes, label=label_of(values))
