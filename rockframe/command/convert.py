@@ -99,7 +99,7 @@ def _only(motions: Mapping[str, GroundMotion], arguments: argparse.Namespace) ->
     if len(motions) == 1:
         return next(iter(motions.values()))
     words = (
-        f"{len(motions)} motions do not go into one file of this format: {_listed(motions)}; name "
+        f"{len(motions)} motions do not fit into one file of this format: {_listed(motions)}; name "
         "one with --component, or a folder with --to, or a file ending in .nc"
     )
     raise FileError(arguments.output, [(None, words)])

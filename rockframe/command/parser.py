@@ -19,7 +19,7 @@ _OWNER: Final = re.compile(
     r"^(case|critical_scale|fragility|incremental_dynamic_analysis|overturning_map|report|sweep|"
     r"simulate|rf\.plot\.\w+): "
 )
-"""Names of functions at the head of messages; on the command line nobody called them."""
+"""Names of functions at the head of messages, which do not help on the command line."""
 _CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
 
 EXIT_CODES: Final = """\
@@ -42,9 +42,9 @@ A scene is a text file with units:
 
 Questions:
 
-  rockframe critical scene.toml --motion record.AT2             at what shaking does it fall?
-  rockframe fragility scene.toml records --picture curve.png    how likely?
-  rockframe certify scene.toml --motion record.AT2              how sure is the verdict?
+  rockframe critical scene.toml --motion record.AT2             which scale overturns it?
+  rockframe fragility scene.toml records --picture curve.png    how probable is it?
+  rockframe certify scene.toml --motion record.AT2              how certain is the verdict?
 """
 
 

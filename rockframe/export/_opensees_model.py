@@ -1,4 +1,4 @@
-"""The block in OpenSees: what a file written by :func:`rockframe.export.to_opensees` does.
+"""The block in OpenSees: the code of files written by :func:`rockframe.export.to_opensees`.
 
 It needs only numpy and openseespy, because it is copied into that file unchanged.
 """

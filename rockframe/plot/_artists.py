@@ -363,13 +363,13 @@ class SceneArtist:
 
 
 _LETTERS: Final = 32
-"""Of a line about a body of a stack, or a load."""
+"""Longest line on a body of a stack, or on a load [characters]."""
 _DRAWN: Final = ("name", "on", "to", "on_body", "to_body", "depth")
-"""Arguments of links that the drawing shows."""
+"""Arguments of links that the drawing shows, and which the names omit."""
 
 
 def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[str, str]:
-    """Give what the parts of a scene are called, with their numbers, by their slots."""
+    """Give the names of the parts of a scene, with their parameters, by their slots."""
     found: dict[str, list[str]] = {}
     for slot in ("block", "wall", "pads", "cap", "soil"):
         part = parts.components.get(slot)
@@ -385,7 +385,7 @@ def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[st
             if base is not None:
                 lines += _in_lines([f"on {type(base).__name__}", *_numbers(base, units)])
             found[f"stack {k - 1}" if k else "block"] = lines
-    if parts.stack is not None and "pads" in found:  # which are not drawn beneath a stack
+    if parts.stack is not None and "pads" in found:  # pads are not drawn below a stack
         found["ground"] = found.pop("pads")
     elif geometry.bed_sinks is None:
         found["ground"] = ["rigid ground", *_numbers(parts.components.get("ground"), units)]
@@ -393,7 +393,7 @@ def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[st
         lines = [plain(name), *_numbers(link, units, _DRAWN)]
         if number < len(geometry.ties):
             found[f"tie {number}"] = lines[:1] if link is parts.wall else lines
-        elif isinstance(link, Load):  # not drawn, so it is told with its body
+        elif isinstance(link, Load):  # not drawn, therefore listed with its body
             body = link.si.on_body - 1
             found[f"stack {body - 1}" if body else "block"] += _in_lines(lines)
     words = {slot: raised("\n   ".join(lines)) for slot, lines in found.items()}
@@ -406,7 +406,7 @@ def _in_lines(words: Sequence[str]) -> list[str]:
 
 
 def _numbers(part: Component | None, units: ReaderUnits, without: Sequence[str] = ()) -> list[str]:
-    """Give the numbers of a part in words; in the reader's units where there are some."""
+    """Write the parameters of a part, in the reader's units if these are chosen."""
     if part is None:
         return []
     given = {name: one for name, one in part.to_dict().items() if name not in without}

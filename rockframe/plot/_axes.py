@@ -33,7 +33,7 @@ STYLES: Final[tuple[Any, ...]] = ("-", "--", "-.", (0, (1, 1)))
 """Dashes of lines that are compared, so that they differ without colours too."""
 STANDS: Final = "#dfe7ef"
 _LEAST_TICKS: Final = 3
-"""Of an axis that can be read."""
+"""Least number of labels of an axis."""
 _MANY_DECADES: Final = 200.0
 """Ratio of the ends of an axis above which only powers of ten have room as labels."""
 GREY: Final = "0.5"
@@ -96,18 +96,18 @@ def escaped(text: str) -> str:
 
 
 def plain(name: str, most: int = _MOST_LETTERS) -> str:
-    """Give a name as matplotlib writes it letter by letter, in legends too.
+    """Give a name without the meaning of ``$`` and ``_`` in matplotlib, in legends too.
 
-    The middle of a long one is left out: it would take the room of what is drawn.
+    Long names are shortened in the middle, to leave room for the data.
     """
     if len(name) > most:
         name = f"{name[: most - most // 3 - 3]}...{name[-(most // 3) :]}"
-    # legends leave out what begins with an underscore
+    # legends omit names that begin with an underscore
     return escaped(f" {name}" if name.startswith("_") else name)
 
 
 def plain_names(names: Iterable[str], most: int = _MOST_LETTERS) -> list[str]:
-    """Give names as :func:`plain` does, numbered where they would be alike."""
+    """Give names as :func:`plain` does, numbered if they would be equal."""
     found = [plain(name, most) for name in names]
     alike = len(set(found)) < len(found)
     return [f"{k}: {one}" for k, one in enumerate(found, 1)] if alike else found
@@ -179,7 +179,7 @@ def zero_line(axes: "Axes") -> None:
 
 
 def plain_ticks(axes: "Axes", which: str = "xy") -> None:
-    """Label logarithmic axes at powers of ten; on short ones more numbers, three at least."""
+    """Label logarithmic axes at powers of ten; short ones at more numbers, at least three."""
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
     both = (("x", axes.xaxis, axes.get_xscale()), ("y", axes.yaxis, axes.get_yscale()))

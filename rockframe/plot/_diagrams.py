@@ -29,7 +29,7 @@ from rockframe.units.shown import UnitsLike
 
 _STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
 _FAR: Final = 0.2
-"""Peak over the rotation of unstable equilibrium below which that is outside of a phase diagram."""
+"""Peak over the rotation of unstable equilibrium below which a phase diagram omits the latter."""
 _ANGLES: Final = 401
 """Number of rotations at which a body is held for a curve of moments."""
 
@@ -51,7 +51,7 @@ def phase(
     runs : xarray.Dataset, or sequence or mapping of them
         A result with histories; or several to compare, as for :func:`rockframe.plot.response`.
     window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is drawn; all of it unless given [s].
+        Start and end of what is drawn; the whole run unless given [s].
     rotation : str, optional
         Unit of rotations, such as ``"deg"``, and of angular velocities per second; or
         ``"relative"``, the default: over the overturning angle.
@@ -94,7 +94,7 @@ def phase(
         ends = relative(ends, left, right) if unit is None else unit.of(ends)
         on.axes.plot(ends, [0.0, 0.0], "x", color=ink(), markersize=6.0)
         reach, end = max(reach, float(np.abs(across).max())), min(end, float(np.abs(ends).min()))
-    if 0.0 < reach < _FAR * end:  # or what is drawn would be a line upwards
+    if 0.0 < reach < _FAR * end:  # otherwise the data would be almost a vertical line
         on.axes.set_xlim(-1.1 * reach, 1.1 * reach)
     _about_zero(on.axes)
     if unit is None:
@@ -203,7 +203,7 @@ def energies(
     run : xarray.Dataset
         A result with ``outputs=("energy",)``.
     window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is drawn; all of it unless given [s].
+        Start and end of what is drawn; the whole run unless given [s].
     energy : str, optional
         Unit; kJ unless given.
 

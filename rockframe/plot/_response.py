@@ -152,7 +152,7 @@ CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 """Histories drawn as strips of contact states, and their names where there are two."""
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
 _NEAR: Final = 5.0
-"""Uplift angle over the peak rotation beyond which its line would leave no room for the curve."""
+"""Uplift angle over the peak rotation above which its line is omitted, to leave room for runs."""
 _AT_REST: Final = 1e-12
 """Rotations below this are rounding [rad]."""
 _MOST_OF_PART: Final = 24

@@ -108,7 +108,7 @@ def scene(
     if named:
         artist.legend()
     on.entitle("", title)
-    if named and on.own is not None:  # the layout finds the room of the legend step by step
+    if named and on.own is not None:  # the layout makes room for the legend iteratively
         for _ in range(2):
             on.panels.figure.draw_without_rendering()
     return on.axes

@@ -26,7 +26,7 @@ _LETTERS: Final = 34
 
 
 @draws(
-    "a set of motions beside its target",
+    "a set of motions and its target",
     "suite.selection_for(target, 11)",
     ("scaled_spectral_acceleration", "target_spectral_acceleration"),
     (

@@ -178,7 +178,7 @@ def test_many_records_go_into_a_folder_or_one_file(typed, records):
     assert {one.sha256 for one in again.values()} == {one.sha256 for one in records.values()}
     assert typed("convert", "records", "-o", "all.nc")[0] == 0  # its own file is replaced
     code, _, problem = typed("convert", "records", "-o", "one.AT2")
-    assert (code, "5 motions do not go into one file" in problem) == (2, True)
+    assert (code, "5 motions do not fit into one file" in problem) == (2, True)
     assert not Path("one.AT2").exists()
 
 

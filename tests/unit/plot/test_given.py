@@ -45,7 +45,7 @@ WORDS = {
     "Fourier spectrum": ("a Dataset with a Fourier spectrum", "rf.plot.spectra draws it from"),
     "ground": ("velocity and displacement of the ground", "rf.plot.motion draws them from"),
     "measures": ("a Dataset with the title 'Intensity measures'",),
-    "set": ("a Dataset with a set of motions beside", "rf.plot.selection draws it"),
+    "set": ("a Dataset with a set of motions and", "rf.plot.selection draws it"),
     "rest": ("a Dataset with the title 'Rest'",),
     "rotation": ("a DataArray, 'rotation'", "the whole Dataset"),
     "nothing": ("a Dataset of another kind",),
@@ -58,7 +58,7 @@ WORDS = {
 }
 DRAWN = {
     "response": (rf.plot.response, "run", "the result of one run with histories", SchemaError),
-    "selection": (rf.plot.selection, "set", "a set of motions beside its target", SchemaError),
+    "selection": (rf.plot.selection, "set", "a set of motions and its target", SchemaError),
     "tradeoff": (rf.plot.tradeoff, "rungs", "a comparison of models", SchemaError),
     "motion": (rf.plot.motion, "motion", "a GroundMotion", ComponentError),
     "spectra": (rf.plot.spectra, "motion", "a GroundMotion", ComponentError),
