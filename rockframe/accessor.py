@@ -205,7 +205,9 @@ class RockframeAccessor:
             if name in given and given[name].ndim == 0:
                 rows[name.replace("_", " ")] = f"{math.degrees(given[name].item()):.4g}°"
         history = given.get("rotation")
-        trace = "" if history is None or history.ndim != 1 else curve(history.to_numpy().tolist())
+        trace = ""
+        if history is not None and history.ndim == 1:  # of a case of a sweep, up to its end
+            trace = curve(history.dropna(history.dims[0]).to_numpy().tolist())
         return card(first, rows, self._drawing(), trace)
 
     def _drawing(self) -> str:

@@ -5,7 +5,7 @@ Texts have the colour of the page, so that they are legible on light and dark pa
 
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, cast
 
 _PREFIXES: Final = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 _SCALED: Final = ("Pa", "N", "J")
@@ -111,6 +111,8 @@ def _written(value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, int | float):
         return f"{value:.6g}"
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_written, cast("list[Any]", value)))
     number, _, unit = str(value).partition(" ")
     try:
         size = float(number)

@@ -63,15 +63,19 @@ def ensemble(
     on = single(ax, "ensemble", (5.6, 3.9))
     axes = on.axes
     values = given["ordered_value"].rename(str(given.attrs["variable"]))
-    for names, alpha in (
-        (("simultaneous_lower_bound", "simultaneous_upper_bound"), 0.12),
-        (("cumulative_probability_lower_bound", "cumulative_probability_upper_bound"), 0.25),
+    for name, alpha, words in (
+        ("simultaneous", 0.12, "bounds everywhere at once"),
+        ("cumulative_probability", 0.25, "bounds at each value"),
     ):
-        low, high = (given[name].to_numpy() for name in names)
-        axes.fill_between(values, low, high, step="post", color=COLOURS[0], alpha=alpha, lw=0.0)
+        low, high = (given[f"{name}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
+        label = words if np.isfinite(low).any() else None
+        axes.fill_between(
+            values, low, high, step="post", color=COLOURS[0], alpha=alpha, lw=0.0, label=label
+        )
     axes.step(values, given["cumulative_probability"], where="post", color=COLOURS[0])
     axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
+    on.name_lines()
     on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes
 

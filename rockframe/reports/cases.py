@@ -1,6 +1,6 @@
 """Tables of the cases of a study: the verdict on each, and its largest forces."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -55,7 +55,7 @@ Of histories, such as reactions, the largest absolute value at the samples is sh
 """
 _MOST_COLUMNS: Final = 8
 """Largest number of columns besides the labels of a case, on a sheet of A4."""
-_OVER_CASES: Final = (("mean", np.nanmean), ("largest", np.nanmax))
+_OVER_CASES: Final = (("mean", np.mean), ("largest", np.max))
 
 
 @dataclass(frozen=True)
@@ -121,11 +121,18 @@ def _table(
         rows.append([*labels, *numbers])
     between = [""] * (len(status.dims) - 1 + with_verdict)
     for words, over in _OVER_CASES:
-        numbers = [number_in(float(over(one.values)), one.unit, units) for one in columns]
+        numbers = [_over_cases(over, one, units) for one in columns]
         rows.append([f"{words} of {status.size}", *between, *numbers])
     heads = [str(dim).replace("_", " ") for dim in status.dims]
     verdict = ["verdict"] if with_verdict else []
     return page.columns(rows, [*heads, *verdict, *(one.head for one in columns)])
+
+
+def _over_cases(over: Callable[..., Any], column: _Column, units: ReaderUnits) -> str:
+    """Write a number of all cases, and of how many it is where some have none."""
+    known = column.values[~np.isnan(column.values)]
+    number = number_in(float(over(known)), column.unit, units)
+    return number if known.size == column.values.size else f"{number} (of {known.size})"
 
 
 def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> Iterator[_Column]:

@@ -45,6 +45,7 @@ table { border-collapse: collapse; width: 100%; font-size: .92rem; }
 th, td { text-align: left; vertical-align: top; padding: .28rem .6rem .28rem 0;
   border-bottom: 1px solid var(--line); }
 .many { font-size: .84rem; }
+.many td:not(.value) { overflow-wrap: anywhere; min-width: 3.5rem; }
 td.value { white-space: nowrap; font-variant-numeric: tabular-nums; }
 figure { margin: 1rem 0; }
 figure img { width: 100%; height: auto; background: #ffffff; border: 1px solid var(--line);
@@ -65,7 +66,7 @@ td.value { white-space: normal; } }
   thead { display: table-header-group; }
   .scroll { overflow: visible; } table { font-size: 9pt; }
   .many { font-size: .84rem; }
-td.value { white-space: normal; min-width: 5.5rem; }
+td.value { white-space: normal; overflow-wrap: anywhere; min-width: 5.5rem; }
   .many { font-size: 8pt; } .many td.value { min-width: 0; }
   h2, h3, dt { break-after: avoid; }
   figure img { width: auto; max-width: 100%; max-height: 8cm; }

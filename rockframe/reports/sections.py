@@ -21,7 +21,7 @@ from rockframe.reports import page
 from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
 from rockframe.reports.motions import Aim, record_rows, spectra_section
-from rockframe.reports.values import extremes_of, powers_in_html, table_of
+from rockframe.reports.values import extremes_of, powers_in_html, table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.certify.certificate import NEAR_WORDS
@@ -29,7 +29,7 @@ from rockframe.simulation.provenance import motion_words
 from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.words import slips_of_cases
-from rockframe.units import Unit
+from rockframe.units import ACCELERATION, Unit, to_si
 from rockframe.units.shown import ReaderUnits
 from rockframe.version import __version__
 
@@ -142,12 +142,19 @@ def motion_section(
     yield page.rows([*told, *([] if found is None else record_rows(found, units))])
     if found is None:
         return
-    yield page.subtitle("Measures")
-    yield page.rows(table_of(intensity_measures(found), units=units))
+    across = found.si.vertical is not None  # of which nothing is shown
+    yield page.subtitle(f"Measures{' of the horizontal component' * across}")
+    measures = intensity_measures(found)
+    threshold = to_si(measures.attrs["threshold"], ACCELERATION, owner="", name="")
+    in_words = value_of(xr.DataArray(threshold, attrs={"units": str(ACCELERATION.unit)}), units)
+    yield page.rows(
+        (words.replace("the threshold", in_words), value)
+        for words, value in table_of(measures, units=units)
+    )
     yield page.picture(
         figure_of(plot.spectra(found, units=units.words)),
-        "History of the ground acceleration, its response spectra at 5 % damping and its Fourier "
-        "spectrum.",
+        f"History of the {'horizontal ' * across}ground acceleration, its response spectra at 5 % "
+        "damping and its Fourier spectrum.",
     )
     if aim is not None:
         yield page.subtitle("Spectrum and target")

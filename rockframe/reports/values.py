@@ -30,8 +30,8 @@ def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
         return _TRUTH[str(value).lower()]
     if isinstance(value, str):
         return value
-    if isinstance(value, float) and math.isnan(value):
-        return "none"
+    if isinstance(value, float) and not math.isfinite(value):
+        return "none" if math.isnan(value) else "infinite"
     unit = (units or ReaderUnits()).of(str(variable.attrs.get("units", Unit.ONE)))
     number = f"{value / unit.size + 0.0:.4g}"  # no negative zero
     if unit.words == Unit.RADIAN:

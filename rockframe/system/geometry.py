@@ -5,7 +5,14 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.components import FrameEquivalent, RearWall, Stack, Tendon
+from rockframe.components import (
+    Component,
+    FrameEquivalent,
+    RearWall,
+    RockingFrame,
+    Stack,
+    Tendon,
+)
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing
@@ -210,9 +217,12 @@ def system_html(scene: Assembly, name: str) -> str:
     """Give a drawing and the numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
-    for part in scene.parts.structural():
+    given = [one for part in scene.parts.structural() for one in _pieces(part)]
+    for number, (words, part) in enumerate(given):
+        alike = [other for other, _ in given[: number + 1]].count(words)
         numbers = arguments_in_words(part.to_dict())
-        rows[type(part).__name__] = ", ".join(f"{one} {value}" for one, value in numbers.items())
+        told = ", ".join(f"{one} {value}" for one, value in numbers.items())
+        rows[words if alike == 1 else f"{words} {alike}"] = told
     left, right = setting.overturning_angles
     to_left, to_right = (f"{np.degrees(side):.4g}°" for side in (left, right))
     both = f"{to_left} to the left, {to_right} to the right"
@@ -224,6 +234,18 @@ def system_html(scene: Assembly, name: str) -> str:
     if scene.parts.motion is not None:
         rows["motion"] = scene.parts.motion.name
     return card(name, rows, drawing(shapes_of(geometry_of(scene))))
+
+
+def _pieces(part: Component) -> list[tuple[str, Component]]:
+    """Give a part, behind the bodies and bases that it is made of, with what they are called."""
+    found: list[tuple[str, Component]] = [(type(part).__name__, part)]
+    if isinstance(part, RockingFrame):
+        return [("column", part.column), *found]
+    if not isinstance(part, Stack):
+        return found
+    bodies = [(f"body {k}", body) for k, body in enumerate(part.bodies, 1)]
+    bases = [(f"beneath body {k}", base) for k, base in enumerate(part.interfaces, 1)]
+    return [*bodies, *bases, *found]
 
 
 def shapes_of(geometry: Geometry) -> list[Polygon]:

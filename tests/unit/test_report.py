@@ -16,6 +16,7 @@ import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning, SchemaError
 from rockframe.reports import cases, sections
 from rockframe.reports.limits import LIMITS
+from rockframe.reports.values import value_of
 from rockframe.results.schema import SCHEMA
 from rockframe.simulation.certify import certificate
 from rockframe.simulation.run_arguments import FEWEST_RUNS
@@ -466,6 +467,48 @@ def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
     assert 4 <= len(re.findall(rb"/Type\s*/Page\b", content)) <= 9
     boxes = re.findall(rb"/MediaBox\s*\[0 0 ([\d.]+) ([\d.]+)\]", content)
     assert {(round(float(x)), round(float(y))) for x, y in boxes} == {(595, 842)}  # A4, in points
+
+
+def test_tables_with_long_names_stay_on_the_sheet(tmp_path):
+    browser, reader = which("chromium") or which("google-chrome"), which("pdftotext")
+    if browser is None or reader is None:
+        pytest.skip("chromium or google-chrome, or pdftotext, is not installed")
+    named = {f"{'a' * 110}{name}": motion for name, motion in SUITE.items()}
+    runs = rf.sweep(
+        rf.System(BLOCK), named, scale=[0.5, 1.0], outputs=("friction_demand",), output_step="5 ms"
+    )
+    path = rf.report(runs, tmp_path / "r.html")
+    usual = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path}/profile"]
+    sheets, places = tmp_path / "r.pdf", tmp_path / "r.xml"
+    printed = [browser, *usual, "--no-pdf-header-footer", f"--print-to-pdf={sheets}", path.as_uri()]
+    subprocess.run(printed, capture_output=True, timeout=120, check=True)
+    subprocess.run([reader, "-bbox", sheets, places], timeout=120, check=True)
+    words = re.findall(r'xMax="([\d.]+)" yMax="[\d.]+">([^<]*)<', places.read_text())
+    last = [f"{one:.4g}" for one in runs.peak_friction_demand.to_numpy().ravel()]
+    assert {*last} <= {word for right, word in words if float(right) < 595.0 - 40.0}
+
+
+def test_a_mean_tells_of_how_many_cases_it_is_and_a_demand_without_end_is_infinite(tmp_path):
+    runs = rf.sweep(rf.System(BLOCK), SUITE, scale=[0.1, 2.0])
+    times = runs.first_uplift_time.to_numpy()
+    known = times[np.isfinite(times)]
+    assert 0 < known.size < times.size
+    words = words_of(rf.report(runs, tmp_path / "r.html"))
+    assert f"{known.mean():.4g} (of {known.size})" in words
+    assert value_of(xr.DataArray(np.inf)) == "infinite"
+
+
+def test_measures_say_of_which_component_and_threshold_they_are(tmp_path):
+    across = SUITE["long"]
+    for motion, words in (
+        (across, "Measures greatest"),
+        (across.with_vertical(across.scaled(0.5)), "Measures of the horizontal component greatest"),
+    ):
+        run = rf.System(BLOCK).simulate(motion)
+        units = {"acceleration": "g"}
+        told = words_of(rf.report(run, tmp_path / "r.html", certify=False, units=units))
+        assert words in told
+        assert "last exceedance of 0.05 g" in told
 
 
 def test_the_limits_are_those_of_the_manual():

@@ -54,6 +54,7 @@ def test_a_case_plays_up_to_its_end(fallen):
     end = float(fallen.time[fallen.rotation.notnull()][-1])
     assert f"player of {end:.1f} s" in repr(rf.plot.player(fallen))
     assert "animation of 13 frames" in repr(rf.plot.animation(fallen))
+    assert "nan" not in fallen.rockframe._repr_html_()
 
 
 def test_a_case_is_drawn_with_its_own_block():

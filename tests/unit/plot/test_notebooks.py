@@ -61,6 +61,26 @@ def test_cards_hold_the_numbers():
     assert "2 m/s² (0.204 g)" in text
 
 
+def test_cards_tell_all_restrainers_and_the_bodies_of_a_stack():
+    ties = [
+        rf.Restrainer(on=("-0.4 m", "3 m"), to=("-1 m", "3 m"), stiffness=f"{k} MN/m", name=name)
+        for k, name in ((2, "upper"), (3, "other"))
+    ]
+    block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+    text, _ = shown(rf.System(block, *ties))
+    assert "name upper" in text
+    assert "name other" in text
+    joint = rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1)
+    plinth = rf.Block(width="1.5 m", height="1 m", mass="3 t")
+    stack = rf.Stack(block, plinth, interfaces=[joint], offsets=["3 cm"])
+    text, _ = shown(rf.System(stack, rf.RigidGround(friction=0.3)))
+    for words in ("width 1.5 m", "height 4 m", "stiffness 20 MN", "offsets 0.03 m", "friction 0.3"):
+        assert words in text
+    frame = rf.RockingFrame(block, columns=2, beam_mass="10 t")
+    text, _ = shown(rf.System(frame))
+    assert "height 4 m" in text
+
+
 def test_a_drawing_is_to_scale_and_stands_on_its_base():
     _, html = shown(BLOCK)
     corners = re.search(r'<polygon points="([^"]*)"', html)[1].split()

@@ -178,3 +178,47 @@ def test_a_browser_draws_it(tmp_path):
     ).stdout  # fmt: skip
     assert 'data-ready="yes"' in seen
     assert "flight" in seen or "left" in seen
+
+
+def written_by_a_browser(page, tmp_path, height=640):
+    """Give what a page writes on its lower canvas, with its place [pixels]."""
+    browser = which("chromium") or which("google-chrome")
+    if browser is None:
+        pytest.skip("neither chromium nor google-chrome is installed")
+    listens = """<script>
+    const plain = CanvasRenderingContext2D.prototype.fillText, told = [];
+    CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
+      if (this.canvas.id === "traces") told.push(words + "@" + x + "@" + y);
+      document.body.dataset.told = told.join("|");
+      plain.call(this, words, x, y);
+    };</script><script>"""
+    path = tmp_path / "run.html"
+    path.write_text(page.to_html().replace("<script>", listens, 1))
+    usual = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000"]
+    seen = subprocess.run(
+        [browser, *usual, f"--window-size=800,{height}", f"--user-data-dir={tmp_path}/profile",
+         "--dump-dom", path.as_uri()],
+        capture_output=True, text=True, timeout=120, check=True,
+    ).stdout  # fmt: skip
+    told = re.search(r'data-told="([^"]*)"', seen)[1].split("|")
+    return [(words, float(x), float(y)) for words, x, y in (one.split("@") for one in told)]
+
+
+@pytest.mark.parametrize("longer", [1.0, 1e-3, 2000.0])
+def test_times_below_the_traces_do_not_run_into_one_another(tmp_path, longer):
+    run = run_of("rigid ground")
+    stretched = run.assign_coords(time=run.time * longer)
+    written = written_by_a_browser(rf.plot.player(stretched), tmp_path)
+    places = sorted({x for words, x, _ in written if words.endswith(" s")})
+    assert 4 <= len(places) <= 11
+    assert np.diff(places).min() > 40.0
+
+
+def test_numbers_beside_low_traces_do_not_overlap(tmp_path):
+    run = run_of("rigid ground")
+    run = run.assign(slip=run.vertical_displacement)
+    page = rf.plot.player(run, title="a long title " * 60)
+    written = written_by_a_browser(page, tmp_path, 480)
+    assert "slip [m]" in [words for words, _, _ in written]
+    heights = sorted({y for _, x, y in written if x < 52.0})
+    assert np.diff(heights).min(initial=99.0) > 9.0

@@ -87,3 +87,14 @@ def test_logarithmic_axes_have_three_numbers_at_least(ends):
     assert len(places) >= 3
     assert len({text.get_text() for text in axes.get_xticklabels() if text.get_text()}) >= 3
     pyplot.close(axes.figure)
+
+
+def test_the_bands_of_an_ensemble_are_named():
+    motions = {f"{k}": PULSE.scaled(0.5 + 0.1 * k) for k in range(6)}
+    found = rf.ensemble_statistics(rf.sweep(SYSTEM, motions, **QUIET), "peak_rotation")
+    (legend,) = rf.plot.ensemble(found).figure.legends
+    words = ["bounds everywhere at once", "bounds at each value"]
+    assert [text.get_text() for text in legend.get_texts()] == words
+    bare = found.isel(confidence_level=0) if "confidence_level" in found.dims else found
+    none = bare.assign({name: one * np.nan for name, one in bare.items() if name.endswith("bound")})
+    assert rf.plot.ensemble(none).figure.legends == []
