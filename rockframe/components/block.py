@@ -21,7 +21,7 @@ from rockframe.components.parameters import (
 )
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
-from rockframe.many import hypot
+from rockframe.many import hypot, sqrt
 from rockframe.notebook import Polygon
 from rockframe.units import (
     ANGLE,
@@ -281,13 +281,27 @@ class Block(Component):
         return super().with_si({**others, **self._sides(sizes, others)})
 
     def _sides(self, sizes: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
-        """Compute width and height from radius and slenderness, or from a side and slenderness."""
+        """Compute width and height from radius and slenderness, or from a side and slenderness.
+
+        The radius is the distance to the centre of mass, whose given height does not change.
+        """
         ratio = sizes.get("slenderness", self.slenderness)
         if "width" in others:
             return {"height": ratio * others["width"]}
         if "height" in others:
             return {"width": others["height"] / ratio}
-        width = 2.0 * sizes.get("radius", self.si.radius) / hypot(1.0, ratio)
+        radius = sizes.get("radius", self.si.radius)
+        centre = others.get("centre_height", self.given.centre_height)
+        if centre is None:
+            width = 2.0 * radius / hypot(1.0, ratio)
+        elif radius > centre:
+            width = 2.0 * sqrt((radius - centre) * (radius + centre))
+        else:
+            msg = (
+                f"{type(self).__name__}: radius must be larger than centre_height, which is "
+                f"{centre:.6g} {LENGTH.unit}; got {radius:.6g} {LENGTH.unit}"
+            )
+            raise ComponentError(msg)
         return {"width": width, "height": ratio * width}
 
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:

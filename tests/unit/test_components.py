@@ -410,6 +410,20 @@ def test_from_density_multiplies():
             rf.Block.from_density(**{**size, name: "0 " + size[name].split()[1]})
 
 
+def test_a_slenderness_leaves_the_radius_and_a_radius_the_slenderness():
+    size = {"width": "1 m", "height": "4 m", "mass": "1 t"}
+    for block in (rf.Block(**size), rf.Block(**size, centre_height="1 m", eccentricity="5 cm")):
+        radius, slenderness = block.si.radius, block.slenderness
+        slender = block.with_si({"slenderness": 5.0})
+        assert slender.slenderness == pytest.approx(5.0, rel=1e-14)
+        assert slender.si.radius == pytest.approx(radius, rel=1e-14)
+        larger = block.with_si({"radius": 2.0 * radius})
+        assert larger.slenderness == pytest.approx(slenderness, rel=1e-14)
+        assert larger.si.radius == pytest.approx(2.0 * radius, rel=1e-14)
+    with pytest.raises(ComponentError, match=r"radius must be larger than .* 1 m; got 0\.9 m"):
+        block.with_si({"radius": 0.9})
+
+
 @given(st.floats(0.05, 100.0), st.floats(0.75, 20.0))
 @settings(max_examples=100, deadline=None)
 def test_from_size_gives_the_size_asked_for(radius, slenderness):
