@@ -391,8 +391,8 @@ class RearWall(Link):
     A stiff one, on rigid ground, touches the body all along its height while that stands. The body
     rocks away about its front corner; when it comes back, base and wall are struck, and it rocks
     away again with a share of its speed, :eq:`eq-wall-impact`. Given a `stiffness` the wall is
-    elastic, on any base: a spring and a dashpot that press on the rear face at a height while they
-    are touched, behind a gap.
+    elastic, on any base: a spring and a dashpot that act on the rear face at a height while they
+    are touched, behind a gap; before the spring is unloaded the dashpot may pull.
 
     Raises
     ------
