@@ -13,15 +13,15 @@ from typing import Any
 
 
 def _is_command_line() -> bool:
-    """Whether this process is the command line, by its name or as ``python -m rockframe``."""
+    """Whether this process is the command line: ``rockframe`` or ``python -m rockframe``."""
     program = "".join(sys.argv[:1])
-    if program == "-m":  # what Python is to run is still looked for
+    if program == "-m":  # Python has not yet found the module that it will run
         return ("-m", __name__) in pairwise(sys.orig_argv)
     return os.path.basename(program) in (__name__, f"{__name__}.exe")
 
 
-# Every scene needs these two. They are most of what has to be loaded: here, so that the
-# first simulation does not wait for them. The help of the command line needs neither.
+# Every scene needs these two, and they take most of the import time. They are loaded here so that
+# the first simulation does not wait for them. The help of the command line needs neither.
 if not _is_command_line():
     for _library in ("pint", "xarray"):
         import_module(_library)
@@ -32,15 +32,15 @@ _HOMES = {
     name: home
     for home, _, name in (one.replace("(", " ").split()[:3] for one in _STUB.split("\nfrom ")[1:])
 }
-"""From which module each public name is imported, as the stub beside this file says."""
+"""Module from which each public name is imported, read from the stub of this file."""
 
 __all__ = list(_HOMES)  # pyright: ignore[reportUnsupportedDunderAll]
 
 
 def __getattr__(name: str) -> Any:
-    # The rest is imported on its first use: a script that only reads records
-    # never waits for the integrator. A program of the same name as the command line
-    # gets here too, and its datasets are to have the accessor like all others.
+    # The rest is imported on its first use: a script that only reads records never waits for
+    # the integrator. A script with the name of the command line gets here, too, without the
+    # accessor of datasets, which is imported first.
     home = _HOMES.get(name)
     if home is None:
         if name.startswith("__"):

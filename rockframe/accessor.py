@@ -1,4 +1,4 @@
-"""What every dataset has as ``dataset.rockframe``: figures, tables and a summary of results."""
+"""The accessor ``dataset.rockframe`` of datasets: figures, tables and a summary of results."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -30,7 +30,7 @@ _SHOWN = (
 @xr.register_dataset_accessor("rockframe")
 @proposing
 class RockframeAccessor:
-    """Figures, tables and a summary of a result of rockframe, also of one read back from a file.
+    """Figures, tables and a summary of a result of rockframe, also of one read from a file.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class RockframeAccessor:
         Parameters
         ----------
         **options
-            Of that function.
+            Arguments of that function.
 
         Returns
         -------
@@ -85,16 +85,16 @@ class RockframeAccessor:
         Parameters
         ----------
         path : str or Path, optional
-            Where it is written, ending in ``.html``; it is not written unless given.
+            File to write, ending in ``.html``; none is written unless given.
         overwrite : bool, optional
             As for :meth:`rockframe.plot.Player.save`.
         **options
-            Of :func:`rockframe.plot.player`.
+            Arguments of :func:`rockframe.plot.player`.
 
         Returns
         -------
         rockframe.plot.Player
-            Which notebooks show.
+            Notebooks show it.
 
         Raises
         ------
@@ -117,14 +117,14 @@ class RockframeAccessor:
         return player
 
     def table(self, contents: str = "scalars", *, units: "UnitsLike" = None) -> "pd.DataFrame":
-        """Give the dataset as :func:`rockframe.table` does.
+        """Convert the dataset to a table, as :func:`rockframe.table` does.
 
         Parameters
         ----------
         contents : {"scalars", "histories", "events"}, optional
-            What the rows are.
+            Contents of the rows.
         units : mapping of str to str, optional
-            Units by what they are of.
+            Units by kind of quantity, such as ``{"angle": "deg"}``.
 
         Returns
         -------
@@ -149,14 +149,14 @@ class RockframeAccessor:
 
     @property
     def system(self) -> "System":
-        """The system that a run came from, as :meth:`rockframe.System.from_dataset` gives it."""
+        """The simulated system, as :meth:`rockframe.System.from_dataset` builds it."""
         from rockframe.simulation.system import System
 
         return System.from_dataset(self._dataset)
 
     @property
     def verdict(self) -> str:
-        """What became of it in one sentence; of a part, what became of that part."""
+        """The outcome in one sentence; of a selection of cases, their outcome."""
         from rockframe.studies.dynamic_analysis import verdict_of_analysis
         from rockframe.studies.fragility.words import verdict_of_fragility
         from rockframe.studies.sweeps.words import cases_verdict
@@ -169,7 +169,7 @@ class RockframeAccessor:
 
     @property
     def summary(self) -> str:
-        """What the dataset holds and what became of it, in a few lines."""
+        """Contents and outcome of the dataset, in a few lines."""
         from rockframe.results.variables.variable import unit_behind
 
         given = self._dataset
@@ -209,7 +209,7 @@ class RockframeAccessor:
         return card(first, rows, self._drawing(), trace)
 
     def _drawing(self) -> str:
-        """Draw the scene of a result, where it tells its system."""
+        """Draw the scene of a result that stores its system."""
         if "system_json" not in self._dataset.attrs:
             return ""
         from rockframe.notebook import drawing
@@ -218,6 +218,6 @@ class RockframeAccessor:
 
         try:
             system = system_of_run(self._dataset, "card")
-        except RockframeError:  # such as a part of somebody's own that is not registered
+        except RockframeError:  # for example a user's own component that is not registered
             return ""
         return drawing(shapes_of(geometry_of(system.assembly)))

@@ -1,4 +1,4 @@
-"""Arguments without a unit: one of a few words, a text, a whole number, or a dataset."""
+"""Checks of arguments without a unit: one of a few words, a text, a whole number, or a dataset."""
 
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
@@ -15,12 +15,12 @@ Words = TypeVar("Words", bound=StrEnum)
 
 
 def by_words(given: Mapping[Any, Any], *, owner: str) -> dict[str, Any]:
-    """Read a mapping whose keys are labels, also numbers, as a mapping of words."""
+    """Convert the keys of a mapping, such as numbers, to strings that differ."""
     found = {str(key): value for key, value in given.items()}
     if len(found) < len(given):
         words = [str(key) for key in given]
         twice = next(word for word in words if words.count(word) > 1)
-        msg = f"{owner}: two are called {twice!r}; expected names that differ"
+        msg = f"{owner}: two entries are called {twice!r}; expected names that differ"
         raise ComponentError(msg)
     return found
 
@@ -55,18 +55,18 @@ def one_of_names(given: object, known: Iterable[str], *, owner: str, name: str) 
 
 
 def several(given: object, *, owner: str, name: str, of: str) -> list[Any]:
-    """Read an argument that is several things in an order; one text is one of them."""
+    """Read an argument that is a sequence; a single text counts as one of one element."""
     if isinstance(given, str):
         return [given]
     if isinstance(given, Iterable) and not isinstance(given, Mapping | bytes):
-        with suppress(TypeError):  # such as of an array without dimensions
+        with suppress(TypeError):  # for example an array without dimensions
             return list(cast("Iterable[Any]", given))
-    msg = f"{owner}: {name} must be several {of} in a list, got {shown(given)}"
+    msg = f"{owner}: {name} must be a list of {of}, got {shown(given)}"
     raise ComponentError(msg)
 
 
 def by_names(given: object, *, owner: str, name: str, example: str) -> Mapping[str, Any]:
-    """Read an argument that is a mapping, whose keys are texts."""
+    """Read an argument that is a mapping with texts as keys."""
     plain = isinstance(given, Mapping) and not isinstance(given, xr.Dataset)
     if plain and all(isinstance(key, str) for key in cast("Mapping[Any, Any]", given)):
         return cast("Mapping[str, Any]", given)
@@ -75,14 +75,14 @@ def by_names(given: object, *, owner: str, name: str, example: str) -> Mapping[s
 
 
 def function_of(given: object, *arguments: str, owner: str, name: str) -> Callable[..., Any]:
-    """Read an argument that is a function of some values, which are given in their order."""
+    """Read an argument that is a function of some positional arguments."""
     wanted = f"a function of {' and '.join(arguments)}"
     if not callable(given):
         msg = f"{owner}: {name} must be {wanted}, got {shown(given)}"
         raise ComponentError(msg)
     try:
         takes = signature(given)
-    except ValueError:  # such as those of NumPy, which do not tell what they take
+    except ValueError:  # no signature, as of functions of NumPy
         return given
     try:
         takes.bind(*arguments)
@@ -103,7 +103,7 @@ def truth(given: object, *, owner: str, name: str) -> bool:
 def whole_number(
     given: object, *, owner: str, name: str, lowest: int, highest: int | None = None
 ) -> int:
-    """Read an argument that is a whole number, Python's or numpy's."""
+    """Read an argument that is a whole number of Python or NumPy."""
     try:
         number = None if isinstance(given, bool) else index(cast("SupportsIndex", given))
     except TypeError:

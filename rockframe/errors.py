@@ -1,7 +1,7 @@
 """Errors and warnings raised by rockframe.
 
-Every error derives from :class:`RockframeError`, so that a script can tell
-"rockframe refused this" from a fault of its own.
+Every error derives from :class:`RockframeError`, so that a script can tell an input that
+rockframe refused from a fault of its own.
 """
 
 import sys
@@ -15,18 +15,18 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 LONGEST_SHOWN = 100
-"""Characters of a value beyond which a message does not show all of it."""
+"""A message shows a value up to this number of characters."""
 
 
 class RockframeError(Exception):
     """Base class of every error that rockframe raises on purpose."""
 
     def _render_traceback_(self) -> list[str]:
-        """Give what IPython and Jupyter show: the lines that led here, and none of rockframe's."""
+        """Give the traceback for IPython and Jupyter, without the frames of rockframe."""
         console: Any = sys.modules["IPython"]
         shown_by = console.get_ipython().InteractiveTB
         before = (self.__cause__, self.__context__)
-        self.__cause__ = self.__context__ = None  # whose lines would be shown too, and first
+        self.__cause__ = self.__context__ = None  # their tracebacks would be shown, too, and first
         try:
             return shown_by.structured_traceback(type(self), self, _outside(self.__traceback__))
         finally:
@@ -51,11 +51,11 @@ class UnitsError(RockframeError, ValueError):
 
 
 class ComponentError(RockframeError, ValueError):
-    """A component's own values do not make sense (negative size, NaN, ...)."""
+    """The values of one component or argument are not valid (negative size, NaN, ...)."""
 
 
 class AssemblyError(RockframeError, ValueError):
-    """Parts do not assemble into a supported scene, or do not fit one another.
+    """The parts do not form a supported scene, or do not fit one another.
 
     Parameters
     ----------
@@ -80,14 +80,14 @@ class AssemblyError(RockframeError, ValueError):
 
 
 class RecordError(RockframeError, ValueError):
-    """A ground-motion file cannot be read as what it claims to be.
+    """A ground-motion file cannot be read in its format.
 
     Parameters
     ----------
     path : str
         File that was read.
     found, expected : str
-        What stands in the file, and what should have stood there.
+        Contents of the file at the fault, and the contents that were expected.
     line : int, optional
         Line number, counted from 1.
     """
@@ -109,14 +109,14 @@ def _rebuild_record_error(path: str, found: str, expected: str, line: int | None
 
 
 class FileError(RockframeError, ValueError):
-    """A file of a scene, study or result is not what it should be, or must not be written.
+    """A file of a scene, study or result cannot be read, or must not be written.
 
     Parameters
     ----------
     path : str
-        File that was read, or was to be written.
+        File that was read or to be written.
     faults : sequence of (int or None, str)
-        Every fault found, with its line, counted from 1, where it has one.
+        Every fault found, with its line number, counted from 1, where it has one.
     """
 
     def __init__(self, path: str, faults: Sequence[tuple[int | None, str]]) -> None:
@@ -133,11 +133,11 @@ class FileError(RockframeError, ValueError):
 
 
 class SolverError(RockframeError, RuntimeError):
-    """The integration cannot start or go on; the message gives the state."""
+    """The integration cannot start or continue; the message gives the state."""
 
 
 class StudyError(RockframeError, ValueError):
-    """A study cannot be planned, carried out, kept or read.
+    """A study cannot be planned, run, stored or read.
 
     Parameters
     ----------
@@ -155,41 +155,41 @@ class StudyError(RockframeError, ValueError):
 
 
 class SchemaError(RockframeError, ValueError):
-    """A dataset does not follow rockframe's schema, or a name is not in it."""
+    """A dataset does not follow the schema of rockframe, or a name is not in it."""
 
 
 class ArgumentError(RockframeError, TypeError):
-    """A function does not take an argument, or needs one that is not given."""
+    """A function does not take an argument, or one that it needs is missing."""
 
 
 class AccessError(RockframeError, AttributeError):
-    """An attribute that there is not is asked for, or one that stays is to be changed."""
+    """An attribute does not exist, or cannot be changed."""
 
 
 class LabelError(RockframeError, KeyError):
-    """Nothing has that label in a mapping."""
+    """A mapping has no such label."""
 
-    __str__ = Exception.__str__  # that of a KeyError is the repr
+    __str__ = Exception.__str__  # str() of a KeyError gives the repr of the message
 
 
 class RockframeWarning(UserWarning):
-    """Base class of rockframe's warnings."""
+    """Base class of the warnings of rockframe."""
 
 
 class ModelWarning(RockframeWarning):
-    """The run goes on, but the model is used near or beyond its validity."""
+    """The run continues, but the model is used near or beyond its limits of validity."""
 
 
 class SolverWarning(RockframeWarning):
-    """A run could not be finished, or its energies show that it is no solution."""
+    """A run could not be finished, or its energy balance shows that it is no solution."""
 
 
 class RecordWarning(RockframeWarning):
-    """A ground-motion file disagrees with itself, or a motion is sampled too coarsely."""
+    """A ground-motion file contradicts itself, or a motion is sampled too coarsely."""
 
 
 def shown(value: object) -> str:
-    """Show a value in a message: as it is written, if that is short."""
+    """Give a value for a message: its repr if that is short, else a shorter text."""
     text = repr(value)
     if len(text) <= LONGEST_SHOWN and "\n" not in text:
         return text
@@ -219,12 +219,12 @@ _SYMBOLS: Final = {
     "ida": ("incremental_dynamic_analysis",),
     "prestress": ("preload",),
 }
-"""What is written in papers for names of arguments, parameters and functions; but not b and h,
-which are halves of the width and of the height there."""
+"""Symbols of the literature for arguments, parameters and functions. The symbols b and h are left
+out: in papers they are half the width and half the height."""
 
 
 def nearest(given: object, known: Iterable[str]) -> str:
-    """Ask whether a similar word was meant, behind what was given; nothing where there is none."""
+    """Give the question whether a similar word was meant, for the end of a message; or nothing."""
     words = {one.casefold(): one for one in known}
     wanted = str(given).casefold()
     near = [one for one in _SYMBOLS.get(wanted, ()) if one in words]
@@ -233,29 +233,29 @@ def nearest(given: object, known: Iterable[str]) -> str:
 
 
 def unexpected_argument(call: str, name: str, known: Iterable[str]) -> ArgumentError:
-    """Say what Python says of an argument that there is not, and which one may have been meant."""
+    """Give Python's error of an unexpected argument, and propose a similar one."""
     names = list(known)
     words = f"{call} got an unexpected keyword argument {name!r}{nearest(name, names) or '.'}"
     return ArgumentError(f"{words} It takes {', '.join(names) or 'none'}")
 
 
 def unknown_attribute(owner: str, name: str, known: Iterable[str]) -> AccessError:
-    """Say what Python says of an attribute that there is not, and which one may be meant."""
+    """Give Python's error of a missing attribute, and propose a similar one."""
     words = f"{owner} has no attribute {name!r}"
-    if not name.startswith("_"):  # these are asked for by programs
+    if not name.startswith("_"):  # programs look up those with an underscore
         words += nearest(name, (one for one in known if not one.startswith("_")))
     return AccessError(words, name=name)
 
 
 PLEASE_REPORT: Final = "this is an error in rockframe; please report it"
-"""What is said of faults that no argument can cause."""
+"""Text of errors that no argument can cause."""
 
 _collected: Final[ContextVar[list[str] | None]] = ContextVar("collected_warnings", default=None)
 
 
 @contextmanager
 def collected_warnings() -> Generator[list[str]]:
-    """Collect what is warned of, in this thread alone, instead of warning."""
+    """Collect the texts of warnings in this thread, instead of issuing the warnings."""
     texts: list[str] = []
     before = _collected.set(texts)
     try:
@@ -265,7 +265,7 @@ def collected_warnings() -> Generator[list[str]]:
 
 
 def warn(message: str, category: type[RockframeWarning]) -> None:
-    """Warn at the line that called into rockframe, however deep the fault is found."""
+    """Issue a warning at the line that called rockframe, from any depth of calls."""
     texts = _collected.get()
     if texts is not None:
         texts.append(message)

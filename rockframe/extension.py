@@ -1,10 +1,10 @@
-"""What a file with parts or equations of your own needs: declarations, supports, laws, columns.
+"""Names for files with components or equations of your own: declarations, supports, laws, columns.
 
-A base of your own is a class derived from :class:`OwnBase`, a :class:`Support` that says how
-it carries a body, and a law of a point, :func:`point_law`. A scene of your own is a class
-derived from :class:`OwnScene` and a :class:`System`: a named tuple of numbers with the methods
-of :class:`~rockframe.dynamics.protocol.Equations`, in a :class:`ContactModel`.
-:func:`rockframe.register` makes either known.
+A base of your own needs a class derived from :class:`OwnBase`, a :class:`Support` that defines
+how it carries a body, and a contact law at a point, :func:`point_law`. A scene of your own needs
+a class derived from :class:`OwnScene` and a :class:`System`: a named tuple of numbers with the
+methods of :class:`~rockframe.dynamics.protocol.Equations`, in a :class:`ContactModel`.
+:func:`rockframe.register` registers either.
 """
 
 from typing import TYPE_CHECKING

@@ -1,11 +1,11 @@
-"""Numbers of many cases at once, which go through the code of one.
+"""Vectors of numbers, one of each case, that pass through code written for a single case.
 
-What makes the numbers of a scene is written for one scene. Given :class:`Many` in the place of a
-number, the same lines work out all cases: each sum, product and elementary function for all of
-them, to the same bits as for each alone. Where the cases would go different ways, a comparison
-raises :class:`Differ`, and :func:`each_way` divides them; what can be done for one case only, such
-as writing a number into a message, raises :class:`OnlyAlone`. Then the cases are seen to one by
-one, by whoever asked.
+The parameters of a scene are computed by code for one scene. With :class:`Many` in place of a
+number the same code computes all cases at once: each sum, product and elementary function is
+identical bit for bit to that of the case alone. Where a comparison differs between the cases it
+raises :class:`Differ`, and :func:`each_way` splits them into groups. What can be done for one case
+only, such as writing a number into a message, raises :class:`OnlyAlone`; the caller then computes
+these cases one by one.
 """
 
 import math
@@ -20,16 +20,16 @@ Places = NDArray[np.intp]
 Found = TypeVar("Found")
 
 FEWEST: Final = 16
-"""Cases below which each alone takes no longer."""
+"""Below this number of cases it takes no longer to compute them one by one."""
 
 
 class Differ(BaseException):
-    """Cases go different ways.
+    """A comparison has different results in the cases.
 
     Parameters
     ----------
     some : ndarray of bool, shape (cases,)
-        Those that go one of them.
+        The result in each case.
     """
 
     def __init__(self, some: NDArray[np.bool_]) -> None:
@@ -38,18 +38,18 @@ class Differ(BaseException):
 
 
 class OnlyAlone(BaseException):
-    """What is asked for can be done for one case only."""
+    """An operation is possible for one case only."""
 
 
 def _value(other: Any) -> Any:
-    """Give what stands on the other side of an operation; None of what it is not made for."""
+    """Give the other operand as numbers; None if it is of another type."""
     if isinstance(other, Many):
         return other.values
     return other if isinstance(other, float | int) else None
 
 
 def _agreed(some: NDArray[np.bool_]) -> bool:
-    """Give what a comparison shows in all cases."""
+    """Give the result of a comparison if it is the same in all cases."""
     count = np.count_nonzero(some)
     if 0 < count < len(some):
         raise Differ(some)
@@ -59,7 +59,7 @@ def _agreed(some: NDArray[np.bool_]) -> bool:
 def _operation(work: Callable[[Any, Any], Any], *, turned: bool = False) -> Any:
     def operate(self: "Many", other: Any) -> Any:
         value = _value(other)
-        if value is None:  # arrays of numbers see to each of theirs
+        if value is None:  # arrays carry out the operation for each of their elements
             return NotImplemented
         return Many(work(value, self.values) if turned else work(self.values, value))
 
@@ -75,12 +75,12 @@ def _comparison(work: Callable[[Any, Any], Any]) -> Any:
 
 
 class Many:
-    """A number of many cases.
+    """A number that has a value in each of many cases.
 
     Parameters
     ----------
     values : ndarray, shape (cases,)
-        Of each; not to be changed.
+        The values; they must not be changed.
     """
 
     __slots__ = ("values",)
@@ -104,10 +104,10 @@ class Many:
     __eq__ = _comparison(np.equal)
     __ne__ = _comparison(np.not_equal)
 
-    __hash__ = None  # type: ignore[assignment] # nothing is kept for numbers of many cases
+    __hash__ = None  # type: ignore[assignment] # caches hold numbers of one case only
 
     def __pow__(self, power: float) -> "Many":
-        # powers of numpy have other bits than Python's
+        # powers of NumPy differ in the last bits from those of Python
         return Many(np.array([value**power for value in self.values.tolist()]))
 
     def __neg__(self) -> "Many":
@@ -137,22 +137,22 @@ class Many:
 def each_way(
     work: Callable[[Places], Found], cases: Places, fewest: int = FEWEST
 ) -> Iterator[tuple[Places, Found]]:
-    """Work out what cases give that go the same way.
+    """Split cases into groups with the same branches of the code, and compute each group.
 
     Parameters
     ----------
     work : callable
-        ``work(cases)``, with :class:`Many` in the places of numbers.
+        ``work(cases)``, which computes with :class:`Many` in place of numbers.
     cases : ndarray, shape (cases,)
-        By their numbers, in ascending order.
+        Numbers of the cases, in ascending order.
     fewest : int
-        Cases of one way below which they are left out.
+        Smallest group that is computed.
 
     Yields
     ------
     tuple
-        Cases of one way, and what was found. Cases are missing where their way is rare, or cannot
-        be gone by several.
+        Cases of one group, and the result of `work`. Cases of smaller groups are left out, and
+        those that can only be computed one by one.
     """
     waiting = [cases]
     while waiting:
@@ -160,28 +160,28 @@ def each_way(
         if len(some) < fewest:
             continue
         try:
-            # what is an error of one number, or may be, is seen to alone
+            # cases with an error, or a possible one, are computed one by one
             with np.errstate(divide="raise", invalid="raise", over="ignore", under="ignore"):
                 found = work(some)
         except Differ as differ:
             waiting += [some[~differ.some], some[differ.some]]
         except OnlyAlone:
             continue
-        except Exception:  # noqa: S112 - each case tells of it that has it
+        except Exception:  # noqa: S112 - computed alone, each such case raises it again
             continue
         else:
             yield some, found
 
 
 def in_each(number: Any, count: int) -> Floats:
-    """Give a number in each of some cases; one that is the same in all, too."""
+    """Give the values of a number in each case; a single number is repeated."""
     if isinstance(number, Many):
         return number.values
     return np.full(count, number, dtype=np.float64)
 
 
 def plain(number: Any) -> Any:
-    """Give a number of numpy as one of Python."""
+    """Convert a number of NumPy to one of Python."""
     return number if isinstance(number, Many) else float(number)
 
 
@@ -194,11 +194,11 @@ def largest(first: Any, second: Any) -> Any:
 
 
 def _of_one(function: Callable[[float], float]) -> Callable[[Any], Any]:
-    """Let a function of Python take many numbers."""
+    """Extend a function of one number to many cases."""
 
     def work(number: Any) -> Any:
         if isinstance(number, Many):
-            # those of numpy have other bits
+            # functions of NumPy differ in the last bits
             return Many(np.array(list(map(function, number.values.tolist()))))
         return function(number)
 
@@ -224,22 +224,22 @@ atan2, hypot = _of_two(math.atan2), _of_two(math.hypot)
 
 
 def sqrt(number: Any) -> Any:
-    """Give the square root, which is rounded alike everywhere."""
+    """Give the square root; NumPy and Python round it alike."""
     return Many(np.sqrt(number.values)) if isinstance(number, Many) else math.sqrt(number)
 
 
 def ceil(number: Any) -> int:
-    """Give the least whole number that is no less."""
+    """Round up to a whole number."""
     return int(Many(np.ceil(number.values))) if isinstance(number, Many) else math.ceil(number)
 
 
 def isfinite(number: Any) -> bool:
-    """Tell whether it is a number, and not infinite."""
+    """Tell whether a number is finite: neither infinite nor NaN."""
     if isinstance(number, Many):
         return _agreed(np.isfinite(number.values))
     return math.isfinite(number)
 
 
 def isnan(number: Any) -> bool:
-    """Tell whether it is no number."""
+    """Tell whether a number is NaN."""
     return _agreed(np.isnan(number.values)) if isinstance(number, Many) else math.isnan(number)

@@ -1,6 +1,6 @@
-"""What notebooks show of parts, systems and motions: a drawing and the numbers, as HTML.
+"""HTML that notebooks show for parts, systems and motions: a drawing and a table of numbers.
 
-Colours are those of the page, so that cards are legible on light and on dark ones.
+Texts have the colour of the page, so that they are legible on light and dark pages.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 
 _PREFIXES: Final = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 _SCALED: Final = ("Pa", "N", "J")
-"""Units that are written with a prefix where they are many; so are those that begin with them."""
+"""Large values in these units, or in units that begin with them, are written with a prefix."""
 _INK: Final = 'stroke="currentColor" fill="currentColor"'
 _TONES: Final = {
     "block": 'fill="#0072b2" fill-opacity="0.25" stroke="#3a8fc7"',
@@ -24,14 +24,14 @@ CELL: Final = "text-align:left;padding:1px 12px 1px 0;background:transparent;bor
 
 
 class Polygon(NamedTuple):
-    """A polygon, or a dot where it has but one point."""
+    """A polygon, or a dot if it has one point."""
 
     tone: str
     points: Sequence[tuple[float, float]]
 
 
 def arguments_in_words(arguments: Mapping[str, Any]) -> dict[str, str]:
-    """Give arguments as people write them."""
+    """Give names and values of arguments as texts to read, without long ones."""
     found = {name.replace("_", " "): _written(value) for name, value in arguments.items()
              if name != "type"}  # fmt: skip
     return {name: words for name, words in found.items() if len(words) <= _LONGEST}
@@ -41,7 +41,7 @@ _LONGEST: Final = 60
 
 
 def card(title: str, rows: Mapping[str, str], drawing: str = "", more: str = "") -> str:
-    """Give a card: a title, a drawing and a table of names and values."""
+    """Give a title, a drawing and a table of names and values as HTML."""
     cells = "".join(
         f'<tr style="background:transparent"><th style="{CELL};font-weight:normal;opacity:0.7">'
         f'{escape(name)}</th><td style="{CELL}">{escape(value)}</td></tr>'
@@ -71,7 +71,7 @@ def drawing(shapes: Iterable[Polygon], *, size: float = 130.0) -> str:
 
 
 def curve(values: Sequence[float], *, width: float = 260.0, height: float = 60.0) -> str:
-    """Draw values along time."""
+    """Draw values over time."""
     most = max((abs(value) for value in values), default=0.0) or 1.0
     count = len(values)
     step = max(1, -(-count // 300))
@@ -120,7 +120,7 @@ def _written(value: Any) -> str:
 
 
 def number_with_unit(size: float, unit: str) -> str:
-    """Write a number in an SI unit as people do: 99 t, 9 MPa, 250 kN m^-1."""
+    """Write a number in an SI unit with a prefix: 99 t, 9 MPa, 250 kN m^-1."""
     if unit == "kg" and abs(size) >= 1e3:
         return f"{1e-3 * size:.6g} t"
     if unit.split(" ")[0] in _SCALED:

@@ -1,4 +1,4 @@
-"""Names of version 0.1 that have moved; they are given for one version, with a warning."""
+"""Names of version 0.1 that have moved; they remain for one version, with a warning."""
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping
@@ -55,7 +55,7 @@ _BECAME: Final[dict[str, tuple[Callable[..., Any], str]]] = {
 
 
 def old_name(name: str, known: Iterable[str]) -> Any:
-    """Give what a name stands for, and warn with the new name; of others propose a known one."""
+    """Give the object of an old name, and warn with the new one; else propose a similar name."""
     if name in _BECAME:
         found, now = _BECAME[name]
     elif name in MOVED:

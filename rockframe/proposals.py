@@ -1,7 +1,7 @@
-"""What is answered to names that there are not: of arguments, of methods and values, of functions.
+"""Errors for unknown names of arguments, attributes and functions, which propose a similar name.
 
-Python says that there is no such name. Here it is said too which one may have been meant, by an
-error of rockframe, whose traceback in notebooks is the line that was wrong.
+Python states only that a name does not exist. These errors of rockframe propose a known one; their
+traceback in notebooks shows only the user's own lines.
 """
 
 from abc import ABCMeta
@@ -19,11 +19,11 @@ _BOUND: Final = {
     "self": "", "cls": "", "kind": "rockframe.motion.", "motion": "rockframe.motion.",
     "suite": "rockframe.suites.",
 }  # fmt: skip
-"""What methods have first, which nobody gives by name; and where functions are methods."""
+"""First parameters of methods, which a call never names, and the modules of such functions."""
 
 
 def hinted(**hints: str) -> Callable[[Function], Function]:
-    """Say more of arguments that a function does not take: hints, or which one was meant."""
+    """Make a function explain unknown arguments: by the hint for a name, or by a similar name."""
 
     def decorate(function: Function) -> Function:
         parameters = list(signature(function).parameters.values())
@@ -46,7 +46,7 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
             try:
                 return function(*given, **named)
             except TypeError as problem:
-                raise_refused(problem, [*listed, "what has a name"] if any_name else listed)
+                raise_refused(problem, [*listed, "further named arguments"] if any_name else listed)
                 raise
 
         call.hints = hints  # type: ignore[attr-defined]
@@ -56,12 +56,12 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
 
 
 def hints_of(function: Callable[..., Any]) -> Mapping[str, str] | None:
-    """Give the hints of a function that is :func:`hinted`; None of any other."""
+    """Give the hints of a function that is :func:`hinted`; None for any other."""
     return getattr(function, "hints", None)
 
 
 def raise_refused(problem: TypeError, listed: Iterable[str]) -> None:
-    """Say what a function takes, if the call itself was refused: if nothing of it was run."""
+    """List the arguments of a function if the call itself failed, before any line of it ran."""
     trace = problem.__traceback__
     if trace is None or trace.tb_next is not None:
         return
@@ -72,9 +72,9 @@ def raise_refused(problem: TypeError, listed: Iterable[str]) -> None:
 
 
 def proposing(kind: Class) -> Class:
-    """Let a class propose what was meant by arguments and attributes that it does not have.
+    """Make the methods of a class propose similar arguments, and the class similar attributes.
 
-    Methods that a class inherits are those of a class that proposes too.
+    A base class of it must be decorated, too: inherited methods are left as they are.
     """
     for name, one in list(vars(kind).items()):
         if name.startswith("_") and name != "__init__":
@@ -97,15 +97,15 @@ def _is_plain(one: object) -> bool:
 def _no_attribute(self: object, name: str) -> NoReturn:
     if any(name in vars(one) for one in type(self).__mro__):  # a property that failed
         object.__getattribute__(self, name)
-    # what programs ask for begins with an underscore, such as what dir() itself does
+    # programs, and dir() itself, look up names that begin with an underscore
     known = () if name.startswith("_") else dir(self)
     raise unknown_attribute(type(self).__name__, name, known)
 
 
 class Proposing(ABCMeta):
-    """What classes are made by whose constructors are proposed, too, where they are misspelt.
+    """Metaclass of classes that propose a similar name for a misspelt constructor.
 
-    Classes that are derived from them may be abstract.
+    Derived classes may be abstract.
     """
 
     if not TYPE_CHECKING:  # or no name would be unknown to type checkers
@@ -118,7 +118,7 @@ class Proposing(ABCMeta):
 
 
 def attributes_of(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:
-    """Give what a module calls ``__getattr__``: it proposes one of its public names."""
+    """Give a function ``__getattr__`` for a module: it proposes a similar public name."""
     known, owner = list(names), f"module {module!r}"
 
     def no_attribute(name: str) -> NoReturn:

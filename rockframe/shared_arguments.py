@@ -1,4 +1,4 @@
-"""Arguments that several functions take: declared once, documented and refused alike for all."""
+"""Arguments that several functions share: declared, documented and checked in one place."""
 
 import inspect
 import re
@@ -23,21 +23,21 @@ _ROW: Final = re.compile(r"^(?=\S)", re.M)
 
 @dataclass(frozen=True)
 class Argument:
-    """What is said of an argument, beside its type: the metadata of ``Annotated``."""
+    """Default and documentation of an argument: the metadata of ``Annotated``."""
 
-    default: object  # its value unless given
-    kind: str  # its type, as the manual has it
-    words: str  # what it is, with its unit
+    default: object  # value if the argument is left out
+    kind: str  # type, as the documentation writes it
+    words: str  # description, with its unit
 
 
 def declared_in(kind: type) -> dict[str, Argument]:
-    """Give the arguments of a typed dictionary, by their names."""
+    """Give the arguments of a typed dictionary by name."""
     hints = get_type_hints(kind, include_extras=True)
     return {name: hint.__metadata__[0] for name, hint in hints.items()}
 
 
 def documented_by(kind: type) -> Callable[[Function], Function]:
-    """Complete the docstring of a function that takes shared arguments by name."""
+    """Add the shared arguments to the docstring of a function that takes them by name."""
 
     def decorate(function: Function) -> Function:
         names = inspect.signature(function).parameters
@@ -50,9 +50,9 @@ def documented_by(kind: type) -> Callable[[Function], Function]:
 def takes(
     kind: type, *, further: str | None = None, **otherwise: object
 ) -> Callable[[Function], Function]:
-    """Let a function take shared arguments, which it has as ``**run: Unpack[kind]``.
+    """Make a function take shared arguments, which it declares as ``**run: Unpack[kind]``.
 
-    Any other name goes into the mapping that the argument `further` is, if there is one.
+    An argument of any other name goes into the mapping argument `further`, if that is set.
     """
     declared = declared_in(kind)
 
@@ -88,7 +88,7 @@ def takes(
                 raise
 
         cast("Any", call).__signature__ = shown
-        cast("Any", call).hints = {}  # nothing of it has to be hinted
+        cast("Any", call).hints = {}  # so that `hinted` does not wrap it again
         call.__doc__ = completed(function.__doc__ or "", shown.parameters, declared)
         return cast("Function", call)
 
@@ -97,7 +97,7 @@ def takes(
 
 def _unknown(function: str, name: str, known: Iterable[str]) -> str:
     names = list(known)
-    # an axis has the name of a parameter, so that `width` is always that of a block
+    # axes are named like parameters, so `width` would be the width of a block
     if f"bracket_{name}" in names:
         return (
             f"{function}() takes no {name!r}; the width of a bracket is 'bracket_{name}', and "
@@ -112,15 +112,15 @@ def _unknown(function: str, name: str, known: Iterable[str]) -> str:
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """Ask whether a similar name was meant, at the end of a sentence; or end it."""
+    """Give the question whether a similar name was meant; else a full stop."""
     return nearest(name, known) or "."
 
 
 def completed(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:
-    """Insert rows for declared arguments into the section on parameters."""
+    """Insert rows for declared arguments into the section on parameters of a docstring."""
     clean = inspect.cleandoc(text)
     section = _PARAMETERS.search(clean)
-    if section is None:  # also where Python has left docstrings out
+    if section is None:  # also if Python runs without docstrings
         return text
     rows = {
         name.strip().lstrip("*"): row.rstrip()
@@ -146,7 +146,7 @@ def _row(name: str, one: Argument) -> str:
 
 
 def with_raises(text: str, raises: str) -> str:
-    """Insert a section on what is raised, unless there is one, behind what is returned."""
+    """Insert a section Raises before Notes and Examples, unless there is one."""
     clean = inspect.cleandoc(text)
     if not clean or "\nRaises\n---" in clean:
         return clean

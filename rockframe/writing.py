@@ -1,4 +1,4 @@
-"""Files that are written: whole or not at all, and never over what somebody else has written."""
+"""Writing of files: completely or not at all, and never over a file of another program."""
 
 import os
 import shutil
@@ -11,25 +11,25 @@ from typing import Final, Self, TypeAlias
 from rockframe.errors import ComponentError, FileError, shown
 
 _MARKED_WITHIN: Final = 65536
-"""Part of a file, from either end, in which its mark stands [bytes]."""
+"""Length at both ends of a file within which the mark of rockframe is found [bytes]."""
 
 PathLike: TypeAlias = str | os.PathLike[str]
 Content: TypeAlias = bytes | Callable[[Path], object]
-"""All bytes of a file, or what writes it to a path."""
+"""All bytes of a file, or a function that writes it to a path."""
 
 
 @dataclass(frozen=True)
 class FileKind:
     """A kind of file that rockframe writes."""
 
-    words: str  # what it is, with its article
-    endings: tuple[str, ...]  # of names of such files, in small letters
-    # whether a file that is there was written by rockframe as one of this kind
+    words: str  # name of the kind, with an article
+    endings: tuple[str, ...]  # endings of file names, in small letters
+    # whether rockframe wrote an existing file as one of this kind
     is_own: Callable[[Path], bool]
 
     @classmethod
     def marked(cls, words: str, endings: tuple[str, ...], *marks: str) -> Self:
-        """Make a kind of which each file has one of some marks near its beginning or its end."""
+        """Make a kind whose files contain one of some marks near the beginning or the end."""
 
         def is_own(path: Path) -> bool:
             with path.open("rb") as file:
@@ -42,7 +42,7 @@ class FileKind:
 
 
 def generator(what: str, version: str = "") -> str:
-    """Give the tag by which a page says what wrote it; without a version, how it begins."""
+    """Give the HTML tag that names rockframe as the author; without a version, its beginning."""
     begun = f'<meta name="generator" content="{what} by rockframe '
     return f'{begun}{version}">' if version else begun
 
@@ -50,7 +50,7 @@ def generator(what: str, version: str = "") -> str:
 def checked_path(
     path: PathLike, kind: FileKind, *, overwrite: bool = False, read: Iterable[PathLike] = ()
 ) -> Path:
-    """Refuse a file that must not be written; to be asked before the work."""
+    """Raise an error if a file must not be written; called before the computation."""
     if not isinstance(overwrite, bool):  # pyright: ignore[reportUnnecessaryIsInstance]
         msg = f"overwrite must be True or False, got {shown(overwrite)}"
         raise ComponentError(msg)
@@ -76,7 +76,7 @@ def write_file(
     overwrite: bool = False,
     read: Iterable[PathLike] = (),
 ) -> Path:
-    """Write a file whole or not at all: beside its place, and then moved there."""
+    """Write a file completely or not at all: under another name, then renamed."""
     place = checked_path(path, kind, overwrite=overwrite, read=read)
     part = place.with_name(f".{os.getpid()}.{os.urandom(4).hex()}{Path(path).suffix}")
     try:
@@ -99,7 +99,7 @@ def write_file(
 
 
 def _fault_of_place(named: Path, place: Path, kind: FileKind) -> str | None:
-    """Say why that cannot be the name of such a file: a folder, another ending, or no folder."""
+    """Say why a path cannot name such a file: a folder, another ending, or no such folder."""
     if place.is_dir():
         return "this is a folder; name a file in it"
     if named.suffix.lower() not in kind.endings:
@@ -114,7 +114,7 @@ def _fault_of_place(named: Path, place: Path, kind: FileKind) -> str | None:
 
 
 def check_not_read(path: PathLike, read: Iterable[PathLike]) -> None:
-    """Refuse to write over a file that is read, or in a folder that is."""
+    """Refuse to overwrite an input file, or a file in an input folder."""
     place = Path(os.path.realpath(Path(path).expanduser()))
     fault = _fault_of_read(place, read) if os.path.lexists(place) else None
     if fault is not None:
@@ -125,24 +125,24 @@ def _fault_of_read(place: Path, read: Iterable[PathLike]) -> str | None:
     for one in read:
         source = Path(one).expanduser()
         if source.is_dir() and source.resolve() in place.parents:
-            return f"this is a file in {str(one)!r}, which is read; name another one"
+            return f"this file is in the input folder {str(one)!r}; name another one"
         if source.exists() and source.samefile(place):
-            return "this file is read, and so is not written over; name another one"
+            return "this file is an input and is not overwritten; name another one"
     return None
 
 
 def _fault_of_present(
     place: Path, kind: FileKind, overwrite: bool, read: Iterable[PathLike]
 ) -> str | None:
-    """Say why a file is not replaced: it is read, it is no file, or it is somebody else's."""
+    """Say why a file is not replaced: it is an input, no file, or not written by rockframe."""
     fault = _fault_of_read(place, read)
     if fault is not None:
         return fault
     if not place.is_file():
-        return "this is no file; name one that is, or a new one"
+        return "this is not a regular file; name a regular file or a new one"
     if not overwrite and not kind.is_own(place):
         return (
-            f"this file is there already, and is not {kind.words} that rockframe wrote; name "
-            "another one, or have it replaced by --overwrite (in Python overwrite=True)"
+            f"this file exists already and is not {kind.words} that rockframe wrote; name "
+            "another one, or replace it with --overwrite (in Python overwrite=True)"
         )
     return None

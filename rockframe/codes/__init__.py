@@ -1,4 +1,4 @@
-"""Checks by codes of practice, each formula with its clause, beside the motion of the body."""
+"""Checks by codes of practice, each formula with its clause, with the computed motion."""
 
 from typing import TYPE_CHECKING
 

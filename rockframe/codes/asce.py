@@ -1,4 +1,4 @@
-"""ASCE 7-22, chapter 13: statics of a component, beside its motion on a floor."""
+"""ASCE 7-22, chapter 13: statics of a component, and its computed motion on a floor."""
 
 import math
 from collections.abc import Mapping
@@ -35,42 +35,42 @@ def asce_7_22(
     friction: RatioLike | None = None,
     free_vibration: QuantityLike = "10 s",
 ) -> CodeCheck:
-    """Check a component by ASCE 7-22, chapter 13: force, tipping and sliding, beside its motion.
+    """Check a component by ASCE 7-22, chapter 13: force, tipping, sliding and computed motion.
 
     Parameters
     ----------
     block : Block or System
-        The component; or its scene on level rigid ground.
+        The component, or its scene on level rigid ground.
     floor_motions : GroundMotion, or mapping of str to GroundMotion, optional
-        Of the floor that it stands on; none for the statics alone.
+        Motions of the floor that it stands on. Without them only the statics are checked.
     spectral_acceleration : float
-        S_DS, over gravity [1].
+        S_DS, as a multiple of g [1].
     importance : float, optional
-        I_p [1].
+        Importance factor I_p [1].
     height_factor : float, optional
         H_f, by the height in the building [1].
     ductility_factor : float, optional
-        R_mu, of the building [1].
+        R_mu of the building [1].
     resonance_factor : float, optional
-        C_AR, of the component's table [1].
+        C_AR from the table of components [1].
     strength_factor : float, optional
-        R_po, of the component's table [1].
+        R_po from the table of components [1].
     friction : float, optional
-        Coefficient of friction under the component; that of its ground unless given [1].
+        Coefficient of friction under the component. By default it is that of its ground [1].
     free_vibration : str or Quantity, optional
-        Still floor after each motion [s].
+        Duration for which the run goes on after the end of each motion, on a still floor [s].
 
     Returns
     -------
     CodeCheck
-        With a ``report``.
+        The numbers and verdicts. Its method ``report`` writes them as a page.
 
     Raises
     ------
     ComponentError
-        Another scene, or a factor that is not above zero.
+        If the scene is another one, or a factor is not positive.
     UnitsError
-        A factor is no pure ratio.
+        If a factor is not dimensionless.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def asce_7_22(
     if friction is not None:
         there = to_ratio(friction, owner=_OWNER, name="friction", condition=POSITIVE, example="0.4")
     forces = _Forces.of(factors, setting.body.mass * setting.gravity)
-    # a wall keeps it from tipping to one side
+    # a rear wall prevents tipping to one side
     height, lesser = setting.body.centre_height, min(setting.overturning_angles)
     lines = {
         "Factors": tuple(
@@ -140,7 +140,7 @@ class _Forces(NamedTuple):
 
     @classmethod
     def of(cls, factors: Mapping[str, float], weight: float) -> Self:
-        """Give the forces by the factors of the code."""
+        """Compute the forces from the factors of the code."""
         base = factors["S_DS"] * factors["I_p"] * weight
         by_formula = 0.4 * base * factors["H_f"] / factors["R_mu"]
         return cls(
@@ -150,7 +150,7 @@ class _Forces(NamedTuple):
 
     @property
     def horizontal(self) -> float:
-        """F_p, within its limits."""
+        """F_p, within its limits [N]."""
         return min(max(self.by_formula, self.least), self.most)
 
     def lines(self) -> tuple[CheckedLine, ...]:
@@ -172,14 +172,12 @@ class _Forces(NamedTuple):
 def _statics(
     forces: _Forces, height: float, arm: float, friction: float | None
 ) -> tuple[tuple[CheckedLine, ...], list[CheckedVerdict]]:
-    """Give the moments and the friction needed without anchors, and whether they suffice.
-
-    Of the height of the centre of mass and its lesser arm to a corner [m].
-    """
+    """Give moments and friction without anchors, with verdicts; `arm` is the shorter one [m]."""
     pressing = _RESISTING * forces.weight
     lifted = max(pressing - forces.vertical, 0.0)
     tipping, resisting = forces.horizontal * height, lifted * arm
-    anchored = tipping - (pressing - forces.vertical) * arm  # also where F_v lifts it
+    # the vertical force may exceed the weight, and then adds to the moment of the anchors
+    anchored = tipping - (pressing - forces.vertical) * arm
     needed = forces.horizontal / lifted if lifted > 0.0 else math.inf
     moment = Unit.NEWTON_METRE
     lines = (

@@ -1,4 +1,4 @@
-"""What checks share: the scenes that they take, the motions, and the runs beside them."""
+"""Common parts of the checks: the scenes that they accept, the motions, and the runs."""
 
 from collections.abc import Mapping
 from typing import Any, cast
@@ -15,9 +15,9 @@ from rockframe.units import QuantityLike
 def rocking_block(
     system: object, owner: str, *, carries: bool = False, slides: bool = False
 ) -> RigidGroundSetting | TiedSetting:
-    """Give the setting of a block that rocks on rigid ground; refuse all else.
+    """Give the setting of a block that rocks on level rigid ground; refuse any other scene.
 
-    It may carry masses, as loads, or slide, if told.
+    With `carries` it may carry loads that are masses, with `slides` it may slide.
     """
     if not isinstance(system, System):
         msg = f"{owner}: system needs a System, got {shown(system)}"
@@ -31,7 +31,7 @@ def rocking_block(
             carries
             and isinstance(setting, TiedSetting)
             and not setting.slides
-            and not setting.ties  # what is left of loads that are masses
+            and not setting.ties  # links other than loads that are masses
         ):
             return setting
     carried = ", which may carry loads that are masses," if carries else ","
@@ -46,7 +46,7 @@ def rocking_block(
 
 
 def read_motions(given: object, owner: str) -> dict[str, GroundMotion]:
-    """Take a motion, or several by their labels."""
+    """Read one motion, or several by their labels."""
     several = {given.name: given} if isinstance(given, GroundMotion) else given
     if not isinstance(several, Mapping):
         msg = f"{owner}: expected a GroundMotion or several by their labels, got {shown(given)}"
@@ -63,7 +63,7 @@ def read_motions(given: object, owner: str) -> dict[str, GroundMotion]:
 def peaks_of(
     system: System, motions: Mapping[str, GroundMotion], free_vibration: QuantityLike
 ) -> dict[str, tuple[float, bool]]:
-    """Give the peak rotation under each motion, and whether it overturned."""
+    """Give the peak rotation [rad] under each motion, and whether the block overturned."""
     found: dict[str, tuple[float, bool]] = {}
     for label, motion in motions.items():
         run = system.simulate(motion, outputs=None, free_vibration=free_vibration)
@@ -72,5 +72,5 @@ def peaks_of(
 
 
 def scene_words(system: System) -> str:
-    """Name what is checked, with its numbers, in a line."""
+    """Describe the scene that is checked, with its numbers, in one line."""
     return ", ".join(map(repr, system.parts.structural()))

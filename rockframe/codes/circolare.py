@@ -1,4 +1,4 @@
-"""Circolare 7/2019, C8.7.1: a local mechanism by kinematics, and by its motion."""
+"""Circolare 7/2019, C8.7.1: a local mechanism by kinematic analysis, and by computed motion."""
 
 import math
 import operator
@@ -40,7 +40,7 @@ SLD: Final = "SLD"
 _SLD_DAMPING: Final = 0.05
 _PERIODS: Final = 80
 _SHORTEST: Final = 0.2
-"""Of the periods at which the spectra of motions are looked at [s]."""
+"""Shortest period at which the spectra of motions are evaluated [s]."""
 
 
 @hinted()
@@ -53,42 +53,43 @@ def circolare_2019(
     elastic_period: QuantityLike | None = None,
     free_vibration: QuantityLike = "20 s",
 ) -> CodeCheck:
-    """Check a wall that overturns by Circolare 7/2019, C8.7.1: kinematics beside its motion.
+    """Check a wall against overturning by Circolare 7/2019, C8.7.1, and by its computed motion.
 
-    The mechanism is overturning as a rigid block about an edge of the base, away from a
-    :class:`~rockframe.RearWall`, or else to the weaker side; the control point is the centre of
-    mass.
+    The mechanism is overturning as a rigid block about an edge of the base. The block overturns
+    away from a :class:`~rockframe.RearWall`, or without one to the weaker side. The control point
+    is the centre of mass.
 
     Parameters
     ----------
     system : System
         A :class:`~rockframe.Block` on level rigid ground, with a :class:`~rockframe.RearWall` or
-        without; or with overburden, a :class:`~rockframe.Load` of a `moving_mass` for each.
+        without. Overburden is a :class:`~rockframe.Load` with a `moving_mass` for each mass.
     demand : TargetSpectrum, GroundMotion, or mapping of str to GroundMotion
-        At the wall's base, of the limit state: a spectrum at its damping ratio, 5 % (SLD), 8 %
-        (SLV) or 10 % (SLC), for the kinematic check alone; or motions, such as a suite, of SLV
-        and SLC for the dynamic alternative, too.
+        Demand of the limit state at the wall's base. A spectrum, at a damping ratio of 5 %
+        (SLD), 8 % (SLV) or 10 % (SLC), allows the kinematic check alone. Motions, such as a
+        suite, allow for SLV and SLC the dynamic check as well.
     confidence_factor : float, optional
         FC: 1.35, 1.20 or 1.00 by the level of knowledge [1].
     limit_state : {"SLV", "SLC", "SLD"}, optional
-        Which the demand belongs to.
+        Limit state of the demand.
     elastic_period : str or Quantity, optional
-        T_0 of the wall before it lifts, at which the spectrum is read for the SLD [s].
+        Elastic period T_0 of the wall before uplift, at which the spectrum is read. Required
+        for the SLD, and for it only [s].
     free_vibration : str or Quantity, optional
-        Still ground after each motion [s].
+        Duration for which the run goes on after the end of each motion, on still ground [s].
 
     Returns
     -------
     CodeCheck
-        With a ``report``.
+        The numbers and verdicts. Its method ``report`` writes them as a page.
 
     Raises
     ------
     ComponentError
-        Another scene, an unknown limit state, a period that is missing or has no use, or a
-        spectrum of another damping ratio or not known at the period.
+        If the scene is another one, the limit state is unknown, `elastic_period` is missing or
+        not used, or the spectrum has another damping ratio or does not reach the period.
     UnitsError
-        FC is no pure ratio.
+        If FC is not dimensionless.
 
     Examples
     --------
@@ -156,7 +157,7 @@ def _damage(
     activation: float,
     period: float,
 ) -> CodeCheck:
-    """Check that the mechanism is not activated at the SLD."""
+    """Check that the mechanism is not activated by the demand of the SLD."""
     if isinstance(demand, TargetSpectrum):
         needed = _ordinate(demand, period, _SLD_DAMPING)
     else:
@@ -178,16 +179,16 @@ def _damage(
 
 
 class _Mechanism(NamedTuple):
-    """Weights that overturn together about an edge."""
+    """Weights that overturn together about an edge, and their places relative to it."""
 
-    weights: tuple[float, ...]  # of the wall, and of what it carries [N]
-    beside: tuple[float, ...]  # of each from the edge [m]
-    above: tuple[float, ...]
+    weights: tuple[float, ...]  # of the wall, and of the masses that it carries [N]
+    beside: tuple[float, ...]  # horizontal distances of the weights from the edge [m]
+    above: tuple[float, ...]  # their heights above it [m]
     gravity: float
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Place of the centre of mass of all from the edge, beside and above it [m]."""
+        """Horizontal distance of the common centre of mass from the edge, and height [m]."""
         whole = math.fsum(self.weights)
         return tuple(  # type: ignore[return-value]
             math.fsum(map(operator.mul, self.weights, one)) / whole
@@ -196,14 +197,14 @@ class _Mechanism(NamedTuple):
 
     @property
     def oscillator(self) -> float:
-        """Displacement of the equivalent oscillator over that of the centre of mass."""
+        """Displacement of the equivalent oscillator over that of the centre of mass [1]."""
         horizontal = math.fsum(map(operator.mul, self.weights, self.above))
         square = math.fsum(p * y * y for p, y in zip(self.weights, self.above, strict=True))
         return square / (self.centre[1] * horizontal)
 
 
 def _mechanism(system: System, setting: RigidGroundSetting | TiedSetting) -> _Mechanism:
-    """Give the wall and what it carries, about the edge over which it overturns."""
+    """Give the mechanism of the wall and its loads about the edge over which it overturns."""
     angles, block = setting.overturning_angles, system.parts.the_block
     side = 1.0 if setting.overturning_rotations[0] > 0.0 and angles.right <= angles.left else -1.0
     carried = [one.si for one in system.parts.links if isinstance(one, Load)]
@@ -218,16 +219,16 @@ def _mechanism(system: System, setting: RigidGroundSetting | TiedSetting) -> _Me
 
 
 def _capacity(mechanism: _Mechanism, factor: float) -> tuple[CheckedLine, ...]:
-    """Give activation, capacity curve and the displacements and periods of limit states."""
+    """Give activation, capacity curve, and displacements and periods of the limit states."""
     weights, beside, above, gravity = mechanism
-    # the virtual displacements of the weights, by a rotation of one
+    # virtual work of the weights in a virtual rotation of 1
     vertical = math.fsum(map(operator.mul, weights, beside))
     horizontal = math.fsum(map(operator.mul, weights, above))
     square = math.fsum(weight * up * up for weight, up in zip(weights, above, strict=True))
     multiplier = vertical / horizontal
     share = horizontal**2 / (math.fsum(weights) * square)
     spectral = multiplier * gravity / (share * factor)
-    # where the centre of mass stands above the edge
+    # displacement at which the centre of mass is vertically above the edge
     last = mechanism.oscillator * mechanism.centre[0]
     lines = [
         CheckedLine("alpha_0", multiplier, Unit.ONE, "activation multiplier, "
@@ -273,7 +274,7 @@ def _ordinate(spectrum: TargetSpectrum, period: float, damping: float) -> float:
 
 
 def _of_motions(motions: Mapping[str, GroundMotion], period: float, damping: float) -> float:
-    """Give the largest of the mean spectral displacements up to a period [m]."""
+    """Give the largest mean spectral displacement of the motions, over periods up to one [m]."""
     periods = np.geomspace(min(_SHORTEST, 0.5 * period), period, _PERIODS)
     found = response_spectrum(motions, (periods, "s"), damping).spectral_displacement
     return float(found.mean("motion").max())

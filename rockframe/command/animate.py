@@ -1,4 +1,4 @@
-"""``rockframe animate``: a run that moves."""
+"""``rockframe animate``: an animation of a run."""
 
 import argparse
 from pathlib import Path
@@ -41,7 +41,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs = Outputs(arguments, [arguments.dataset], answer)
     given = given_of(arguments, "window", "magnify", "title")
     if ending in _PAGES and arguments.speed is not None:
-        msg = "--speed is that of a film; the page has a choice of speeds"
+        msg = "--speed is for films; a page has a choice of speeds"
         raise ComponentError(msg)
     moving: Animation | Player = (
         player(run, **given)

@@ -1,4 +1,4 @@
-"""What a command has found: in lines for people, and as JSON for programs."""
+"""The answer of a command: lines of text for people, JSON for programs."""
 
 import json
 import math
@@ -14,44 +14,44 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _LABEL: Final = 9
-"""Letters of a line up to what it tells."""
+"""Width of the label at the head of a line [characters]."""
 _ALONG: Final = {"time", "event", "sample_after_end"}
-"""Dimensions of what is left to the files of results."""
+"""Dimensions of histories, which only the files of results hold."""
 _TRUTH: Final = ["false", "true"]
-"""What flags mean that are truth values."""
+"""Meanings of flags that are truth values."""
 
 
 class Answer:
-    """What a command has found, kept until all of its files are written."""
+    """The answer of a command, kept until all of its files are written."""
 
     def __init__(self, command: str, *, quiet: bool, verbose: bool, as_json: bool) -> None:
         self.quiet, self.as_json = quiet, as_json
         self._verbose = verbose
-        self._asked: list[int] = []  # which lines tell what was asked
-        self._lines: list[tuple[bool, str]] = []  # whether it is beside the answer; the line
+        self._asked: list[int] = []  # numbers of the lines that repeat the question
+        self._lines: list[tuple[bool, str]] = []  # whether --quiet omits the line; the line
         self._told: dict[str, Any] = {"command": command, "version": __version__}
         self._numbers: dict[str, Any] = {}
         self._files: dict[str, list[str]] = {}
         self._warnings: list[str] = []
         self.data: bytes | None = None
-        """A file that goes to the standard output."""
+        """Contents of a file that goes to the standard output."""
 
     def subject(self, label: str, words: str) -> None:
-        """Tell what was asked, such as the scene; beside the answer itself."""
+        """Add a line on the question, such as the scene; --quiet omits it."""
         self._asked.append(len(self._lines))
         self._add(label, words, beside=True)
 
     def says(self, label: str, words: str) -> None:
-        """Tell the answer, or a part of it."""
+        """Add a line of the answer."""
         self._add(label, words, beside=False)
 
     def text(self, words: str, **named: Any) -> None:
-        """Tell lines as they stand; programs get what is named instead."""
+        """Add lines of text as they are; JSON has the named values instead."""
         self._lines.append((False, words))
         self._told |= {name: _as_json(value) for name, value in named.items()}
 
     def numbers(self, found: "xr.Dataset | Mapping[str, Any]") -> None:
-        """Add numbers with their units: of a result all that are not along time."""
+        """Add numbers with their units: of a result all variables but histories."""
         self._numbers |= {
             str(name): _number(one)
             for name, one in getattr(found, "variables", found).items()
@@ -59,12 +59,12 @@ class Answer:
         }
 
     def wrote(self, title: str, path: object) -> None:
-        """Tell of a file that was written."""
+        """Report a file that was written."""
         self._lines.append((True, f"{title}: {path}"))
         self._files.setdefault(title.lower(), []).append(str(path))
 
     def hands_on(self, data: bytes) -> None:
-        """Take a file that goes to the standard output, of which there is one."""
+        """Keep the one file that goes to the standard output."""
         if self.as_json or self.data is not None:
             other = "the answer in JSON" if self.as_json else "another file"
             words = f"{other} goes to the standard output already; name a file instead of '-'"
@@ -75,11 +75,11 @@ class Answer:
         self.data = data
 
     def warned(self, words: str) -> None:
-        """Keep a warning, which programs get too."""
+        """Keep a warning for JSON."""
         self._warnings.append(words)
 
     def printed(self, error: str = "") -> str:
-        """Give the lines for people; after an error not those that tell what was asked."""
+        """Give the lines for people; after an error without those on the question."""
         lines = [
             words for number, (beside, words) in enumerate(self._lines)
             if not (beside and self.quiet) and not (error and number in self._asked)
@@ -93,7 +93,7 @@ class Answer:
         return "".join(f"{line}\n" for line in lines)
 
     def json(self, code: int, error: str = "") -> str:
-        """Give all of it as a JSON object."""
+        """Give the answer as a JSON object."""
         files = {title: one[0] if len(one) == 1 else one for title, one in self._files.items()}
         told = {
             **self._told,
@@ -111,7 +111,7 @@ class Answer:
 
 
 def _number(one: Any) -> dict[str, Any]:
-    """Give a value with its unit and, of several, the dimensions along which they stand."""
+    """Give a value with its unit and, of an array, its dimensions."""
     import numpy as np
 
     attributes = dict(getattr(one, "attrs", {}))
@@ -125,7 +125,7 @@ def _number(one: Any) -> dict[str, Any]:
 
 
 def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
-    """Read flags and truth values."""
+    """Replace flags by their meanings, and flags of truth by true and false."""
     import numpy as np
 
     meanings = str(attributes.get("flag_meanings", "")).split()
@@ -138,7 +138,7 @@ def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
 
 
 def _as_json(value: Any) -> Any:
-    """Give a value as JSON has it; what is no number, or infinite, is null."""
+    """Give a value in the types of JSON; NaN and infinity become null."""
     if hasattr(value, "tolist"):  # of numpy
         value = value.tolist()
     if isinstance(value, list | tuple):

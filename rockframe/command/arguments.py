@@ -1,19 +1,19 @@
-"""What commands take, as they are declared; nothing here loads a library."""
+"""Declarations of the arguments of commands; this module imports no large library."""
 
 from argparse import ArgumentTypeError
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-PICTURES: Final = "a picture; its ending tells the format: .png, .svg, .pdf"
+PICTURES: Final = "a picture, in the format of its ending: .png, .svg or .pdf"
 
 
 @dataclass(frozen=True)
 class CommandArgument:
     """One argument of a command."""
 
-    names: tuple[str, ...]  # as it is typed
-    settings: dict[str, Any]  # as :meth:`argparse.ArgumentParser.add_argument` takes them
+    names: tuple[str, ...]  # as typed
+    settings: dict[str, Any]  # further arguments of :meth:`argparse.ArgumentParser.add_argument`
     of_files: bool = False  # whether it names a file
 
 
@@ -21,11 +21,11 @@ class CommandArgument:
 class Command:
     """One command."""
 
-    name: str  # as it is typed; the module of that name carries it out
-    words: str  # what it does, in a line
-    story: str  # what it does, for those who ask for help
+    name: str  # as typed, and of the module that runs it
+    words: str  # what it does, in one line
+    story: str  # what it does, in its help
     examples: str  # lines to copy
-    arguments: Sequence[CommandArgument]  # what it takes
+    arguments: Sequence[CommandArgument]
 
 
 def path(*names: str, **settings: Any) -> CommandArgument:
@@ -67,22 +67,27 @@ def _whole_typed(typed: str) -> int:
 
 
 EVERYWHERE: Final = (
-    word("-q", "--quiet", action="store_true", help="only the answer: no warnings, no progress"),
-    word("-v", "--verbose", action="store_true", help="all numbers of the answer too"),
-    word("--json", action="store_true", help="the answer as JSON, for programs"),
+    word(
+        "-q",
+        "--quiet",
+        action="store_true",
+        help="print the answer only, without warnings and progress",
+    ),
+    word("-v", "--verbose", action="store_true", help="print all numbers of the answer too"),
+    word("--json", action="store_true", help="print the answer as JSON, for programs"),
     word("--debug", action="store_true", help="show the whole traceback of an error"),
 )
-"""What all commands take, before their name or behind it."""
+"""Options of all commands, before or after the name of the command."""
 SCENE: Final = path(
-    "scene", metavar="scene.toml", help="the scene; 'template' writes one; - is standard input"
+    "scene", metavar="scene.toml", help="the scene; 'template' writes one; - for standard input"
 )
 DATASET: Final = path(
-    "dataset", metavar="out.nc", help="what another command has written with -o; or -"
+    "dataset", metavar="out.nc", help="a result that another command wrote with -o; or -"
 )
 OVERWRITE: Final = word(
     "--overwrite",
     action="store_true",
-    help="replace files that are there, also such as rockframe did not write; never one that is "
+    help="replace existing files, also those that rockframe did not write; never a file that is "
     "read",
 )
 UNITS: Final = word(
@@ -92,12 +97,14 @@ UNITS: Final = word(
     help="units of all numbers, such as force=kN angle=deg acceleration=g_0",
 )
 RESULT: Final = path(
-    "-o", "--output", metavar="out.nc", help="write all results to this file; - is standard output"
+    "-o", "--output", metavar="out.nc", help="write all results to this file; - for standard output"
 )
 PICTURE: Final = path("--picture", metavar="x.png", help=f"write {PICTURES}")
 FROM_FILES: Final = (
-    word("--unit", help="unit of the samples, where the file does not say, such as g or cm/s^2"),
-    word("--time-step", metavar="TIME", help="of a column of samples without times: '0.01 s'"),
+    word("--unit", help="unit of the samples, such as g or cm/s^2, where the file has none"),
+    word(
+        "--time-step", metavar="TIME", help="time step of samples without times, such as '0.01 s'"
+    ),
 )
 READING: Final = (
     word("--component", metavar="NAME", help="component of a record that has several, such as NS"),
@@ -106,15 +113,19 @@ READING: Final = (
 ACCURACY: Final = word(
     "--accuracy",
     metavar="LEVEL",
-    help="fast, standard, reference, or a tolerance such as 1e-6; of fragility, ida and map also "
+    help="fast, standard, reference, or a tolerance such as 1e-6; for fragility, ida and map also "
     "screen",
 )
 LENGTH: Final = (
-    word("--free-vibration", metavar="TIME", help="still ground after the motion, such as '20 s'"),
-    word("--duration", metavar="TIME", help="length of the run, whatever that of the motion"),
+    word(
+        "--free-vibration",
+        metavar="TIME",
+        help="time after the motion with the ground at rest, such as '20 s'",
+    ),
+    word("--duration", metavar="TIME", help="duration of the run, independent of the motion's"),
 )
 RUNNING: Final = (
-    path("-m", "--motion", metavar="FILE", help="a record, in the place of the scene's motion"),
+    path("-m", "--motion", metavar="FILE", help="a record, instead of the motion of the scene"),
     *READING,
     number_option("--scale", "FACTOR", "multiply the motion by this"),
     ACCURACY,
@@ -124,13 +135,13 @@ INTENSITY: Final = (
     word(
         "--intensity",
         metavar="MEASURE",
-        help="of the shaking: PGA, PGV, PGD, CAV, SA (with --period) or a name of 'motion' "
-        "(default: PGA)",
+        help="intensity measure of the motion: PGA, PGV, PGD, CAV, SA (with --period) or a name "
+        "that 'motion' lists (default: PGA)",
     ),
-    word("--period", metavar="TIME", help="of the oscillator of SA, such as '0.5 s'"),
+    word("--period", metavar="TIME", help="period of the oscillator of SA, such as '0.5 s'"),
 )
 STORE: Final = path(
-    "--store", metavar="FOLDER", help="keep what has been run here, and go on with it"
+    "--store", metavar="FOLDER", help="keep finished cases in this folder, and reuse them"
 )
 OVER_MOTIONS: Final = (
     path("scene", metavar="scene.toml", help="a scene, or a study with motions and axes; or -"),
@@ -139,14 +150,14 @@ OVER_MOTIONS: Final = (
     word(
         "--scales",
         metavar="VALUES",
-        help="factors of the motions: 0.5,1,2, or from:to:step, 0.25:4:0.25",
+        help="scale factors of the motions, such as 0.5,1,2, or from:to:step, such as 0.25:4:0.25",
     ),
     *INTENSITY,
     word(
         "--limits",
         metavar="STATES",
-        help="limit states beside overturning: uplift, rotations over the overturning angle, "
-        "or a variable of runs: uplift,0.5,'peak_slip=5 cm'",
+        help="limit states besides overturning: uplift, a rotation divided by the overturning "
+        "angle, or a variable of runs, such as uplift,0.5,'peak_slip=5 cm'",
     ),
     ACCURACY,
     *LENGTH,
@@ -154,4 +165,4 @@ OVER_MOTIONS: Final = (
     RESULT,
     PICTURE,
 )
-"""Of analyses of one scene under many motions."""
+"""Arguments of analyses of one scene under many motions."""

@@ -1,4 +1,4 @@
-"""``rockframe certify``: how sure a verdict is."""
+"""``rockframe certify``: how certain a verdict is."""
 
 import argparse
 from dataclasses import replace
@@ -12,7 +12,7 @@ from rockframe.simulation.run_arguments import PROVED, Certification
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Simulate, with all runs beside it, and say what they showed."""
+    """Simulate with all runs of the certificate, and report their outcome."""
     found = scene_from(arguments)
     outputs = Outputs(arguments, found.files, answer, output=RUN)
     wanted = _wanted(found.run.get("certify"), arguments)
@@ -22,7 +22,10 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     told = response.attrs[kind]
     answer.text(fill(f"{kind.capitalize()}: {told}", 100), **{kind: told})
     if wanted != PROVED:
-        sure = {"verdict_converged": "by finer means", "verdict_robust": "with nudged parameters"}
+        sure = {
+            "verdict_converged": "by finer means",
+            "verdict_robust": "with nudged parameters",
+        }
         for name, words in sure.items():
             answer.text(f"  the same {words}: {'yes' if bool(response[name]) else 'no'}")
         count = int(response.attrs["certificate_runs"])
@@ -33,11 +36,11 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _wanted(of_file: object, arguments: argparse.Namespace) -> Certification | str:
-    """Give what is asked for: by the file, and by the options that go before it."""
+    """Give the settings of the certificate; options replace those of the file."""
     typed = given_of(arguments, "nudge", "reach", "runs")
     if arguments.proved and typed:
         name, value = next(iter(typed.items()))
-        msg = f"--{name} {value:g} is of a certificate by further runs, which --proved replaces"
+        msg = f"--{name} {value:g} is for a certificate by further runs, which --proved replaces"
         raise ComponentError(msg)
     if arguments.proved or (of_file == PROVED and not typed):
         return PROVED

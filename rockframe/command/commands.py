@@ -1,4 +1,4 @@
-"""The commands with what they take; no library is loaded, so that help comes at once."""
+"""The commands and their arguments; no library is imported, so that help is immediate."""
 
 from typing import Final
 
@@ -28,35 +28,35 @@ COMMANDS: Final = (
     Command(
         "template",
         "write a scene or a study to begin with",
-        "Write a file to begin with. Change its numbers, which carry their units, and run it.",
+        "Write a file to begin with. Change its numbers, which have their units, and run it.",
         """\
   rockframe template > scene.toml            a block on rigid ground
   rockframe template stack > scene.toml      a frame on pads, cap and soil
   rockframe template statue > scene.toml     a statue on a plinth, with an outline
   rockframe template study > study.toml      many runs of one scene
-  rockframe template all                     every table and every key, with its meaning""",
+  rockframe template all                     every table and key, with its meaning""",
         (
             word(
                 "kind",
                 nargs="?",
                 default="block",
                 choices=("block", "pads", "soil", "stack", "statue", "study", "all"),
-                help="which one (default: block)",
+                help="kind of the file (default: block)",
             ),
         ),
     ),
     Command(
         "describe",
-        "tell which model a scene makes, and its numbers",
-        "Check the file of a scene, and tell the model, its equations, its frequencies and what "
-        "it leaves out. Nothing is simulated.",
+        "describe the model of a scene, with its numbers",
+        "Check the file of a scene, and describe its model: the equations, the frequencies and "
+        "what the model neglects. Nothing is simulated.",
         "  rockframe describe scene.toml",
         (SCENE,),
     ),
     Command(
         "motion",
-        "tell what is in files of ground motions",
-        "List the components of files, archives and folders as agencies give them out, with "
+        "list what files of ground motions contain",
+        "List the components of files, archives and folders as agencies publish them, with "
         "their intensity measures.",
         """\
   rockframe motion record.AT2
@@ -68,7 +68,7 @@ COMMANDS: Final = (
             path(
                 "--picture",
                 metavar="x.png",
-                help=f"write {PICTURES}; of several motions one for each, numbered",
+                help=f"write {PICTURES}; of several motions one each, numbered",
             ),
             path("--csv", metavar="x.csv", help="write the table of measures, for a spreadsheet"),
             OVERWRITE,
@@ -76,10 +76,10 @@ COMMANDS: Final = (
     ),
     Command(
         "convert",
-        "write records as other programs read them",
+        "write records in formats of other programs",
         "Read records of any format that rockframe knows, and write them as AT2 (of PEER), as CSV "
-        "or as netCDF, which keeps all that is known of them. What 'motion' tells of a file is "
-        "what is written.",
+        "or as netCDF, which keeps all that is known of them. The components that 'motion' lists "
+        "are those that are written.",
         """\
   rockframe convert CHI012.V2 --component N12W -o record.AT2
   rockframe convert record.AT2 -o record.csv
@@ -98,7 +98,7 @@ COMMANDS: Final = (
             word(
                 "--to",
                 choices=("at2", "csv", "nc"),
-                help="the format, where the name of the file does not tell",
+                help="the format, where the ending of the file does not give it",
             ),
             *READING,
             OVERWRITE,
@@ -107,7 +107,7 @@ COMMANDS: Final = (
     Command(
         "run",
         "simulate a scene under a motion",
-        "Simulate a scene, say what becomes of it, and write all results to a netCDF file, which "
+        "Simulate a scene, print the verdict, and write all results to a netCDF file, which "
         "'plot', 'report', xarray, MATLAB and many others read.",
         """\
   rockframe run scene.toml                                 the motion is in the scene
@@ -117,9 +117,10 @@ COMMANDS: Final = (
     ),
     Command(
         "certify",
-        "tell how sure the verdict of a run is",
-        "Simulate a scene, and then a hundred times more: by finer means, with parameters changed "
-        "a little, and under the scaled motion. Tell whether the verdict stays.",
+        "check how certain the verdict of a run is",
+        "Simulate a scene, and then repeat it about a hundred times: with finer accuracy, with "
+        "parameters changed a little, and under the scaled motion. Report whether the verdict "
+        "remains the same.",
         """\
   rockframe certify scene.toml --motion record.AT2
   rockframe certify scene.toml --motion record.AT2 --nudge 0.01 -o out.nc
@@ -138,16 +139,16 @@ COMMANDS: Final = (
                 action="store_true",
                 help="prove the verdict instead (of a block alone; needs python-flint)",
             ),
-            whole_option("--runs", "most runs beside it (default: 200)"),
+            whole_option("--runs", "largest number of further runs (default: 200)"),
             RESULT,
             OVERWRITE,
         ),
     ),
     Command(
         "critical",
-        "tell at what shaking a scene falls",
+        "find the least scale of a motion that overturns",
         "Scale the motion of a scene, and find the least scale at which the body overturns, its "
-        "peak ground acceleration, and all scales above at which it stands again.",
+        "peak ground acceleration, and all ranges of larger scales at which it stands again.",
         """\
   rockframe critical scene.toml
   rockframe critical scene.toml --motion record.AT2 --picture critical.png
@@ -158,7 +159,8 @@ COMMANDS: Final = (
             number_option("--largest", "FACTOR", "largest scale that is tried (default: 4)"),
             whole_option(
                 "--runs",
-                "most runs of the scan; more find narrower ranges that overturn (default: 400)",
+                "largest number of runs of the scan; more of them find narrower ranges that "
+                "overturn (default: 400)",
             ),
             *INTENSITY,
             RESULT,
@@ -168,9 +170,9 @@ COMMANDS: Final = (
     ),
     Command(
         "study",
-        "run a scene at many values",
+        "run a scene with many values of its parameters",
         "Run a scene at all combinations of values, or at all rows of a table, under one motion "
-        "or many. With a store, a folder, what has been run is kept: the same command goes on "
+        "or many. With a store, a folder, finished cases are kept: the same command continues "
         "where it was interrupted.",
         """\
   rockframe study study.toml
@@ -182,16 +184,16 @@ COMMANDS: Final = (
             ),
             STORE,
             RESULT,
-            path("--csv", metavar="x.csv", help="write a table with a row for each case"),
+            path("--csv", metavar="x.csv", help="write a table with one row for each case"),
             OVERWRITE,
         ),
     ),
     Command(
         "fragility",
-        "tell how likely a scene falls at a shaking",
+        "fit the probability of overturning by intensity",
         "Run a scene under many records at many scales, and fit lognormal fragilities: median and "
-        "dispersion of the intensity at which it overturns. Or fit them to a study that has been "
-        "run, out.nc or its store.",
+        "dispersion of the intensity at which it overturns. Or fit them to a finished study, given "
+        "as out.nc or as its store.",
         """\
   rockframe fragility scene.toml PEERNGARecords.zip --picture fragility.png
   rockframe fragility scene.toml records --intensity SA --period '0.5 s' --scales 0.5:4:0.5
@@ -201,23 +203,24 @@ COMMANDS: Final = (
     ),
     Command(
         "ida",
-        "scale many records until a scene falls",
-        "Incremental dynamic analysis: run a scene under records at rising scales, and narrow each "
-        "scale at which it begins, or ceases, to overturn. Tells the capacity under each record.",
+        "scale many records until a scene overturns",
+        "Incremental dynamic analysis: run a scene under records at increasing scales, and refine "
+        "each scale at which it begins, or ceases, to overturn. Lists the capacity under each "
+        "record.",
         """\
   rockframe ida scene.toml PEERNGARecords.zip --picture ida.png
   rockframe ida scene.toml records --scales 0.1:6:0.1 --csv capacities.csv -o ida.nc""",
         (
             *OVER_MOTIONS,
-            path("--csv", metavar="x.csv", help="write the capacities, a row for each record"),
+            path("--csv", metavar="x.csv", help="write the capacities, one row for each record"),
             OVERWRITE,
         ),
     ),
     Command(
         "map",
-        "tell which pulses overturn a scene",
-        "Run a scene under pulses of all amplitudes and frequencies, and find the boundaries of "
-        "overturning: without an impact, after one, and the safe range between.",
+        "find the pulses that overturn a scene",
+        "Run a scene under pulses of the given amplitudes and frequencies, and find the boundaries "
+        "of overturning: without an impact, after one impact, and the safe range between them.",
         """\
   rockframe map scene.toml --amplitude '1:10:1 m/s^2' --frequency '0.5:4:0.25 Hz' -o map.nc
   rockframe map scene.toml --amplitude '0.1,0.2,0.4 g' --frequency '1,2 Hz' --picture map.png
@@ -228,9 +231,9 @@ COMMANDS: Final = (
                 "--amplitude",
                 required=True,
                 metavar="VALUES",
-                help="with their unit: '1:10:0.5 m/s^2', from:to:step, or '1,2,4 m/s^2'",
+                help="values with their unit: '1:10:0.5 m/s^2', from:to:step, or '1,2,4 m/s^2'",
             ),
-            word("--frequency", required=True, metavar="VALUES", help="likewise: '0.5:4:0.25 Hz'"),
+            word("--frequency", required=True, metavar="VALUES", help="likewise '0.5:4:0.25 Hz'"),
             word(
                 "--pulse",
                 metavar="NAME",
@@ -247,7 +250,7 @@ COMMANDS: Final = (
     Command(
         "plot",
         "draw a result",
-        "Draw what a file holds: a run along time, or the figure of a study or an analysis.",
+        "Draw the result in a file: a run over time, or the figure of a study or an analysis.",
         """\
   rockframe plot out.nc -o out.png --units angle=deg length=mm acceleration=g
   rockframe plot out.nc -o forces.png --panels base_shear left_reaction --units force=kN
@@ -258,24 +261,25 @@ COMMANDS: Final = (
             word(
                 "--format",
                 choices=("png", "svg", "pdf"),
-                help="of the picture, where it goes to the standard output (default: png)",
+                help="format of a picture that goes to the standard output (default: png)",
             ),
             OVERWRITE,
-            word("--title", help="above the figure, in the place of the verdict"),
+            word("--title", help="title of the figure, instead of the verdict"),
             UNITS,
             word(
                 "--panels",
                 nargs="+",
                 metavar="NAME",
-                help="of a run: ground, rotation, vertical, contact, and any history that it holds",
+                help="panels of a run: ground, rotation, vertical, contact, and any of its "
+                "histories",
             ),
         ),
     ),
     Command(
         "animate",
-        "let a run move",
-        "Write a run as it moves: a page with a slider (.html, made at once, some tens of kB), or "
-        "a film (.gif, .mp4, drawn picture by picture). Give a result, or a scene to be run.",
+        "animate a run",
+        "Write an animation of a run: a page with a slider (.html, fast, some tens of kB), or a "
+        "film (.gif, .mp4, drawn picture by picture). Name a result, or a scene to be run.",
         """\
   rockframe animate out.nc -o run.html
   rockframe animate scene.toml --motion record.AT2 -o run.html
@@ -292,24 +296,24 @@ COMMANDS: Final = (
             word(
                 "--format",
                 choices=("html", "gif", "mp4"),
-                help="where it goes to the standard output (default: html)",
+                help="format of what goes to the standard output (default: html)",
             ),
-            word("--window", nargs=2, metavar=("START", "END"), help="what is shown of the run"),
-            number_option("--speed", "FACTOR", "of a film: time of the run over that of the film"),
+            word("--window", nargs=2, metavar=("START", "END"), help="times of the run to show"),
+            number_option("--speed", "FACTOR", "time in the run over time in the film"),
             number_option("--magnify", "FACTOR", "multiply displacements in the drawing by this"),
-            word("--title", help="above it, in the place of the verdict"),
+            word("--title", help="title of the animation, instead of the verdict"),
             *RUNNING,
             OVERWRITE,
         ),
     ),
     Command(
         "report",
-        "write a page on a run or a study, to file or to print",
+        "write a page on a run or a study, to keep or to print",
         "Write one HTML file that needs no other: the scene, the motion and its measures, the "
-        "verdict and its certificate, figures, limits of validity, and where it all comes from. "
-        "A run without certificate is certified first, where the file holds its motion. Of a study "
-        "it has all cases in a table and the worst one in full, or the one that --case names, and "
-        "the spectra of its records beside a target. Checks by codes stand beside the verdict.",
+        "verdict and its certificate, figures, limits of validity, and provenance. A run without "
+        "certificate is certified first, if the file holds its motion. Of a study the page has all "
+        "cases in a table, the worst one in full or the one that --case names, and the spectra of "
+        "its records with a target spectrum. Checks by codes follow the verdict.",
         """\
   rockframe report out.nc
   rockframe report out.nc -o tower.html --title 'Clock tower, record 12'
@@ -319,77 +323,80 @@ COMMANDS: Final = (
   rockframe report out.nc --check circolare_2019 confidence_factor=1.35""",
         (
             DATASET,
-            path("-o", "--output", metavar="x.html", help="the file (default: beside the result)"),
+            path(
+                "-o", "--output", metavar="x.html", help="the file (default: out.html for out.nc)"
+            ),
             OVERWRITE,
             word(
                 "--case",
                 nargs="+",
                 action="extend",
                 metavar="NAME=VALUE",
-                help="of a study: which case, by its place along every axis of several values",
+                help="the case of a study, by its value along every axis of several values",
             ),
-            word("--title", help="of the page"),
+            word("--title", help="title of the page"),
             UNITS,
             path(
                 "--motion",
                 metavar="RECORD",
-                help="the record of the run, for its certificate where the result does not hold it",
+                help="the record of the run, for its certificate, if the result does not hold it",
             ),
             path(
                 "--motions",
                 nargs="+",
                 metavar="FILE",
-                help="the records of a study, for their spectra and for its worst case, where a "
-                "file does not hold them; archives and folders too",
+                help="the records of a study, for their spectra and its worst case, if the result "
+                "does not hold them; archives and folders too",
             ),
             word(
                 "--target",
                 nargs="+",
                 metavar=("SPECTRUM", "NAME=VALUE"),
-                help="spectrum beside those of the motions: eurocode_8 'ground_acceleration=0.2 "
-                "g_0' ground_type=B; asce_7 with its arguments; or a table x.csv, with the "
-                "columns period [s], acceleration [g_0], and damping_ratio=0.08",
+                help="target spectrum for those of the motions: eurocode_8 "
+                "'ground_acceleration=0.2 g_0' ground_type=B; asce_7 with its arguments; or a "
+                "table x.csv with the columns period [s], acceleration [g_0], and "
+                "damping_ratio=0.08",
             ),
             word(
                 "--check",
                 nargs="+",
                 action="append",
                 metavar=("CODE", "NAME=VALUE"),
-                help="check by a code beside it, under the motions of the result: circolare_2019 "
+                help="add a check by a code, for the motions of the result: circolare_2019 "
                 "confidence_factor=1.35, or asce_7_22 spectral_acceleration=1.2",
             ),
             word(
                 "--no-certificate",
                 action="store_true",
-                help="do not certify a run that is not yet certified",
+                help="do not certify a run that has no certificate",
             ),
         ),
     ),
     Command(
         "serve",
         "try a scene on a page with sliders",
-        "Serve a page to the browsers of this machine: sliders for the body, its base and the "
-        "motion, the verdict, the run as it moves, and the scene as a file to take away. Ctrl-C "
+        "Serve a page to browsers on this machine: sliders for the body, its base and the "
+        "motion, the verdict, an animation of the run, and the scene as a file to download. Ctrl-C "
         "ends it.",
         """\
   rockframe serve
   rockframe serve record.AT2 --browse
   rockframe serve --port 8123""",
         (
-            path("record", nargs="?", metavar="FILE", help="a record that can be chosen, too"),
+            path("record", nargs="?", metavar="FILE", help="a record to offer on the page"),
             *READING,
-            whole_option("--port", "of this machine; 0 takes a free one (default: 8000)", 8000),
+            whole_option("--port", "port of this machine; 0 for a free one (default: 8000)", 8000),
             word("--browse", action="store_true", help="open the page in the browser"),
         ),
     ),
     Command(
         "completion",
-        "write what a shell needs to complete commands",
+        "write a script that completes commands in a shell",
         "Write a script with which a shell completes commands, options and names of files.",
         """\
   bash   source <(rockframe completion bash)         in ~/.bashrc
   zsh    source <(rockframe completion zsh)          in ~/.zshrc
   fish   rockframe completion fish | source          in ~/.config/fish/config.fish""",
-        (word("shell", choices=("bash", "zsh", "fish"), help="which shell"),),
+        (word("shell", choices=("bash", "zsh", "fish"), help="the shell"),),
     ),
 )

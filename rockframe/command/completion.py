@@ -1,4 +1,4 @@
-"""Completion of commands, options and files by shells, written from what can be typed."""
+"""Scripts by which shells complete commands, options and files, from their declarations."""
 
 import argparse
 from typing import Final
@@ -110,7 +110,7 @@ def _fish() -> str:
 
 
 def _quoted(one: CommandArgument) -> str:
-    """Give the words of an option without the marks that shells read."""
+    """Give the help text of an option without characters that shells interpret."""
     words = str(one.settings.get("help", ""))
     for mark in "'[]:":
         words = words.replace(mark, "")

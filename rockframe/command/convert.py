@@ -1,4 +1,4 @@
-"""``rockframe convert``: records as other programs read them."""
+"""``rockframe convert``: records in formats of other programs."""
 
 import argparse
 import re
@@ -59,14 +59,14 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _form_of(output: str) -> str:
-    """Tell the format from the ending of a file."""
+    """Give the format by the ending of a file."""
     ending = Path(output).suffix.lower()
     found = next((form for form, one in _ENDINGS.items() if one.lower() == ending), None)
     if found is None:
         known = ", ".join(_ENDINGS.values())
         words = (
-            f"the name of the file does not tell a format: {known}; or name the format, --to at2, "
-            "and a folder"
+            f"the ending gives no format; expected {known}, or a folder and a format such as "
+            "--to at2"
         )
         raise FileError(output, [(None, words)])
     return found
@@ -81,7 +81,7 @@ def _make(folder: Path, named: str) -> None:
 
 
 def _names(motions: Mapping[str, GroundMotion], folder: Path, ending: str) -> dict[str, Path]:
-    """Give each motion a file of its own."""
+    """Give each motion a path of its own."""
     found: dict[str, Path] = {}
     for name in motions:
         stem = _UNSAFE.sub("_", name).strip("._") or "motion"

@@ -1,4 +1,4 @@
-"""``rockframe critical``: at what shaking a scene falls."""
+"""``rockframe critical``: the least scale of a motion at which a scene overturns."""
 
 import argparse
 from typing import Any, Final
@@ -23,11 +23,11 @@ from rockframe.studies import critical_scale
 _RESULT: Final = analysis_kind("the result of a critical scale", "critical_scale", "scale_above")
 _USUAL: Final = "PGA"
 _FIRST: Final = 80
-"""Most scales that are tried first."""
+"""Largest number of scales that are tried first."""
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Find the least scale that overturns, and tell the shaking at it."""
+    """Find the least scale that overturns, and report the intensity at this scale."""
     found = scene_from(arguments, moved=True)
     outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""``rockframe describe``: which model a scene makes."""
+"""``rockframe describe``: the model of a scene."""
 
 import argparse
 

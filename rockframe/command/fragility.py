@@ -1,4 +1,4 @@
-"""``rockframe fragility``: how likely a scene falls at a shaking."""
+"""``rockframe fragility``: the probability that a scene overturns at an intensity."""
 
 import argparse
 from pathlib import Path
@@ -29,11 +29,11 @@ from rockframe.studies import fragility, open_study, sweep
 
 _RESULT: Final = analysis_kind("a fragility", "exceedance_probability", "fragility_status")
 _USUAL: Final = [0.25 * k for k in range(1, 17)]
-"""Scales of the motions, where neither a file nor the command line gives any."""
+"""Scales of the motions, if neither the file nor the command line has any."""
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Run a scene under many motions, or read what was run, and fit fragilities."""
+    """Run a scene under many motions, or read finished runs, and fit fragilities."""
     known = is_result(arguments.scene)
     found = None if known else scene_and_motions(arguments)
     read = [arguments.scene, *arguments.records] if found is None else found.files
@@ -70,15 +70,15 @@ def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
         "records", "unit", "time_step", "scales", "store", "accuracy", "free_vibration", "duration",
     )  # fmt: skip
     if any(getattr(arguments, name) for name in more):
-        words = "its runs have been made; records, scales, a store or lengths of runs go with a "
-        raise FileError(arguments.scene, [(None, f"this is a result: {words}scene")])
+        words = "its runs are finished; records, scales, a store or durations go with a scene"
+        raise FileError(arguments.scene, [(None, f"this is a result: {words}")])
     if Path(arguments.scene).expanduser().is_dir():
         return open_study(arguments.scene)
     return read_result(arguments.scene)
 
 
 def _line(state: str, row: xr.Dataset) -> str:
-    """Tell median and dispersion of a limit state."""
+    """Write the median and dispersion of a limit state."""
     median = row["median_intensity"]
     status = row["fragility_status"]
     words = str(status.attrs["flag_meanings"]).split()[int(status)].replace("_", " ")

@@ -1,4 +1,4 @@
-"""``rockframe ida``: records that are scaled until a scene falls."""
+"""``rockframe ida``: records that are scaled until a scene overturns."""
 
 import argparse
 from typing import Any, Final
@@ -26,14 +26,14 @@ from rockframe.studies import fragility, incremental_dynamic_analysis
 _RESULT: Final = analysis_kind("the result of a dynamic analysis", "capacity_scale", "flip_count")
 _TABLE: Final = table_kind("a table of capacities", "limit_state", "motion", "capacity_scale")
 _SHOWN: Final = ("capacity_scale", "flip_count")
-"""What is told of each record."""
+"""Variables that are printed for each record."""
 _MOST_SHOWN: Final = 40
-"""Rows up to which the table is printed."""
+"""Largest number of rows of a table that is printed."""
 _USUAL: Final = "PGA"
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Scale motions until they overturn, and tell the capacity under each."""
+    """Scale motions until they overturn, and report the capacity under each."""
     found = scene_and_motions(arguments)
     kinds = {"output": _RESULT, "picture": PICTURE, "csv": _TABLE}
     outputs = Outputs(arguments, found.files, answer, **kinds)

@@ -1,4 +1,4 @@
-"""The entry: reads the command line, carries out the command, and tells what went wrong."""
+"""Entry point: reads the command line, runs the command and reports errors."""
 
 import os
 import signal
@@ -27,7 +27,7 @@ INTERRUPTED: Final = 130
 
 
 def main(given: Sequence[str] | None = None) -> int:
-    """Carry out what was typed."""
+    """Run the command line, and give its exit code."""
     typed = list(sys.argv[1:] if given is None else given)
     StandardInput.taken_by = ""
     problem = misspelt(typed)
@@ -56,7 +56,7 @@ def main(given: Sequence[str] | None = None) -> int:
 
 
 def _wrong(typed: Sequence[str], words: str) -> int:
-    """Tell programs what is wrong with a command line, too."""
+    """Report a wrong command line as JSON as well, where that is required."""
     if "--json" in typed:
         from rockframe.command.answer import Answer
 
@@ -67,7 +67,7 @@ def _wrong(typed: Sequence[str], words: str) -> int:
 
 
 def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:
-    """Carry out a command, and print what it found once all of its files are written."""
+    """Run a command, and print its results once all of its files are written."""
     from rockframe.command.answer import Answer
 
     answer = Answer(
@@ -81,10 +81,10 @@ def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:
         warnings.simplefilter("default", RockframeWarning)
         warnings.showwarning = _say_warning(who, answer)
         try:
-            # the module of the command loads what it needs
+            # each command imports the libraries it needs only when it runs
             module: Any = import_module(f"rockframe.command.{arguments.command}")
             code = int(module.execute(arguments, answer))
-            if heard:  # and what was found until then was told
+            if heard:  # the results up to the interruption are in the answer
                 code = INTERRUPTED
         except KeyboardInterrupt:
             code, error = INTERRUPTED, "interrupted"
@@ -100,12 +100,12 @@ def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:
 
 
 def _print(answer: "Answer", code: int, error: str, who: str) -> bool:
-    """Print what a command found; tell whether that went well, or nobody wants to read more."""
+    """Print the results of a command; false where they could not be written."""
     told = answer.json(code, error) if answer.as_json else answer.printed(error)
     if sys.stdout is None:  # closed before the command began
         return True
     try:
-        if answer.data is not None:  # the words then go beside the file
+        if answer.data is not None:  # the file takes the standard output, so text goes to the other
             sys.stdout.buffer.write(answer.data)
             sys.stdout.flush()
             print(told, end="", file=sys.stderr)
@@ -113,7 +113,7 @@ def _print(answer: "Answer", code: int, error: str, who: str) -> bool:
         encoding = sys.stdout.encoding or "utf-8"
         print(told.encode(encoding, "replace").decode(encoding), end="", flush=True)
     except OSError as problem:
-        # or Python would try again at its end, and tell of it
+        # otherwise Python writes again when it exits, and reports the error a second time
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(problem, BrokenPipeError):
             return True
@@ -124,7 +124,7 @@ def _print(answer: "Answer", code: int, error: str, who: str) -> bool:
 
 @contextmanager
 def _interrupts() -> Generator[list[int]]:
-    """Keep in mind that Ctrl-C was heard, also where an analysis then gives what it has."""
+    """Record Ctrl-C, also where an analysis then returns its results so far."""
     heard: list[int] = []
     if threading.current_thread() is not threading.main_thread():
         yield heard

@@ -1,4 +1,4 @@
-"""``rockframe map``: which pulses overturn a scene."""
+"""``rockframe map``: the pulses that overturn a scene."""
 
 import argparse
 from typing import Any, Final
@@ -36,7 +36,7 @@ _KIND: Final = ("type", "constructor")
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Run pulses of all amplitudes and frequencies, and tell what overturns."""
+    """Run pulses of all amplitudes and frequencies, and report which of them overturn."""
     found = read_scene(arguments.scene)
     outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {
@@ -59,11 +59,11 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
-    """Give the pulse that was typed, else that of the scene, and what it is called."""
+    """Give the pulse that was typed, else that of the scene, and its name."""
     known = [one for one in CONSTRUCTORS if _has_axes(one)]
     if name is not None and name not in known:
         listed = f"{suggestion(name, known)} There are {', '.join(known)}"
-        msg = f"--pulse: no pulse of an amplitude and a frequency alone is {name!r}{listed}"
+        msg = f"--pulse: {name!r} is no pulse of an amplitude and a frequency alone{listed}"
         raise ComponentError(msg)
     motion = found.motion
     described = {} if motion is None else motion.to_dict()
@@ -76,7 +76,7 @@ def _pulse(found: Described, name: str | None) -> tuple[Any, str]:
 
 
 def _has_axes(name: str) -> bool:
-    """Tell whether a constructor needs no more than an amplitude and a frequency."""
+    """Whether a constructor needs only an amplitude and a frequency."""
     taken = arguments_of(getattr(GroundMotion, name))
     return set(_AXES) <= set(taken) and not any(
         needed for one, needed in taken.items() if one not in _AXES
@@ -84,7 +84,7 @@ def _has_axes(name: str) -> bool:
 
 
 def _lines(dataset: xr.Dataset) -> list[str]:
-    """Tell for each frequency the boundaries of overturning."""
+    """Write the boundaries of overturning for each frequency."""
     unit = dataset["amplitude"].attrs["units"]
     lines = [f"  frequency [Hz]   boundaries of overturning [{unit}]"]
     for number, frequency in enumerate(dataset["frequency"].to_numpy()):

@@ -1,4 +1,4 @@
-"""``rockframe motion``: what is in files of ground motions."""
+"""``rockframe motion``: the contents of files of ground motions."""
 
 import argparse
 from pathlib import Path
@@ -14,7 +14,7 @@ from rockframe.plot import motion as draw
 from rockframe.results.table import table
 
 _ABOUT: Final = (
-    # (in the metadata, in words)
+    # (key of the metadata, label)
     ("event", "event"),
     ("station", "station"),
     ("component", "component"),
@@ -25,11 +25,11 @@ _TABLE: Final = table_kind(
     "a table of measures", "motion", "peak_ground_acceleration", "arias_intensity"
 )
 _MOST_SHOWN: Final = 10
-"""Motions of which all is told; of more there is only the table."""
+"""Largest number of motions that are printed in full; of more only a table is printed."""
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Tell what files hold."""
+    """Print the contents of files."""
     outputs = Outputs(arguments, arguments.files, answer, csv=_TABLE)
     motions = motions_from(arguments)
     pictures = _numbered(arguments.picture, len(motions))
@@ -52,7 +52,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _numbered(picture: str | None, count: int) -> list[Path]:
-    """Give the names of pictures, with numbers where there are several."""
+    """Give the names of pictures, numbered if there are several."""
     if picture is None:
         return []
     path = Path(picture)

@@ -1,4 +1,4 @@
-"""What analyses of a scene under many motions share: what was typed for them."""
+"""Shared by analyses of a scene under many motions: reads the arguments that were typed."""
 
 import argparse
 import re
@@ -22,17 +22,17 @@ from rockframe.results.schema import SCHEMA
 
 SCALE: Final = "scale"
 _NO_MOTIONS: Final = (
-    "there are no motions; name records, archives or folders behind the scene, or describe motions "
+    "there are no motions; name records, archives or folders after the scene, or describe motions "
     "in the file"
 )
 _NUMBER: Final = re.compile(r"[-+]?\.?\d")
 
 
 def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
-    """Read a scene or a study, with the motions, scales and runs that were typed instead."""
+    """Read a scene or a study; motions, scales and runs that were typed replace those in it."""
     found = read_study(arguments.scene, varied=False)
     if not arguments.records:
-        refuse_of_record(arguments, "name records behind the scene")
+        refuse_of_record(arguments, "name records after the scene")
     else:
         suite = suite_from(arguments.records, arguments)
         files = (*found.files, *map(Path, arguments.records))
@@ -55,7 +55,7 @@ def typed_intensity(arguments: argparse.Namespace, function: Callable[..., Any])
 
 
 def _limit(word: str) -> object:
-    """Read a limit state: a rotation, a name, or a variable and from where on it exceeds."""
+    """Read a limit state: a rotation, a name, or a variable and its limit."""
     if _NUMBER.match(word):
         try:
             return float(word)
@@ -64,7 +64,7 @@ def _limit(word: str) -> object:
             raise ComponentError(msg) from None
     name, equals, value = word.partition("=")
     if not equals and name in SCHEMA:
-        msg = f"--limits: {name} needs the value from which on it exceeds, as in 'peak_slip=5 cm'"
+        msg = f"--limits: {name} needs a limit, as in 'peak_slip=5 cm'"
         raise ComponentError(msg)
     if not equals:
         return word

@@ -1,4 +1,4 @@
-"""What can be typed, and what was meant by what cannot."""
+"""Parser of the command line, with proposals for misspelt words."""
 
 import argparse
 import re
@@ -13,20 +13,20 @@ from rockframe.shared_arguments import suggestion
 from rockframe.version import __version__
 
 _VALUE: Final = re.compile(r"-[\d.]|-.* ")
-"""What begins with a hyphen and is a value: a number, or a quantity with its unit."""
+"""Values that begin with a hyphen: a number, or a quantity with its unit."""
 _EXAMPLE: Final = re.compile(r"\b(\w+)='([^']*)'")
 _OWNER: Final = re.compile(
     r"^(case|critical_scale|fragility|incremental_dynamic_analysis|overturning_map|report|sweep|"
     r"simulate|rf\.plot\.\w+): "
 )
-"""Names of functions, which whoever types commands did not call."""
+"""Names of functions at the head of messages; on the command line nobody called them."""
 _CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
 
 EXIT_CODES: Final = """\
 exit codes:
   0    done; that a body overturns is a result, not a failure
   1    a run could not be finished, or a case of a study has no result
-  2    the command line or a file is wrong; the message says what, and where
+  2    the command line or a file is wrong; the message says what is wrong, and where
   130  interrupted (Ctrl-C)
 """
 _STORY: Final = """\
@@ -56,7 +56,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser = TellingParser(
         prog="rockframe",
         description=_STORY,
-        epilog=f"'rockframe COMMAND --help' tells more, with examples.\n\n{EXIT_CODES}",
+        epilog=f"'rockframe COMMAND --help' explains a command, with examples.\n\n{EXIT_CODES}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         parents=[everywhere],
         allow_abbrev=False,
@@ -81,7 +81,7 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def misspelt(typed: Sequence[str]) -> str | None:
-    """Say which word of a command line is no command or no option, and what was meant."""
+    """Give a message on a word that is neither a command nor an option, with a proposal."""
     known = {command.name: command for command in COMMANDS}
     place = next((k for k, word in enumerate(typed) if not word.startswith("-")), len(typed))
     first = typed[place] if place < len(typed) else None
@@ -105,7 +105,7 @@ def misspelt(typed: Sequence[str]) -> str | None:
 
 
 def as_typed(words: str, name: str) -> str:
-    """Say in the words of a command line what functions say in those of Python."""
+    """Rewrite a message of a Python function in terms of the command line."""
     command = next(one for one in COMMANDS if one.name == name)
     options = _options(command)
 
@@ -117,14 +117,14 @@ def as_typed(words: str, name: str) -> str:
 
 
 def _options(command: Command | None) -> list[str]:
-    """Give all options of a command, or those that stand before commands."""
+    """Give all options of a command, or those that are allowed before the command."""
     declared = [*EVERYWHERE, *(() if command is None else command.arguments)]
     names = [name for one in declared for name in one.names if name.startswith("-")]
     return [*names, "-h", "--help", *(["--version"] if command is None else [])]
 
 
 def _is_option(word: str, options: Sequence[str]) -> bool:
-    # a value may stand right behind -o, and short options together
+    # a value may follow -o without a space, and short options may be joined
     return word.split("=")[0] in options or (word[1] != "-" and word[:2] in options)
 
 
@@ -140,25 +140,25 @@ def _no_option(word: str, command: Command | None, options: Sequence[str]) -> st
 
 
 class TellingParser(argparse.ArgumentParser):
-    """Keeps what is wrong with a command line, for those who ask for JSON."""
+    """Keeps the message on a wrong command line for the answer in JSON."""
 
     told: ClassVar[str] = ""
 
     def error(self, message: str) -> NoReturn:
-        """Say what is wrong."""
+        """Keep the message, and exit."""
         TellingParser.told = message
         super().error(message)
 
 
 class _CommandParser(TellingParser):
-    """Takes files before and behind options, and proposes what was meant."""
+    """Parser of one command: files and options in any order, proposals for wrong choices."""
 
     _within = False
 
     def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride]
         self, args: Any = None, namespace: Any = None
     ) -> Any:
-        """Let options stand anywhere among several files."""
+        """Parse with options anywhere among several files."""
         if self._within:
             return super().parse_known_args(args, namespace)
         self._within = True
@@ -168,19 +168,19 @@ class _CommandParser(TellingParser):
             self._within = False
 
     def error(self, message: str) -> NoReturn:
-        """Say what is wrong, and which choice was meant."""
+        """Add the choice that was probably meant to the message."""
         found = _CHOICE.search(message)
         if found is not None:
             choices = [
                 choice for action in self._actions for choice in action.choices or ()
-            ]  # those of this argument may not be told in the message
+            ]  # the message does not always list the choices of its argument
             near = suggestion(found[1], [str(one) for one in choices])
             message += near if near != "." else ""
         super().error(message)
 
 
 class _Formatter(argparse.RawDescriptionHelpFormatter):
-    """Fills the description, and leaves the examples as they are."""
+    """Wraps the description, and leaves the examples as they are."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
         if "\n" in text:

@@ -18,7 +18,7 @@ from rockframe.writing import FileKind
 
 _MARK: Final = "figure by rockframe "
 _SIGNED: Final = {
-    # (ending, the entry of its metadata that tells the program)
+    # ending: the entry of its metadata for the name of the program
     ".png": "Software",
     ".svg": "Creator",
     ".pdf": "Creator",
@@ -27,7 +27,7 @@ PICTURE: Final = FileKind.marked("a picture", tuple(_SIGNED), _MARK)
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Draw what a file holds."""
+    """Draw the result in a file."""
     check_format(arguments)
     outputs = Outputs(arguments, [arguments.dataset], answer, output=PICTURE)
     dataset = read_result(arguments.dataset)
@@ -37,7 +37,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         named["units"] = values_by_name(arguments.units, "--units", "force=kN")
     if arguments.panels:
         if name != plot.response.__name__:
-            msg = "--panels: only a run along time has panels to choose from"
+            msg = "--panels: only a run over time has panels to choose from"
             raise ComponentError(msg)
         named["panels"] = tuple(arguments.panels)
     save(getattr(plot, name)(dataset, **named), arguments.output, outputs, arguments.format)
@@ -45,14 +45,14 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def save(drawn: Any, path: str | Path, outputs: Outputs, of_stream: str | None = None) -> None:
-    """Write the figure of what was drawn; `of_stream` is the format on the standard output."""
+    """Write a figure to a file, or to the standard output in the format `of_stream`."""
     figure = figure_of(drawn)
     kind = f".{of_stream or 'png'}" if str(path) == STREAM else Path(path).suffix.lower()
     written = BytesIO()
     try:
         signed = {_SIGNED[kind]: f"{_MARK}{__version__}"}
         figure.savefig(written, format=kind.removeprefix("."), dpi=150, metadata=signed)
-    except ValueError as problem:  # of a formula in the title
+    except ValueError as problem:  # a formula in the title cannot be read
         words = "found a title that cannot be drawn; expected one whose '$' enclose formulas"
         msg = f"{path}: {words} ({problem})"
         raise ComponentError(msg) from problem

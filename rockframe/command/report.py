@@ -36,14 +36,14 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     folder = place.expanduser().is_dir()
     dataset = open_study(arguments.dataset) if folder else read_result(arguments.dataset)
     if path is None:
-        if folder:  # whose name may have points, or be that of the folder one is in
+        if folder:  # its name may contain points, or be '.' or '..'
             place = place if place.name.strip(".") else place.resolve()
             place = place.with_name(f"{place.name}.nc")
         path = str(place.with_suffix(".html"))
     records = arguments.motions
     motions = None if records is None else read_suite(records[0] if len(records) == 1 else records)
     if arguments.case is not None:
-        dataset, motions = _case_of(dataset, arguments, motions), None  # it has its own
+        dataset, motions = _case_of(dataset, arguments, motions), None  # a case holds its motion
     outputs = Outputs(arguments, [arguments.dataset], answer)
     outputs.written_by(
         path, ".html", "Report", lambda place: _write(dataset, place, arguments, motions)
@@ -60,7 +60,7 @@ def _write(
     motion = None if arguments.motion is None else GroundMotion.read(arguments.motion)
     target = None if arguments.target is None else target_from(arguments.target, "--target")
     checks = _checks(dataset, arguments.check or (), motion or motions, target)
-    if checks and "motions_json" not in dataset.attrs:  # a run, which they check under others
+    if checks and "motions_json" not in dataset.attrs:  # a run, checked under further motions
         motions = None
     report(
         dataset,
@@ -79,10 +79,10 @@ def _write(
 def _checks(
     dataset: xr.Dataset, typed: Any, motions: object, target: TargetSpectrum | None
 ) -> list[CodeCheck]:
-    """Check the scene of a result under its motions, or by a spectrum, as it was typed.
+    """Check the scene of a result by codes, under its motions or by a spectrum.
 
-    What the file of the scene asks for is done where nothing was typed, and left where the motions
-    are not at hand, of which the report tells.
+    Checks that were typed replace those in the file of the scene. The latter are left out where
+    the motions are missing; the report mentions this.
     """
     asked = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}"))).get(CHECKS, ())
     required = bool(typed)
@@ -115,7 +115,7 @@ def _checks(
 
 
 def _case_of(dataset: xr.Dataset, arguments: argparse.Namespace, motions: object) -> xr.Dataset:
-    """Simulate the case of a study that is asked for."""
+    """Simulate the case of a study that was named."""
     if "axes_json" not in dataset.attrs:
         words = f"found --case {' '.join(arguments.case)}; expected a study, which has axes"
         raise FileError(arguments.dataset, [(None, words)])

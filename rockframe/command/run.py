@@ -1,4 +1,4 @@
-"""``rockframe run``: a scene under a motion."""
+"""``rockframe run``: simulates a scene under a motion."""
 
 import argparse
 from typing import Final
@@ -15,7 +15,7 @@ _FINISHED: Final = (RunStatus.COMPLETED, RunStatus.OVERTURNED, RunStatus.TOPPLED
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Simulate, and say what became of it."""
+    """Simulate, and report the verdict."""
     found = scene_from(arguments)
     outputs = Outputs(arguments, found.files, answer, output=RUN)
     response = simulated(found)
@@ -31,5 +31,5 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def finished(response: xr.Dataset) -> bool:
-    """Whether a run, or each of a study, came to its end."""
+    """Whether a run, or each run of a study, was finished."""
     return bool(np.isin(response["status"], _FINISHED).all())

@@ -1,4 +1,4 @@
-"""``rockframe serve``: a page on this machine, on which a scene is tried."""
+"""``rockframe serve``: a page on this machine, on which a scene can be tried."""
 
 import argparse
 import webbrowser

@@ -1,4 +1,4 @@
-"""What commands share: the scene, motion and run that were typed, and files that are written."""
+"""Shared by commands: reads the scene, motion and run that were typed, and writes files."""
 
 import argparse
 import csv
@@ -34,19 +34,19 @@ from rockframe.writing import Content, FileKind, check_not_read, checked_path, w
 if TYPE_CHECKING:
     import pandas as pd
 
-_OF_RESULTS: Final = "give what 'rockframe run' or 'study' has written with -o"
+_OF_RESULTS: Final = "name a file that 'rockframe run' or 'study' wrote with -o"
 _NO_MOTION: Final = (
     "there is no motion; name a record with --motion, or describe one in the file, in [motion]"
 )
 _SCREENING: Final = ("fragility", "ida", "map")
-"""Commands whose runs are those of sweeps, which screen."""
+"""Commands whose runs are those of sweeps, which may screen."""
 _MOST_VALUES: Final = 100_000
 _LONGEST_HEAD: Final = 65536
-"""Most of the first line of a table that is read [bytes]."""
+"""Largest part of the first line of a table that is read [bytes]."""
 
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
-    """Read the file of a motion as the options for reading say."""
+    """Read the file of a motion with the options for reading."""
     given = given_of(arguments, "component", "unit", "time_step")
     return GroundMotion.read(opened(path, "a record"), **given)
 
@@ -59,7 +59,7 @@ def suite_from(paths: Sequence[str], arguments: argparse.Namespace) -> MotionSui
 
 
 def motions_from(arguments: argparse.Namespace) -> Mapping[str, GroundMotion]:
-    """Read one component of each file where one is named, else all that there are."""
+    """Read the component of each file that is named, else all components."""
     paths = arguments.files
     if arguments.component is not None:
         found = [motion_from(path, arguments) for path in paths]
@@ -69,14 +69,14 @@ def motions_from(arguments: argparse.Namespace) -> Mapping[str, GroundMotion]:
     except RecordError:
         if len(paths) > 1 or paths[0] == STREAM:
             raise
-        with suppress(RecordError):  # a vertical component is read alone, with a warning
+        with suppress(RecordError):  # a file of a vertical component alone, read with a warning
             one = motion_from(paths[0], arguments)
             return {one.name: one}
         raise
 
 
 def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Described:
-    """Read the scene, with the motion and the arguments of the run that options give instead."""
+    """Read the scene; options replace its motion and arguments of its run."""
     found = read_scene(arguments.scene)
     motion, files = found.motion, found.files
     if arguments.motion is None:
@@ -95,7 +95,7 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
 
 
 def refuse_of_record(arguments: argparse.Namespace, way: str) -> None:
-    """Refuse options that say how a record is read, where none is named."""
+    """Refuse options on how a record is read, where no record is named."""
     for name in ("component", "unit", "time_step"):
         given = getattr(arguments, name, None)
         if given is not None:
@@ -105,17 +105,17 @@ def refuse_of_record(arguments: argparse.Namespace, way: str) -> None:
 
 
 def check_format(arguments: argparse.Namespace) -> None:
-    """Refuse a format beside the name of a file, whose ending tells it."""
+    """Refuse a format together with the name of a file, whose ending gives the format."""
     if arguments.format is not None and arguments.output != STREAM:
         msg = (
-            f"--format {arguments.format}: this is of the standard output, -o -; of a file its "
-            f"ending tells the format, that of {arguments.output}"
+            f"--format {arguments.format}: this option is for the standard output, -o -; the "
+            f"format of a file follows from its ending, here {arguments.output}"
         )
         raise ComponentError(msg)
 
 
 def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
-    """Give the arguments of a run: those of a file, and what options give instead."""
+    """Give the arguments of a run: those of a file, replaced by options that were typed."""
     run = {**of_file, **given_of(arguments, "duration", "free_vibration")}
     if arguments.accuracy is not None:
         run["accuracy"] = _accuracy(arguments.accuracy, arguments.command)
@@ -127,7 +127,7 @@ def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[
 
 
 def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, Any]:
-    """Give those arguments of a run that an analysis takes too."""
+    """Give the arguments of a run that an analysis takes too."""
     known = arguments_of(function)
     return {name: value for name, value in run.items() if name in known}
 
@@ -139,7 +139,7 @@ def given_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
 
 
 def store_from(arguments: argparse.Namespace) -> Path | None:
-    """Give the folder of a store that was typed; an empty name would be the folder one is in."""
+    """Give the folder of the store that was typed; refuse an empty name, the current folder."""
     if arguments.store == "":
         msg = "found no name of a folder after --store; expected one, such as --store kept"
         raise ComponentError(msg)
@@ -147,7 +147,7 @@ def store_from(arguments: argparse.Namespace) -> Path | None:
 
 
 def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
-    """Read numbers, listed or from:to:step, and a unit behind them where the example has one."""
+    """Read numbers, listed or from:to:step, and the unit after them where the example has one."""
     numbers, _, unit = words.strip().partition(" ")
     unit = unit.strip()
     try:
@@ -158,9 +158,9 @@ def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
         if (" " in example) != bool(unit):
             raise ValueError
     except (TypeError, ValueError, ZeroDivisionError):
-        with_unit = " with their unit behind them" if " " in example else " without a unit"
+        with_unit = " followed by their unit" if " " in example else " without a unit"
         msg = (
-            f"{option}: expected numbers{with_unit}, such as '{example}' from, to and step, or "
+            f"{option}: expected numbers{with_unit}, as from:to:step, such as '{example}', or "
             f"listed with commas; got {shown(words)}"
         )
         raise ComponentError(msg) from None
@@ -171,7 +171,7 @@ def _steps(start: float, end: float, step: float) -> list[float]:
     count = (end - start) / step
     if not 0.0 <= count <= _MOST_VALUES:
         raise ValueError
-    # a step of 0.1 is no multiple of a power of 2
+    # a step such as 0.1 has no exact binary form
     return [round(start + k * step, 12) for k in range(1 + floor(count + 1e-9))]
 
 
@@ -187,25 +187,25 @@ def analysed(
     given: Mapping[str, Any],
     arguments: argparse.Namespace,
 ) -> xr.Dataset:
-    """Analyse what a file describes, with a bar that tells how far it is."""
+    """Analyse what a file describes, with a progress bar."""
     with bar_for(arguments.command, quiet=arguments.quiet) as bar:
         dataset = analysis(found.system, motions, **given, progress=bar)
     return with_project(dataset, found.project)
 
 
 def with_project(dataset: xr.Dataset, project: str) -> xr.Dataset:
-    """Let a result keep what its file says of the project."""
+    """Keep the project of the scene's file in a result."""
     return dataset.assign_attrs({ATTRIBUTE: project}) if project else dataset
 
 
 def in_words(value: xr.DataArray, of: xr.Dataset) -> str:
-    """Tell an intensity measure: its name, its value and unit, and accelerations in g too."""
+    """Write an intensity measure: its name, value and unit; of an acceleration also in g."""
     name = measure_words(str(value.name), of.attrs.get(PERIOD_OF))
     return f"{name} {amount(float(value), value.attrs)}"
 
 
 def amount(value: float, attributes: Mapping[Any, Any]) -> str:
-    """Write a number with its unit, of an acceleration in g too."""
+    """Write a number with its unit; of an acceleration also in g."""
     text = f"{value:.4g}{unit_behind(attributes)}"
     if attributes.get("units") == Unit.METRE_PER_SECOND_SQUARED:
         text += f" ({value / STANDARD_GRAVITY:.3g} g)"
@@ -213,14 +213,14 @@ def amount(value: float, attributes: Mapping[Any, Any]) -> str:
 
 
 class Outputs:
-    """The files that a command writes, and those that it must not write over."""
+    """The files that a command writes, and those that it must not overwrite."""
 
     def __init__(
         self,
         arguments: argparse.Namespace,
         read: Iterable[str | Path],
         answer: Answer,
-        **kinds: FileKind,  # of the files that options name; refused before the work, not after it
+        **kinds: FileKind,  # of the files that options name, checked before the work begins
     ) -> None:
         self._given: dict[str, Any] = {"overwrite": arguments.overwrite, "read": list(read)}
         self._answer = answer
@@ -229,12 +229,12 @@ class Outputs:
             self.check(path, kind)
 
     def check(self, path: str | Path | None, kind: FileKind) -> None:
-        """Refuse a file that must not be written."""
+        """Raise if a file must not be written."""
         if path is not None and str(path) != STREAM:
             checked_path(path, kind, **self._given)
 
     def write(self, path: str | Path | None, kind: FileKind, title: str, content: Content) -> None:
-        """Write a file, if one was named, and say so."""
+        """Write a file, if one was named, and report it."""
         if path is None:
             return
         if str(path) == STREAM:
@@ -244,15 +244,15 @@ class Outputs:
         self._answer.wrote(title, path)
 
     def result(self, dataset: xr.Dataset) -> None:
-        """Write a result to the file of ``--output``, if there is one, and say so."""
+        """Write a result to the file of ``--output``, if there is one, and report it."""
         self.write(*self._named["output"], "Results", dataset.to_netcdf)
 
     def written_by(
         self, path: str | Path, ending: str, title: str, save: Callable[[Path], object]
     ) -> None:
-        """Let something write itself to a file, or to the standard output; and say so."""
+        """Write by a function of a path to a file, or to the standard output; report the file."""
         if str(path) != STREAM:
-            if Path(path).suffix.lower() == ending.lower():  # else the name is refused
+            if Path(path).suffix.lower() == ending.lower():  # `save` refuses other endings
                 check_not_read(path, self._given["read"])
             save(Path(path))
             self._answer.wrote(title, path)
@@ -263,7 +263,7 @@ class Outputs:
             self._answer.hands_on(place.read_bytes())
 
     def table(self, values: "pd.DataFrame") -> None:
-        """Write a table to the file of ``--csv``, if there is one, and say so."""
+        """Write a table to the file of ``--csv``, if there is one, and report it."""
         self.write(*self._named["csv"], "Table", lambda part: values.to_csv(part))
 
 
@@ -278,7 +278,7 @@ def _bytes_of(content: Content, kind: FileKind) -> bytes:
 
 
 def is_result(path: str) -> bool:
-    """Tell a result, or the store of a study, from a scene."""
+    """Whether a path is that of a result or of a store, not of a scene."""
     place = Path(path).expanduser()
     return place.suffix.lower() == ".nc" or place.is_dir()
 
@@ -305,7 +305,7 @@ def _result_in(place: Path, path: str) -> xr.Dataset:
 
 
 def result_kind(words: str, *, axes: bool) -> FileKind:
-    """Give the kind of file of results, of one run or along axes."""
+    """Give the kind of file of results, of one run or of a study with axes."""
 
     def fits(found: xr.Dataset) -> bool:
         known = {*found.attrs}
@@ -319,20 +319,20 @@ def _is_computed(found: xr.Dataset) -> bool:
 
 
 def dataset_kind(words: str, fits: Callable[[xr.Dataset], bool]) -> FileKind:
-    """Give a kind of netCDF file, which is known by what it holds."""
+    """Give a kind of netCDF file, recognised by its contents."""
 
     def is_own(path: Path) -> bool:
         try:
             with xr.open_dataset(path, decode_cf=False) as found:
                 return fits(found)
-        except Exception:  # whatever the libraries raise of files that are none
+        except Exception:  # whatever the libraries raise on files of other formats
             return False
 
     return FileKind(words, (".nc",), is_own)
 
 
 def table_kind(words: str, *names: str, also: Iterable[str] = ()) -> FileKind:
-    """Give the kind of table in CSV whose head has variables as only rockframe writes them."""
+    """Give the kind of table in CSV, recognised by heads of columns that only rockframe writes."""
     heads = (*also, *map(head_of, names))
 
     def is_own(path: Path) -> bool:
@@ -345,7 +345,7 @@ def table_kind(words: str, *names: str, also: Iterable[str] = ()) -> FileKind:
 
 
 def analysis_kind(words: str, *names: str) -> FileKind:
-    """Give the kind of file of an analysis, which has some variables."""
+    """Give the kind of file of an analysis, recognised by its variables."""
     return dataset_kind(words, lambda found: _is_computed(found) and {*names} <= {*found.variables})
 
 
@@ -354,12 +354,12 @@ STUDY: Final = result_kind("the result of a study", axes=True)
 
 
 def printed(values: Any) -> str:
-    """Set a table of pandas in columns, numbers with four digits."""
+    """Write a table of pandas in columns, with four digits."""
     return values.to_string(float_format=lambda value: f"{value:.4g}")
 
 
 def system_words(system: System) -> str:
-    """Name the parts of a system in a line."""
+    """Name the parts of a system in one line."""
     return ", ".join(type(part).__name__ for part in system.parts.structural())
 
 

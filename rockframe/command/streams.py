@@ -1,4 +1,4 @@
-"""The standard streams: in the place of files, in colours, and with a bar that tells progress."""
+"""The standard streams: instead of files, coloured messages and a progress bar."""
 
 import os
 import shutil
@@ -12,28 +12,28 @@ from typing import IO, Final
 from rockframe.errors import FileError
 
 STREAM: Final = "-"
-"""In the place of a file: the standard input, or the standard output."""
+"""Typed instead of the name of a file for the standard input or output."""
 INPUT: Final = "standard input"
-"""What it is called in messages."""
+"""Name of the standard input in messages."""
 
 _COLOURS: Final = {"error": "1;31", "warning": "33", "label": "1"}
 _CLEAR: Final = "\r\x1b[K"
 _DELAY: Final = 1.0
-"""What takes no longer shows no bar [s]."""
+"""Time before a bar is shown [s]."""
 _BETWEEN: Final = 0.1
-"""Shortest time between two looks of the bar [s]."""
+"""Shortest time between two updates of the bar [s]."""
 
 
 class StandardInput(BytesIO):
-    """What is read from the standard input, as an open file with a name."""
+    """The contents of the standard input, as an open file with a name."""
 
     name = INPUT
     taken_by = ""
-    """What has read it, for it can be read once."""
+    """What was read from the standard input, which can be read only once."""
 
     @classmethod
     def read_for(cls, what: str) -> "StandardInput":
-        """Read all of it."""
+        """Read the whole standard input."""
         if cls.taken_by:
             words = (
                 f"{cls.taken_by} is read from it already, and {what} cannot be too; name a file "
@@ -52,13 +52,13 @@ class StandardInput(BytesIO):
 
 
 def opened(path: str, what: str) -> "str | IO[bytes]":
-    """Give a path, or the standard input that stands for it."""
+    """Give a path, or the standard input where it is ``-``."""
     return StandardInput.read_for(what) if path == STREAM else path
 
 
 def tell(who: str, words: str, kind: str = "error") -> None:
-    """Write a message to the standard error, behind the name of the command."""
-    # in colours where they are wanted, https://no-color.org
+    """Write a message to the standard error, after the name of the command."""
+    # without colours if the user wants none, https://no-color.org
     plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
     head = f"{who}:"
     if not plain and is_terminal(sys.stderr):
@@ -67,7 +67,7 @@ def tell(who: str, words: str, kind: str = "error") -> None:
 
 
 def is_terminal(stream: object) -> bool:
-    """Tell whether somebody looks at a stream."""
+    """Whether a stream is a terminal."""
     try:
         return bool(stream.isatty())  # type: ignore[attr-defined]
     except (AttributeError, ValueError):  # there is none, or it is closed
@@ -75,7 +75,7 @@ def is_terminal(stream: object) -> bool:
 
 
 class Bar:
-    """How far it is, in one line of the standard error, where that is a terminal."""
+    """Progress in one line of the standard error, if that is a terminal."""
 
     def __init__(self, what: str, *, wanted: bool) -> None:
         self._shown = wanted and is_terminal(sys.stderr) and os.environ.get("TERM") != "dumb"
@@ -84,16 +84,16 @@ class Bar:
         self._begun, self._last = monotonic(), 0.0
 
     def name(self, part: str) -> None:
-        """Say which part of the whole comes next."""
+        """Set the name of the part that comes next."""
         self._part = f", {part}"
 
     def expect(self, count: int, done: int = 0) -> None:
-        """Add cases to the total, of which some were done before."""
+        """Add cases to the total, some of which may be done already."""
         self._total += count
         self._done += done
 
     def update(self, count: int) -> None:
-        """Add cases that are done."""
+        """Add finished cases, and show the bar."""
         self._done += count
         now = monotonic()
         if self._shown and now - self._begun > _DELAY and now - self._last > _BETWEEN:
@@ -107,14 +107,14 @@ class Bar:
             print(f"{_CLEAR}{words[: width - 1]}", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
-        """Leave the line as it was."""
+        """Clear the line."""
         if self._last > 0.0:
             print(_CLEAR, end="", file=sys.stderr, flush=True)
 
 
 @contextmanager
 def bar_for(what: str, *, quiet: bool) -> Generator[Bar]:
-    """Show how far it is while something is done."""
+    """Show a progress bar during an analysis."""
     bar = Bar(what, wanted=not quiet)
     try:
         yield bar

@@ -25,14 +25,14 @@ from rockframe.results.variables.runs import RunStatus
 from rockframe.studies import sweep
 
 _SHOWN: Final = ("status", "peak_relative_rotation", "overturned")
-"""What the printed table has of each case."""
+"""Variables of each case in the printed table."""
 _TABLE: Final = table_kind("the table of a study", "status", "overturned", "peak_rotation")
 _MOST_SHOWN: Final = 40
-"""Rows up to which the table is printed."""
+"""Largest number of rows of a table that is printed."""
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
-    """Carry out a study, or what is left of it."""
+    """Run a study, or the rest of an interrupted one."""
     found = read_study(arguments.study)
     if arguments.output is None and found.output is not None:
         arguments.output = str(found.output)
@@ -62,10 +62,10 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 
 def _say_how_to_go_on(store: Path | None, typed: list[str]) -> None:
-    """Say how a study that was interrupted goes on."""
+    """Print the command that continues an interrupted study."""
     words = ["rockframe", *typed]
-    told = "this goes on with it"
+    told = "this command continues it"
     if store is None:
         words += ["--store", "study"]
-        told = "it has no store, so that all has to be run again; with one it could go on"
+        told = "without a store all has to be run again; with a store it could continue"
     tell("rockframe study", f"interrupted; {told}: {shlex.join(words)}")

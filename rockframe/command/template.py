@@ -1,4 +1,4 @@
-"""``rockframe template``: files to begin with."""
+"""``rockframe template``: prints files to begin with."""
 
 import argparse
 

@@ -1,4 +1,4 @@
-"""Functions that are called with what was typed: a name, and arguments as NAME=VALUE."""
+"""Calls of functions that were typed as a name and arguments NAME=VALUE."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -25,7 +25,7 @@ _TABLE: Final = "columns 'period [s]' and 'acceleration [g_0]', with units in th
 
 
 def values_by_name(words: Iterable[str], option: str, example: str) -> dict[str, str]:
-    """Read NAME=VALUE."""
+    """Read words of the form NAME=VALUE."""
     found = [word.partition("=") for word in words]
     for name, _, value in found:
         if not (name and value):
@@ -42,7 +42,7 @@ def values_by_name(words: Iterable[str], option: str, example: str) -> dict[str,
 def called(
     functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, *before: object
 ) -> Made:
-    """Call a function by its name with arguments that were typed, behind those known before."""
+    """Call a function by its name, with the arguments `before` and then those that were typed."""
     function, given = call_of(functions, words, option, len(before))
     return function(*before, **given)
 
@@ -50,7 +50,7 @@ def called(
 def call_of(
     functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, before: int
 ) -> tuple[Callable[..., Made], dict[str, Any]]:
-    """Read a function and its arguments, behind so many that are known before."""
+    """Read a function and its typed arguments, which follow `before` others."""
     name, *typed = words
     if name not in functions:
         known = ", ".join(functions)
@@ -71,7 +71,7 @@ def call_of(
 
 
 def check_of(text: str, option: str) -> list[str]:
-    """Read a check that a file asks for, in words as they are typed; refuse what is none."""
+    """Split a check in a file into words as typed with --check, and raise if it is none."""
     words = split(text)
     if not words:
         msg = f"{option}: found an empty check; expected such as 'circolare_2019'"
@@ -81,7 +81,7 @@ def check_of(text: str, option: str) -> list[str]:
 
 
 def target_from(words: Sequence[str], option: str) -> TargetSpectrum:
-    """Make the spectrum that was typed: that of a code, or of a table in a file."""
+    """Make the target spectrum that was typed: by a code, or from a table in a file."""
     if words[0].lower().endswith(".csv"):
         columns = _columns_of(words[0])
         named = [*words, f"name={Path(words[0]).stem}"]
@@ -108,7 +108,7 @@ def _columns_of(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
 
 
 def _value(text: str) -> float | str:
-    """Read a pure number; what has a unit, or is a word, stays text."""
+    """Read a pure number; a quantity with a unit, or a word, remains text."""
     try:
         return float(text)
     except ValueError:

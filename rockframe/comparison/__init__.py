@@ -1,4 +1,4 @@
-"""Speed against accuracy: models and tolerances compared for a scene."""
+"""Computing time against accuracy: comparison of models and tolerances for a scene."""
 
 from rockframe.comparison.models import model_ladder
 from rockframe.comparison.recommend import Recommendation, recommend

@@ -1,4 +1,4 @@
-"""Models to compare: what a scene becomes when parts and effects are left out."""
+"""Models to compare: the scene, and simpler ones without some of its parts and effects."""
 
 import warnings
 from collections.abc import Iterator, Mapping
@@ -44,7 +44,7 @@ _WALL: Final = (
     ("rigid ground and wall", ("block", "wall"), Coupling.COUPLED),
 )
 _WORDS: Final = {"two pads": "pads", "pads": "pads", "soil": "soil"}
-"""Words of rungs, and the slots of the bases that they name."""
+"""Words in the names of models, and the slots of the bases that they name."""
 
 
 _LINKS: Final[dict[type, str]] = {
@@ -53,11 +53,11 @@ _LINKS: Final[dict[type, str]] = {
     Load: "loads",
     RearWall: "wall",
 }
-"""Words for links; those of users' own are called by their classes."""
+"""Words for links; links of a user's own are named by their classes."""
 
 
 def check_system(given: object, owner: str) -> None:
-    """Refuse what is no System."""
+    """Refuse anything but a System."""
     if not isinstance(given, System):
         msg = f"{owner}: system needs a System, got {type(given).__name__}"
         raise ComponentError(msg)
@@ -67,26 +67,27 @@ def check_system(given: object, owner: str) -> None:
 def model_ladder(system: System) -> dict[str, System]:
     """Give the models of a scene, from the simplest to the scene itself.
 
-    From rigid ground over pads to pads, cap and soil, first by cascade, then coupled; or
-    from rigid ground to soil, without the cap and with it. A base of a user's own comes after
-    those that it calls simpler. Each with small rotations first, then with finite ones, and then
-    with the restrainers, tendons, loads and elastic walls of the scene; a block that slides first
-    held, then sliding.
+    The bases lead from rigid ground to pads, and to pads, cap and soil, first by cascade, then
+    coupled. In a scene without pads they lead from rigid ground to soil, first without the cap,
+    then with it. A base of a user's own comes after the bases that its method ``simpler`` gives.
+    On each base small rotations come first, then finite ones, then the model with the
+    restrainers, tendons, loads and elastic walls of the scene. A block that slides is first held
+    against sliding; the model that slides comes last.
 
     Parameters
     ----------
     system : System
-        The scene; nothing that it lacks is added.
+        The scene. Models contain no part that it lacks.
 
     Returns
     -------
     dict of str to System
-        By a name in words, the scene itself last.
+        The models by their names in words, with the scene itself last.
 
     Raises
     ------
     ComponentError
-        Not a System.
+        If `system` is not a System.
 
     Examples
     --------
@@ -112,11 +113,11 @@ def model_ladder(system: System) -> dict[str, System]:
         rows = _STACK[:1]
     slides = system.setting.slides and not system.parts.own
     if slides and "stack" not in present and squat(system.parts.the_block, ""):
-        rows = ()  # held it would not rock
-    # a wall holds a block that slides without it
+        rows = ()  # held against sliding, it would not rock
+    # a wall prevents the sliding of the model without it
     holds = slides or "wall" in present
     whole, held = given, Sliding.CHECKED if holds else system.sliding
-    if slides and "stack" in present:  # whose bases hold where they have no friction
+    if slides and "stack" in present:  # the bases of a stack do not slide without a friction
         given, held = {slot: _holding(part) for slot, part in given.items()}, system.sliding
     options: dict[str, Any] = {
         "restraint": system.restraint, "gravity": system.gravity,
@@ -127,7 +128,7 @@ def model_ladder(system: System) -> dict[str, System]:
     links = () if system.parts.own else system.parts.links
     acts = " and ".join(dict.fromkeys(_LINKS.get(type(one), type(one).__name__) for one in links))
     with warnings.catch_warnings():
-        # what is left out may be said of a rung, but the scene itself has said its own
+        # a simpler model may warn of effects that it leaves out; the scene has warned before
         warnings.simplefilter("ignore", ModelWarning)
         for name, slots, coupling in rows:
             if not set(slots) <= present or not _reached(slots, coupling, system):
@@ -156,7 +157,7 @@ def model_ladder(system: System) -> dict[str, System]:
 
 
 def _holding(part: Component) -> Component:
-    """Give a part whose base, or those between bodies, hold what stands on them."""
+    """Give a base, or a stack with all its interfaces, without sliding."""
     if isinstance(part, Stack):
         return part.replace(interfaces=[_holding(one) for one in part.interfaces])
     if isinstance(part, RigidGround):
@@ -167,7 +168,7 @@ def _holding(part: Component) -> Component:
 
 
 def _bases(given: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dict[str, Component]]:
-    """Give the bases of a rung: all simpler ones of users' own bases first, then themselves."""
+    """Give the bases of a model: for users' own bases the simpler ones, then the own ones."""
     bases = {slot: given[slot] for slot in ("pads", "soil") if slot in slots}
     simpler = {
         slot: part.simpler() if isinstance(part, OwnBase) else () for slot, part in bases.items()
@@ -181,13 +182,13 @@ def _bases(given: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dict[st
 
 
 def _named(bases: Mapping[str, Component]) -> dict[str, str]:
-    """Give the words of a rung: users' own bases are called by their classes."""
+    """Give the words for the bases of a model; users' own bases are named by their classes."""
     own = {slot: type(part).__name__ for slot, part in bases.items() if isinstance(part, OwnBase)}
     return {words: own.get(slot, words) for words, slot in _WORDS.items()}
 
 
 def _reached(slots: tuple[str, ...], coupling: Coupling, system: System) -> bool:
-    """Whether a rung is not above the scene: a cascade has no coupled rung."""
+    """Whether a model is no finer than the scene: a cascade has no coupled model."""
     if "cap" not in slots or "pads" not in slots:
         return True
     return system.coupling is Coupling.COUPLED or coupling is Coupling.CASCADE

@@ -1,4 +1,4 @@
-"""Which rung to take for an error that one can live with."""
+"""Choice of the cheapest model and accuracy for an admissible error."""
 
 from dataclasses import dataclass
 from typing import Final, cast
@@ -12,7 +12,7 @@ from rockframe.units import POSITIVE, to_ratio
 
 _OWNER: Final = "recommend"
 _LEAST_PERCENTAGE: Final = 1e-4
-"""Errors below are written as shares: a percentage with an exponent is read wrongly."""
+"""Smallest error written as a percentage; a percentage with an exponent is easily misread."""
 _NEEDED: Final = ("run_time", "verdict_agrees", "model", "accuracy")
 _ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotation along time"}
 
@@ -20,16 +20,16 @@ _ERRORS: Final = {"peak_error": "the peak rotation", "history_error": "the rotat
 @proposing
 @dataclass(frozen=True)
 class Recommendation:
-    """The cheapest rung that meets a tolerance; its text is a sentence.
+    """The cheapest model and accuracy that meet a tolerance; ``str`` gives it as a sentence.
 
     Parameters
     ----------
     model, accuracy : str
-        Labels of the rung; of the best one tried if none meets the tolerance.
+        Labels of model and accuracy. If none meets the tolerance, those of the least error.
     met : bool
-        Whether it meets the tolerance.
+        Whether they meet the tolerance.
     sentence : str
-        The same in words.
+        The recommendation in words.
 
     Examples
     --------
@@ -52,29 +52,29 @@ class Recommendation:
 def recommend(
     dataset: xr.Dataset, tolerance: float = 0.01, *, error: str = "peak_error"
 ) -> Recommendation:
-    """Pick the cheapest rung whose verdict is right and whose error is small enough.
+    """Choose the cheapest model and accuracy with the right verdict and an admissible error.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.tradeoff`.
+        Dataset of :func:`rockframe.tradeoff`.
     tolerance : float, optional
-        Error that one can live with, models and numerics together, at most 1: 0.05 or
-        ``"5 %"`` for five per cent [1].
+        Admissible error of model and integration together, at most 1: 0.05 or ``"5 %"`` for
+        five per cent [1].
     error : {"peak_error", "history_error"}, optional
-        Which error.
+        Error to which the tolerance applies.
 
     Returns
     -------
     Recommendation
-        ``str(...)`` is a sentence; ``model`` is a key of :func:`rockframe.model_ladder`.
+        ``str`` of it is a sentence, and its ``model`` a key of :func:`rockframe.model_ladder`.
 
     Raises
     ------
     SchemaError
-        The dataset is no comparison of rungs, or has no such error.
+        If the dataset is no comparison of models, or has no such error.
     UnitsError, ComponentError
-        `tolerance` is no ratio above 0 and up to 1.
+        If `tolerance` is not dimensionless, or not above 0 and at most 1.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def _checked(given: object) -> xr.Dataset:
 
 
 def _share(value: float, digits: int) -> str:
-    """Write an error: a percentage, or where that would be tiny a share of the peak."""
+    """Write an error as a percentage, or a very small one as a share of the peak."""
     if 0.0 < value < _LEAST_PERCENTAGE:
         text = np.format_float_scientific(value, digits - 1, trim="-", exp_digits=1)
         return f"{text.replace('.e', 'e')} of the peak"
@@ -151,7 +151,7 @@ def _share(value: float, digits: int) -> str:
 
 
 def _without_exponent(value: float, digits: int) -> str:
-    """Write a number without an exponent, with all of its digits before the point."""
+    """Write a number without an exponent, to `digits` digits or to the decimal point."""
     if value >= 10.0 ** (digits - 1):
         return f"{value:.0f}"
     return np.format_float_positional(value, digits, unique=False, fractional=False, trim="-")

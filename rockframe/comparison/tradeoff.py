@@ -1,4 +1,4 @@
-"""Time against error, over the models and the tolerances that a scene leaves to choose."""
+"""Computing time against error, over the models of a scene and the accuracies."""
 
 import json
 import time
@@ -34,12 +34,12 @@ from rockframe.system.options import AccuracyLike
 
 
 def verdicts_agree(run: xr.Dataset, reference: xr.Dataset) -> bool:
-    """Tell whether two runs have verdicts, and the same."""
+    """Tell whether two runs both reached a verdict, and the same one."""
     return verdict_of(run) is not None and verdict_of(run) == verdict_of(reference)
 
 
 def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Compare peak rotations and slips, relative to those of the reference; the greater error."""
+    """Give the greater of the relative errors of peak rotation and of peak slip [1]."""
     if _cut_off(run, reference):
         return float("nan")
     peak, slips = float(reference["peak_rotation"]), _slips(reference)
@@ -51,26 +51,26 @@ def relative_peak_error(run: xr.Dataset, reference: xr.Dataset) -> float:
 
 
 def _slips(run: xr.Dataset) -> Generic:
-    """Give the peak slips of all bodies of a run, zero where its model holds them [m]."""
+    """Give the peak slips of all bodies of a run, or zero if its model has no sliding [m]."""
     found = [np.atleast_1d(run[name].to_numpy()) for name in PEAK_SLIPS if name in run]
     return np.concatenate(found) if found else np.zeros(1)
 
 
 def history_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Compare rotations along time, as far as both go, relative to the reference's peak."""
+    """Give the largest difference of both histories of rotation over the peak rotation [1]."""
     if _cut_off(run, reference):
         return float("nan")
     one, other = (data["rotation"].to_numpy() for data in (run, reference))
     times = [data["time"].to_numpy() for data in (run, reference)]
     count = min(one.size, other.size)
     while count > 0 and times[0][count - 1] != times[1][count - 1]:
-        count -= 1  # the instant at which a run ended is no common sample
+        count -= 1  # a run that overturned ends between two samples of the other
     peak = float(np.max(np.abs(other[:count]), initial=0.0))
     return _relative(float(np.max(np.abs(one[:count] - other[:count]), initial=0.0)), peak)
 
 
 def event_time_error(run: xr.Dataset, reference: xr.Dataset) -> float:
-    """Compare the times of events [s]; NaN if the runs have other events."""
+    """Give the largest difference of the times of events [s]; NaN if their kinds differ."""
     if _cut_off(run, reference):
         return float("nan")
     if not np.array_equal(run["event_kind"].to_numpy(), reference["event_kind"].to_numpy()):
@@ -91,7 +91,7 @@ def _relative(difference: float, scale: float) -> float:
 
 TIGHT: Final = 1e-12
 BENCHMARK: Final = Accuracy(rtol=TIGHT)
-"""What errors are measured against; its own is about as large as its tolerance."""
+"""Accuracy of the runs against which errors are measured; their own errors are about `TIGHT`."""
 
 DIMENSIONS: Final = ("model", "accuracy")
 
@@ -101,7 +101,7 @@ _KEPT: Final = ("peak_rotation", "overturned", "energy_residual", "status")
 _OWNER: Final = "tradeoff"
 _MOST_REPEATS: Final = 1000
 _PATIENCE: Final = 60.0
-"""How long machine code is waited for, so that a rung is timed by it [s]."""
+"""Longest wait for machine code before a model is timed [s]."""
 
 
 @takes(ComparedArguments)
@@ -114,45 +114,50 @@ def tradeoff(
     repeats: int = 5,
     **arguments: Unpack[ComparedArguments],
 ) -> xr.Dataset:
-    """Measure what each model and each accuracy costs, and how far off it is.
+    """Measure computing time and error of each model of a scene at each accuracy.
 
     Parameters
     ----------
     system : System
-        The scene, taken for the truth as far as models go.
+        The scene, whose own model is the reference for errors of the models.
     motion : GroundMotion, optional
-        The ground's motion; the one among the parts unless given.
+        Motion of the ground. By default it is the one among the parts.
     models : str or sequence of str, optional
-        Names of :func:`rockframe.model_ladder`; all unless given.
+        Names of :func:`rockframe.model_ladder`. By default all are compared.
     accuracies : str, float or Accuracy, or sequence of them, optional
         Levels, tolerances (``rtol``), or own settings.
     repeats : int, optional
-        How often each run is timed.
+        Number of runs that are timed, for each model and accuracy.
 
     Returns
     -------
     xarray.Dataset
-        Over ``model`` and ``accuracy``. ``run_time`` (median), ``run_time_least``,
-        ``run_time_greatest`` of runs that keep no histories [s]; the outcome:
-        ``peak_rotation``, ``overturned``, ``energy_residual``, ``status``, and ``peak_slip``
-        of a scene that slides [m]. Against the same
-        model at a tolerance of 1e-12: ``numerical_peak_error``, ``numerical_history_error`` [1]
-        and ``event_time_error`` [s]. Against the scene itself at that tolerance:
-        ``peak_error``, ``history_error`` [1] and ``verdict_agrees``. Where the scene slides, errors
-        of peaks are the greater of those of rotation and of slip. Errors of, and against,
-        a run that was cut off before its verdict are NaN, and its verdict agrees with none.
+        Over ``model`` and ``accuracy``:
+
+        - ``run_time`` (median), ``run_time_least`` and ``run_time_greatest`` of runs that keep
+          no histories [s];
+        - the outcome: ``peak_rotation``, ``overturned``, ``energy_residual``, ``status``, and
+          ``peak_slip`` of a scene that slides [m];
+        - errors against the same model at a tolerance of 1e-12: ``numerical_peak_error``,
+          ``numerical_history_error`` [1] and ``event_time_error`` [s];
+        - errors against the scene itself at that tolerance: ``peak_error``, ``history_error``
+          [1] and ``verdict_agrees``.
+
+        Where the scene slides, the error of peaks is the greater of those of rotation and of
+        slip. If a run was cut off before its verdict, errors of it and against it are NaN, and
+        its verdict agrees with none.
 
     Raises
     ------
     ComponentError
-        Not a System, unknown models, or `repeats` out of range.
+        If `system` is not a System, models are unknown, or `repeats` is out of range.
     UnitsError, AssemblyError, SolverError
         As for :meth:`rockframe.System.simulate`.
 
     Notes
     -----
-    Every rung is run before it is timed, until its machine code is compiled. Times are wall
-    times of this machine, now: compare them with one another only. Histories are compared at
+    Each model is run before it is timed, until its machine code is compiled. Times are wall
+    times on this machine and can only be compared with one another. Histories are compared at
     the output times.
 
     Examples
@@ -189,7 +194,7 @@ def tradeoff(
         )
 
     with warnings.catch_warnings():
-        # a rung may say what it cannot show; that is what the errors measure
+        # a simpler model may warn of effects that it leaves out; the errors measure these
         warnings.simplefilter("ignore", ModelWarning)
         warnings.simplefilter("ignore", SolverWarning)
         truth = run(system.assembly, plan(system, BENCHMARK))
@@ -228,7 +233,7 @@ def tradeoff(
 def measure(
     scene: System, plan: Plan, converged: xr.Dataset, truth: xr.Dataset, repeats: int
 ) -> Outcome:
-    """Run a rung, time it and compare it."""
+    """Run a model at an accuracy, time it, and compare it with both references."""
     found = run(scene.assembly, plan)
     bare = replace(plan, output_step=None)
     _run_until_compiled(scene, bare)
@@ -249,7 +254,7 @@ def measure(
 
 
 def _run_until_compiled(scene: System, plan: Plan) -> None:
-    """Run a rung in plain Python as long as its machine code is made: it is not to be timed so."""
+    """Run a model until its machine code is compiled, so that no run in plain Python is timed."""
     system = scene.assembly.model.system
     equations = equations_of(
         system, fixed_steps=plan.accuracy.rtol is None, with_work=bool(plan.energies)

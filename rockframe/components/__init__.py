@@ -1,4 +1,4 @@
-"""Components of a scene: frozen value objects, units converted once at construction."""
+"""Components of a scene: immutable value objects, whose units are converted at construction."""
 
 from rockframe.components.alternatives import OneOf
 from rockframe.components.base import Component

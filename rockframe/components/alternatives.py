@@ -1,4 +1,4 @@
-"""Parameters that stand for one another."""
+"""Alternative parameters, of which one is given."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ def _displaced(ways: tuple[tuple[str, ...], ...], named: frozenset[str]) -> froz
 
 @dataclass(frozen=True, init=False)
 class OneOf:
-    """Ways to give the same thing, of which one is taken.
+    """Alternative ways to give the same quantity, of which one is used.
 
     Parameters
     ----------
     *ways : str or tuple of str
-        Names of parameters; those of a tuple go together.
+        Names of parameters; those of a tuple are given together.
     required : bool
-        Whether one must be given.
+        Whether one way must be used.
 
     Examples
     --------
@@ -43,19 +43,19 @@ class OneOf:
         object.__setattr__(self, "required", required)
 
     def check(self, given: Mapping[str, object], owner: str) -> None:
-        """Refuse arguments that give the thing twice, or not at all.
+        """Refuse arguments that give the quantity twice, or not at all.
 
         Parameters
         ----------
         given : mapping
-            Arguments by their names; None for those not given.
+            Arguments by name; None for those not given.
         owner : str
             Class, for the message.
 
         Raises
         ------
         ComponentError
-            More than one way was taken; none, although one is required; or half of one.
+            More than one way is used; none, although one is required; or one incompletely.
         """
         taken = [way for way in self.ways if given.get(way[0]) is not None]
         heads = " or ".join(way[0] for way in self.ways)
@@ -77,12 +77,12 @@ class OneOf:
                 raise ComponentError(msg)
 
     def displaced(self, changes: Mapping[str, object]) -> frozenset[str]:
-        """Name the parameters that are given no longer where others are given instead.
+        """Name the parameters that new arguments replace.
 
         Parameters
         ----------
         changes : mapping
-            New arguments by their names.
+            New arguments by name.
 
         Returns
         -------

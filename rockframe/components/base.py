@@ -1,4 +1,4 @@
-"""What all components share: values, immutability, equality, text; words on their parameters."""
+"""The base class of components: values, immutability, equality, text, documented parameters."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping
@@ -32,7 +32,7 @@ _INDENT: Final = "    "
 
 
 def with_parameters(text: str, declared: Iterable[Declared[Any, Any]]) -> str:
-    """Insert the section "Parameters" where numpydoc has it."""
+    """Insert the section "Parameters" of a numpydoc docstring."""
     rows = [_row(parameter) for parameter in declared]
     clean = cleandoc(text)
     found = _SECTION.search(clean)
@@ -54,16 +54,16 @@ def _row(parameter: Declared[Any, Any]) -> str:
 
 @proposing
 class Component(metaclass=Proposing):
-    """A frozen value object, made of the parameters that its class declares.
+    """An immutable value object with the parameters that its class declares.
 
-    A class of components declares each of its parameters once, as an attribute:
+    A class of components declares each parameter once, as an attribute:
     :class:`~rockframe.components.Parameter` (with a unit),
     :class:`~rockframe.components.Ratio`, :class:`~rockframe.components.Choice` or
-    :class:`~rockframe.components.Text`; and in ``alternatives`` which of them stand for
-    one another. All else follows: constructor, checks, properties, and what is below.
+    :class:`~rockframe.components.Text`. The attribute ``alternatives`` lists those that replace
+    one another. Constructor, checks, properties and the methods below follow from these.
 
-    A component keeps its values in SI units: as they were given in ``given``, and as the
-    equations need them in ``si``.
+    All values are in SI units. The attribute ``given`` has the arguments of the constructor, and
+    ``si`` the numbers that the equations need.
 
     Examples
     --------
@@ -100,7 +100,7 @@ class Component(metaclass=Proposing):
         own = {name: one for name, one in vars(cls).items() if isinstance(one, Declared)}
         for name in own:
             if hasattr(Component, name):
-                msg = f"{cls.__qualname__}: {name!r} means something else for all components"
+                msg = f"{cls.__qualname__}: {name!r} is reserved: every component has it"
                 raise ComponentError(msg)
         cls._declared = {**cls._declared, **own}
         if own and "__init__" not in vars(cls):
@@ -119,44 +119,44 @@ class Component(metaclass=Proposing):
             warn(caution, ModelWarning)
 
     def cautions(self) -> list[str]:
-        """Say what is unusual about the values, as building the component warned.
+        """Give the warnings of the constructor about unusual values.
 
         Returns
         -------
         list of str
-            Of each what it is and of which component; none of usual values.
+            One text for each, with the name of the component.
         """
         return [f"{type(self).__name__}: {words}" for words in self._cautions()]
 
     def _fill(self, given: Mapping[str, object]) -> None:
-        """Check and keep the arguments of the constructor."""
+        """Check and store the arguments of the constructor."""
         every = _every_argument(type(self), given)
         owner = self._owner(every)
         self._check(every, owner)
         self._hold({name: one.accept(every[name], owner) for name, one in self._declared.items()})
 
     def _hold(self, values: Mapping[str, object]) -> None:
-        """Keep values in SI units, and what follows from them."""
+        """Store values in SI units, and the numbers derived from them."""
         given = SIValues(**values)
         object.__setattr__(self, "given", given)
         object.__setattr__(self, "si", self._numbers(given))
 
     @classmethod
     def _owner(cls, given: Mapping[str, object]) -> str:
-        """Name the component in messages."""
+        """Give the name of the component for messages."""
         return cls.__name__
 
     def _check(self, given: Mapping[str, object], owner: str) -> None:
-        """Refuse arguments that do not go together."""
+        """Refuse arguments that exclude one another."""
         for alternative in self.alternatives:
             alternative.check(given, owner)
 
     def _numbers(self, given: SIValues) -> Any:
-        """Give the numbers that the equations need; refuse values that do not fit together."""
+        """Give the numbers for the equations; refuse values that do not fit together."""
         return given
 
     def _cautions(self) -> list[str]:
-        """Say what is unusual about the values."""
+        """Give a text for each unusual value."""
         values = vars(self.given)
         found = [
             one.caution(values[name])
@@ -166,7 +166,7 @@ class Component(metaclass=Proposing):
         return [words for words in found if words is not None]
 
     def _arguments(self) -> dict[str, float | str]:
-        """Give the arguments from which the constructor builds an equal component."""
+        """Give arguments of the constructor for an equal component."""
         values = vars(self.given)
         written = {
             name: None if values[name] is None else one.write(values[name])
@@ -198,7 +198,7 @@ class Component(metaclass=Proposing):
         return f"{type(self).__name__}({given})"
 
     def _shapes(self) -> list[Polygon]:
-        """Give what notebooks draw of the component, to scale; nothing unless it has a shape."""
+        """Give the polygons that notebooks draw, to scale; none if it has no shape."""
         return []
 
     def _repr_html_(self) -> str:
@@ -221,12 +221,12 @@ class Component(metaclass=Proposing):
 
     @classmethod
     def from_dict(cls, arguments: Mapping[str, float | str]) -> Self:
-        """Build the component that :meth:`to_dict` described, without its warnings.
+        """Build the component from the result of :meth:`to_dict`, without warnings.
 
         Parameters
         ----------
         arguments : mapping
-            Of the constructor.
+            Arguments of the constructor.
 
         Returns
         -------
@@ -235,7 +235,7 @@ class Component(metaclass=Proposing):
         Raises
         ------
         ComponentError
-            It describes a component of another class.
+            The mapping describes a component of another class.
         TypeError, UnitsError, ComponentError
             As the constructor.
         """
@@ -245,7 +245,7 @@ class Component(metaclass=Proposing):
 
     @classmethod
     def _described(cls, description: Mapping[str, float | str]) -> dict[str, Any]:
-        """Give the arguments in a description; refuse that of another class."""
+        """Give the arguments in a description; refuse one of another class."""
         description = by_names(
             description,
             owner=f"{cls.__name__}.from_dict",
@@ -262,13 +262,13 @@ class Component(metaclass=Proposing):
         return {name: value for name, value in description.items() if name != "type"}
 
     def replace(self, **changes: Any) -> Self:
-        """Build a component of which some parameters are others.
+        """Build a component with some parameters changed.
 
         Parameters
         ----------
         **changes
-            Arguments of the constructor. One that stands for another, such as a stiffness
-            for a frequency ratio, takes its place; None is as if it were not given.
+            Arguments of the constructor. An alternative replaces the argument that it stands
+            for, such as a stiffness a frequency ratio; None means not given.
 
         Returns
         -------
@@ -283,7 +283,7 @@ class Component(metaclass=Proposing):
 
     @classmethod
     def declared(cls) -> Mapping[str, Declared[Any, Any]]:
-        """Give the declarations of all parameters by their names.
+        """Give the declarations of all parameters by name.
 
         Returns
         -------
@@ -293,56 +293,55 @@ class Component(metaclass=Proposing):
 
     @classmethod
     def varied(cls) -> Mapping[str, Declared[Any, Any]]:
-        """Give the declarations of all that :meth:`with_si` takes, by their names.
+        """Give the declarations of all quantities that :meth:`with_si` takes, by name.
 
         Returns
         -------
         mapping
-            Those of all parameters; and of what stands for several of them, where a class has
-            such.
+            All parameters, and in some classes quantities that determine several of them.
         """
         return cls._declared
 
     def too_many(self, changed: Collection[str]) -> tuple[str, ...]:
-        """Name what determines the same parameters more than once.
+        """Name changed quantities that together overdetermine the parameters.
 
         Parameters
         ----------
         changed : collection of str
-            Names of what becomes another, of those in :meth:`varied`.
+            Names of changed quantities, out of :meth:`varied`.
 
         Returns
         -------
         tuple of str
-            None, unless a class has names that stand for several parameters.
+            Empty, unless a class has quantities that determine several parameters.
         """
         return ()
 
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
-        """Name what would stay as it was given, although it goes with what is changed.
+        """Name given parameters that depend on changed ones, but would keep their values.
 
         Parameters
         ----------
         changed : collection of str
-            Names of parameters that become others.
+            Names of changed parameters.
 
         Returns
         -------
         tuple of str
-            Names of parameters; none, unless a class tells of such.
+            Names of parameters; empty for most classes.
         """
         for name in several(changed, owner=type(self).__name__, name="changed", of="names"):
             self._check_name(name, self.varied() or self.parameters())
         return ()
 
     def with_si(self, values: Mapping[str, Any]) -> Self:
-        """Build a component of which some parameters are others, without warnings.
+        """Build a component with some parameters changed, without warnings.
 
         Parameters
         ----------
         values : mapping of str to float or str
-            Numbers in SI units, and words, by the names of parameters. One that stands for
-            another takes its place, as with :meth:`replace`.
+            Numbers in SI units, and words, by the names of parameters. An alternative replaces
+            the parameter that it stands for, as in :meth:`replace`.
 
         Returns
         -------
@@ -367,7 +366,7 @@ class Component(metaclass=Proposing):
             one = self._declared[name]
             holds: Any = _is_finite if one.condition is None else one.condition.holds
             if not isinstance(value, float | Many) or not holds(value):
-                # which also says what is wrong
+                # raises the error for a wrong value
                 plain = isinstance(value, str) or one.measure is None
                 written = value if plain else one.write(value)
                 changed[name] = one.read(written, owner)
@@ -386,14 +385,14 @@ class Component(metaclass=Proposing):
         return tuple(name for name, value in self._arguments().items() if _number_in(value))
 
     def with_scaled(self, name: str, factor: float) -> Self:
-        """Build a component of which one argument is larger or smaller.
+        """Build a component with one argument multiplied by a factor.
 
         Parameters
         ----------
         name : str
             One of :meth:`parameters`.
         factor : float
-            New value over old [1].
+            Ratio of the new value to the old one [1].
 
         Returns
         -------
@@ -409,7 +408,7 @@ class Component(metaclass=Proposing):
         return self.with_si({name: ratio * vars(self.given)[name]})
 
     def _check_name(self, name: object, known: Iterable[str]) -> None:
-        """Refuse a parameter that there is not."""
+        """Refuse the name of an unknown parameter."""
         listed = list(known)
         if isinstance(name, str) and name in listed:
             return
@@ -423,7 +422,7 @@ def replaced(
     changes: Mapping[str, Any],
     alternatives: tuple[OneOf, ...],
 ) -> dict[str, Any]:
-    """Give arguments with some changed, without those that the changes stand for."""
+    """Give arguments with changes, without those that the changes replace."""
     gone = {name for each in alternatives for name in each.displaced(changes)}
     return {**{name: value for name, value in arguments.items() if name not in gone}, **changes}
 
@@ -455,7 +454,7 @@ def _default(one: Declared[Any, Any], required: object) -> object:
 
 
 def _constructor(kind: type[Component]) -> Any:
-    """Make a constructor with the signature that the declarations give."""
+    """Make a constructor with the signature of the declarations."""
 
     def __init__(self: Component, *strange: object, **given: object) -> None:  # noqa: N807
         if strange:
@@ -465,7 +464,7 @@ def _constructor(kind: type[Component]) -> Any:
             raise ArgumentError(msg)
         Component.__init__(self, **given)
 
-    __init__.hints = {}  # type: ignore[attr-defined]  # it answers itself, also of derived classes
+    __init__.hints = {}  # type: ignore[attr-defined]  # it explains unknown arguments itself
 
     arguments = [
         Argument(
@@ -484,12 +483,12 @@ def _constructor(kind: type[Component]) -> Any:
 
 
 def _is_finite(value: object) -> bool:
-    """Whether a value is a number that is finite; words and counts have to be read."""
+    """Whether a value is a finite number; words and counts are not."""
     return isinstance(value, float | Many) and isfinite(value)
 
 
 def _number_in(value: float | str) -> float:
-    """Give the number of an argument, zero if it is a word."""
+    """Give the number in an argument; zero for a word."""
     if not isinstance(value, str):
         return value
     try:

@@ -1,4 +1,4 @@
-"""What bodies stand on: rigid ground, pads, soil, and a cap between building and soil."""
+"""Bases under bodies: rigid ground, pads, soil, and a cap between building and soil."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -41,7 +41,7 @@ from rockframe.units import (
 
 
 class Impact(StrEnum):
-    """Whether a corner that strikes slips as far as friction lets it, or is held."""
+    """Tangential motion of a corner during an impact: limited by friction, or held."""
 
     COULOMB = "coulomb"
     STICK = "stick"
@@ -53,8 +53,8 @@ ImpactLike: TypeAlias = Impact | Literal["coulomb", "stick"]
 class RigidGround(Component):
     """Rigid ground under a block, which rocks on it (Housner's model) and may slide.
 
-    A scene with a block alone stands on rigid ground that holds it; this part is needed only
-    to choose a restitution or a friction.
+    A scene of only a block has rigid ground on which it cannot slide. This component is needed
+    only to set restitution or friction.
 
     Raises
     ------
@@ -78,7 +78,7 @@ class RigidGround(Component):
 
     restitution = Ratio(
         UNIT_INTERVAL,
-        doc="Ratio of the angular velocities after and before an impact that does not slip; the "
+        doc="Ratio of the angular velocities after and before an impact without slip; the "
         "block's eps_max, Eq. (4), unless given.",
         default=None,
         example="0.9",
@@ -87,7 +87,7 @@ class RigidGround(Component):
     kinetic_friction = friction_of_slip()
     impact = Choice(
         Impact.COULOMB,
-        doc="Whether a corner that strikes slips as far as kinetic friction lets it, or is held.",
+        doc="Whether a corner slips during its impact against kinetic friction, or is held.",
     )
 
     def __init__(
@@ -117,9 +117,9 @@ class TwoSpringSupport(Component):
     UnitsError
         A value has the wrong unit, or none.
     ComponentError
-        A value is out of range, not exactly one of `frequency_ratio` and `stiffness`, and one of
-        `damping_ratio` and `damping`, is given, or `kinetic_friction` without `friction` or above
-        it.
+        A value is out of range; not exactly one of `frequency_ratio` and `stiffness`, and one of
+        `damping_ratio` and `damping`, is given; or `kinetic_friction` is given without `friction`
+        or above it.
 
     Warns
     -----
@@ -128,8 +128,8 @@ class TwoSpringSupport(Component):
 
     Notes
     -----
-    k = m omega_v^2 / 2 and c = xi m omega_v per pad, Eq. (7); with the two pads
-    together xi is the damping ratio of the vertical motion.
+    k = m omega_v^2 / 2 and c = xi m omega_v per pad, Eq. (7), so that xi is the damping ratio of
+    the vertical motion on both pads.
 
     Examples
     --------
@@ -203,7 +203,7 @@ class TwoSpringSupport(Component):
 
 @dataclass(frozen=True)
 class CushionCapSI:
-    """A cap in SI units; a width of None stands for the building's."""
+    """A cap in SI units; a width of None means that of the building."""
 
     width: float | None
     height: float
@@ -215,13 +215,13 @@ class CushionCapSI:
         return self.mass if self.mass is not None else (self.mass_per_width or 0.0) * width
 
     def inertia_at(self, width: float) -> float:
-        """Give the inertia of a solid cap about its centre [kg m^2]."""
+        """Give the moment of inertia of a solid cap about its centre [kg m^2]."""
         diagonal = hypot(width, self.height)
         return self.mass_at(width) * diagonal * diagonal / 12.0
 
 
 class CushionCap(Component):
-    """A rigid, solid slab that spreads a building's weight over the soil.
+    """A rigid, solid slab that distributes the weight of a building over the soil.
 
     Raises
     ------
@@ -282,7 +282,7 @@ class CushionCap(Component):
 
 
 class Separation(StrEnum):
-    """Where the bed lets go of the base."""
+    """Criterion for the loss of contact between bed and base."""
 
     DISPLACEMENT = "displacement"
     PRESSURE = "pressure"
@@ -298,7 +298,7 @@ _BY_DEPTH: Final = (
 
 
 class WinklerSoil(Component):
-    """A bed of springs and dashpots side by side that take no tension.
+    """A Winkler bed: independent springs and dashpots that take no tension.
 
     Raises
     ------
@@ -337,12 +337,12 @@ class WinklerSoil(Component):
     )
     damping_ratio = DampingRatio(
         doc="Damping ratio of the vertical motion, instead of `damping`: "
-        "2 b c0 = 2 xi_s sqrt(2 b k0 m), with all mass that the bed carries.",
+        "2 b c0 = 2 xi_s sqrt(2 b k0 m), with the whole mass m on the bed.",
     )
     separation = Choice(
         Separation.DISPLACEMENT,
-        doc="Where the base and the bed part: above the level of the unloaded bed, as in the "
-        "paper; or also where the dashpots would have to pull.",
+        doc="Where the base loses contact: above the level of the unloaded bed, as in the "
+        "paper; or also where springs and dashpots together would pull.",
     )
 
     friction = friction_at_rest("what stands on it")
@@ -385,7 +385,7 @@ class WinklerSoil(Component):
         friction: RatioLike | None = None,
         kinetic_friction: RatioLike | None = None,
     ) -> Self:
-        """Build the bed from the soil's subgrade modulus.
+        """Build the bed from the subgrade modulus of the soil.
 
         Parameters
         ----------
@@ -428,5 +428,5 @@ class WinklerSoil(Component):
 
     @property
     def depth(self) -> Quantity | None:
-        """Depth of the base out of the plane, where the bed was built with it [m]."""
+        """Depth of the base out of the plane, if the bed was built with it, else None [m]."""
         return None if self._depth is None else quantity(self._depth, LENGTH)

@@ -43,12 +43,12 @@ SOLID_RECTANGLE_SHAPE_FACTOR = 3.0
 """mu of a solid rectangle: I_O = m (B^2 + H^2)/12 = m R0^2/3."""
 
 _SIZES: Final = frozenset({"width", "height", "mass"})
-"""What a moment of inertia goes with."""
+"""Parameters on which a moment of inertia depends."""
 _SIDES: Final = ("width", "height")
 
 
 class _Size:
-    """What stands for width and height together, as in :meth:`Block.from_size`."""
+    """Quantities that determine width and height together, as in :meth:`Block.from_size`."""
 
     radius = Parameter(LENGTH, POSITIVE, doc="R0, distance from a corner to the centre of mass.")
     slenderness = Ratio(POSITIVE, doc="Height over width, H/B.", example="4")
@@ -81,10 +81,10 @@ class Block(Component):
     A block rocks only while the greatest restitution, Eq. (4), is positive; for
     a solid rectangle that is H/B > sqrt(2)/2, Eq. (5).
 
-    ``centre_of_mass=("0.7 m", "0.05 m")`` stands for `centre_height` and `eccentricity`
-    together. A centre of mass that is not in the middle leaves the moment of inertia about it
-    that of the solid rectangle, unless `inertia` or `shape_factor` tells another;
-    :meth:`from_outline`, :meth:`from_parts` and :meth:`cylinder` work both out.
+    ``centre_of_mass=("0.7 m", "0.05 m")`` gives `centre_height` and `eccentricity` together. The
+    moment of inertia about the centre of mass is that of the solid rectangle wherever this
+    centre is, unless `inertia` or `shape_factor` is given. :meth:`from_outline`,
+    :meth:`from_parts` and :meth:`cylinder` compute both.
 
     Examples
     --------
@@ -122,7 +122,7 @@ class Block(Component):
     )
     eccentricity = Parameter(
         LENGTH,
-        doc="How far the centre of mass is to the right of the middle of the base.",
+        doc="Distance of the centre of mass to the right of the middle of the base.",
         default=DERIVED,
     )
 
@@ -154,11 +154,11 @@ class Block(Component):
 
     @property
     def centre_of_mass(self) -> tuple[Quantity, Quantity]:
-        """Height above the base, and how far to the right of its middle [m]."""
+        """Height of the centre of mass above the base, and its eccentricity to the right [m]."""
         return self.centre_height, self.eccentricity
 
     def replace(self, **changes: Any) -> Self:
-        """Build a block of which some parameters are others.
+        """Build a block with some parameters changed.
 
         Parameters
         ----------
@@ -177,9 +177,9 @@ class Block(Component):
         Warns
         -----
         ModelWarning
-            Of a block that was given its `inertia`, as are those by their shape, `width`,
-            `height` or `mass` is changed, but not the `inertia`, nor `shape_factor` in its
-            place; or the `height`, but not a `centre_height` that was given.
+            The block has a given `inertia`, as have blocks from shapes, and either `width`,
+            `height` or `mass` is changed without `inertia` or `shape_factor`, or `height` is
+            changed without a given `centre_height`.
 
         Examples
         --------
@@ -192,7 +192,8 @@ class Block(Component):
             place = _pair(type(self).__name__, changes.pop("centre_of_mass"), height, beside)
             changes |= {"centre_height": place[0], "eccentricity": place[1]}
         made = super().replace(**changes)
-        behind = self.left_behind([*changes])
+        same = {name for name in _SIZES if getattr(made.si, name) == getattr(self.si, name)}
+        behind = self.left_behind(changes.keys() - same)
         if behind:
             left = " and ".join(
                 f"{name}, {getattr(self.si, name):.4g} {self._declared[name].unit}"
@@ -200,8 +201,8 @@ class Block(Component):
             )
             ways = ", and ".join(behind).replace("inertia", "inertia or shape_factor")
             msg = (
-                f"{type(self).__name__}.replace: left as it was for the old size and mass: "
-                f"{left}; give {ways}, too"
+                f"{type(self).__name__}.replace: kept from the old size and mass: {left}; give "
+                f"{ways}, too"
             )
             warn(msg, ModelWarning)
         return made
@@ -222,12 +223,12 @@ class Block(Component):
         return {**super().varied(), **_BY_SIZE}
 
     def too_many(self, changed: Collection[str]) -> tuple[str, ...]:
-        """Name what determines width and height more than once.
+        """Name changed quantities that together overdetermine width and height.
 
         Parameters
         ----------
         changed : collection of str
-            Names of what becomes another.
+            Names of changed quantities.
 
         Returns
         -------
@@ -245,13 +246,13 @@ class Block(Component):
         return tuple(named) if twice or ("radius" in named and sides) else ()
 
     def with_si(self, values: Mapping[str, Any]) -> Self:
-        """Build a block of which some parameters are others, without warnings.
+        """Build a block with some parameters changed, without warnings.
 
         Parameters
         ----------
         values : mapping of str to float
-            Numbers in SI units by the names of parameters. A `slenderness` leaves the `radius`,
-            or the side that is given beside it; a `radius` leaves the slenderness.
+            Numbers in SI units by the names of parameters. A `slenderness` leaves the `radius`
+            unchanged, or the side that is given with it; a `radius` leaves the slenderness.
 
         Returns
         -------
@@ -280,7 +281,7 @@ class Block(Component):
         return super().with_si({**others, **self._sides(sizes, others)})
 
     def _sides(self, sizes: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
-        """Give width and height by radius and slenderness, or by a side and the slenderness."""
+        """Compute width and height from radius and slenderness, or from a side and slenderness."""
         ratio = sizes.get("slenderness", self.slenderness)
         if "width" in others:
             return {"height": ratio * others["width"]}
@@ -290,15 +291,15 @@ class Block(Component):
         return {"width": width, "height": ratio * width}
 
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
-        """Name what would stay as it was given, although it goes with what is changed.
+        """Name given parameters that depend on changed ones, but would keep their values.
 
-        A given `inertia` goes with `width`, `height` and `mass`; with the inertia of a body
-        the height of its centre of mass is given too, and goes with `height`.
+        A given `inertia` depends on `width`, `height` and `mass`. A `centre_height` that is given
+        with it depends on `height`.
 
         Parameters
         ----------
         changed : collection of str
-            Names of parameters that become others.
+            Names of changed parameters.
 
         Returns
         -------
@@ -334,7 +335,7 @@ class Block(Component):
         if given.inertia is not None:
             mu = given.mass * diagonal * (diagonal / (4.0 * given.inertia))
         elif given.shape_factor is None and height != 0.5 * given.height:
-            # the inertia of the rectangle, for want of another
+            # the inertia of the solid rectangle by default
             whole = hypot(given.width, given.height)
             mu *= (diagonal / whole) ** 2
         si = BlockSI(given.width, given.height, given.mass, mu, height, beside)
@@ -345,7 +346,7 @@ class Block(Component):
         return [*super()._cautions(), *self._unphysical()]
 
     def _unphysical(self) -> list[str]:
-        """Say whether the given inertia is one that no such body has."""
+        """Warn of a given inertia that no body within the rectangle has."""
         stated = self.given.shape_factor is not None or self.given.inertia is not None
         return unphysical_inertia(self.si) if stated else []
 
@@ -407,7 +408,7 @@ class Block(Component):
         mass: QuantityLike,
         shape_factor: RatioLike | None = None,
     ) -> Self:
-        """Build a block from the paper's parameters R0 and H/B.
+        """Build a block from the parameters R0 and H/B of the paper.
 
         Parameters
         ----------
@@ -447,8 +448,8 @@ class Block(Component):
             shape_factor=shape_factor,
         )
 
-    # bodies by their shape are functions, each with its documentation, whose first argument is
-    # the class
+    # constructors from shapes are functions with their own documentation; their first argument
+    # is the class
 
     from_outline = classmethod(outline.from_outline)
     cylinder = classmethod(outline.cylinder)
@@ -456,12 +457,12 @@ class Block(Component):
 
     @property
     def radius(self) -> Quantity:
-        """R0, distance from a corner to the centre of mass [m]."""
+        """R0, distance from an end of the base to the point h above its middle [m]."""
         return quantity(self.si.radius, LENGTH)
 
     @property
     def overturning_angle(self) -> Quantity:
-        """Theta = arctan(B/H), Eq. (1) [rad]."""
+        """Theta = arctan(b/h), Eq. (1); the lesser of both sides [rad]."""
         return quantity(self.si.overturning_angle, ANGLE)
 
     @property
@@ -476,21 +477,21 @@ class Block(Component):
 
     @property
     def maximum_restitution(self) -> float:
-        """eps_max of Eq. (4) [1]."""
+        """eps_max of Eq. (4); the lesser of both corners [1]."""
         return self.si.maximum_restitution
 
 
 def _pair(
     owner: str, given: object, height: object, eccentricity: object
 ) -> tuple[QuantityLike, QuantityLike]:
-    """Read a place of the centre of mass: height above the base, and eccentricity."""
+    """Read the position of the centre of mass: height above the base, and eccentricity."""
     if height is not None or eccentricity is not None:
-        msg = f"{owner}: centre_of_mass stands for centre_height and eccentricity; give it alone"
+        msg = f"{owner}: centre_of_mass gives centre_height and eccentricity; give it alone"
         raise ComponentError(msg)
     if isinstance(given, tuple | list) and len(cast("tuple[object, ...]", given)) == 2:
         return cast("tuple[QuantityLike, QuantityLike]", given)
     msg = (
-        f"{owner}: centre_of_mass needs two lengths, the height above the base and how far it is "
-        f"to the right of the middle, such as ('0.7 m', '0.05 m'); got {shown(given)}"
+        f"{owner}: centre_of_mass needs two lengths, the height above the base and the distance "
+        f"to the right of its middle, such as ('0.7 m', '0.05 m'); got {shown(given)}"
     )
     raise ComponentError(msg)

@@ -1,4 +1,4 @@
-"""The numbers of a block in SI units, whether they make one that rocks, and one that can be."""
+"""The numbers of a block in SI units, and checks whether it can rock and can exist."""
 
 import math
 from dataclasses import dataclass, field
@@ -13,23 +13,23 @@ _PERCENT: Final = 0.01
 
 
 class BodyGeometry:
-    """What follows from where the centre of mass of a body is above its base."""
+    """Quantities that follow from the position of the centre of mass above the base of a body."""
 
-    half_width: float  # of the base, b [m]
-    centre_height: float  # h [m]
-    eccentricity: float  # of the centre of mass to the right of the middle, e_c [m]
-    shape_factor: float  # mu
-    # from the foot of the centre of mass to both ends of the base, b + e_c and b - e_c [m]
+    half_width: float  # b, half the width of the base [m]
+    centre_height: float  # h, height of the centre of mass above the base [m]
+    eccentricity: float  # e_c, distance of the centre of mass to the right of the middle [m]
+    shape_factor: float  # mu [1]
+    # horizontal distances from the centre of mass to the ends of the base, b + e_c, b - e_c [m]
     left: float
     right: float
-    radius: float  # R0, from an end of the base to that centre, were it above the middle [m]
+    radius: float  # R0, distance from an end of the base to the point h above its middle [m]
 
     def __post_init__(self) -> None:
         b, beside = self.half_width, self.eccentricity
         vars(self).update(left=b + beside, right=b - beside, radius=hypot(b, self.centre_height))
 
     def frequency_at(self, gravity: float) -> float:
-        """Angular frequency omega of Eq. (6) under a given gravity [rad s^-1]."""
+        """Angular frequency omega of Eq. (6) at an acceleration of gravity [rad s^-1]."""
         mu = self.shape_factor
         return sqrt(mu / (1.0 + mu) * gravity / self.radius)
 
@@ -38,8 +38,8 @@ class BodyGeometry:
 class BlockSI(BodyGeometry):
     """Geometry and mass of a block in SI units, :eq:`eq-eccentric-body`.
 
-    The centre of mass stands `centre_height` above the base and `eccentricity` to the right of
-    its middle; then angles, radii and restitutions differ to the left and to the right.
+    The centre of mass is `centre_height` above the base and `eccentricity` to the right of its
+    middle. With an eccentricity, angles, radii and restitutions differ between left and right.
     """
 
     width: float
@@ -61,30 +61,30 @@ class BlockSI(BodyGeometry):
 
     @property
     def overturning_angle(self) -> float:
-        """Overturning angle theta = arctan(b/h) [rad], Eq. (1); the lesser of both sides."""
+        """Overturning angle theta = arctan(b/h), Eq. (1); the lesser of both sides [rad]."""
         return atan2(min(self.left, self.right), self.centre_height)
 
     @property
     def inertia(self) -> float:
-        """I_O about the centre of mass [kg m^2]."""
+        """Moment of inertia I_O about the centre of mass [kg m^2]."""
         return self.mass * self.radius * self.radius / self.shape_factor
 
     @property
     def frequency(self) -> float:
-        """Omega of Eq. (6) under standard gravity [rad s^-1]."""
+        """Angular frequency omega of Eq. (6) at standard gravity [rad s^-1]."""
         return self.frequency_at(STANDARD_GRAVITY)
 
     @property
     def maximum_restitution(self) -> float:
-        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4); the lesser of both directions."""
+        """eps_max = (1 + mu cos 2 theta)/(1 + mu), Eq. (4); the lesser of both corners."""
         return min(greatest_restitutions(self))
 
 
 def greatest_restitutions(body: BodyGeometry) -> tuple[float, float]:
-    """Give the ratio of angular velocities at an impact on the left and on the right corner.
+    """Give the ratios of the angular velocities after and before impacts, left and right corner.
 
-    Of a rigid body that rolls over without bouncing, :eq:`eq-eccentric-impact`; Eq. (4) where
-    the centre of mass is above the middle.
+    For a rigid body that goes on rocking about this corner without a bounce,
+    :eq:`eq-eccentric-impact`; this is Eq. (4) if the centre of mass is above the middle.
     """
     mu, e = body.shape_factor, body.eccentricity
     b, h = body.half_width, body.centre_height
@@ -113,13 +113,13 @@ def check_representable(si: BlockSI, owner: str) -> None:
         return
     msg = (
         f"{owner}: a block of {si.width:.4g} m by {si.height:.4g} m and {si.mass:.4g} kg has a "
-        "moment of inertia that a computer's numbers cannot hold"
+        "moment of inertia out of the range of floating-point numbers"
     )
     raise ComponentError(msg)
 
 
 def squat(si: BlockSI, owner: str) -> list[str]:
-    """Tell of a body so squat that it does not rock on after an impact, Eq. (5)."""
+    """Warn of a body so squat that it does not continue to rock after an impact, Eq. (5)."""
     if si.maximum_restitution > 0.0:
         return []
     return [
@@ -132,10 +132,10 @@ def squat(si: BlockSI, owner: str) -> list[str]:
 
 def unphysical_inertia(si: BlockSI) -> list[str]:
     """Warn of an inertia that no body within the rectangle has, :eq:`eq-greatest-inertia`."""
-    radius = si.radius  # by which sizes are divided, so that squares hold any of them
+    radius = si.radius  # lengths are divided by it, so that squares do not overflow
     beside = (si.left / radius) * (si.right / radius)
     above = (si.centre_height / radius) * ((si.height - si.centre_height) / radius)
-    least = 1.0 / (beside + above)  # of all the mass in the corners
+    least = 1.0 / (beside + above)  # with all mass in the corners
     if si.shape_factor >= (1.0 - _ROUNDING) * least:
         return []
     greatest = si.inertia * (si.shape_factor / least)

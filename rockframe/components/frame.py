@@ -1,4 +1,4 @@
-"""The frame building as an equivalent rigid block, Eqs. (21) to (23)."""
+"""A frame building as an equivalent rigid block, Eqs. (21) to (23)."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -23,10 +23,10 @@ _CORNERS: Final = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
 
 
 class FrameEquivalent(Block):
-    """A frame building as the rigid block that rocks like it; stands wherever a block does.
+    """A frame building as its equivalent rigid block; it can replace a block in any scene.
 
-    Built from the equivalent parameters, as in the paper's Table 2, or by
-    :meth:`from_members` from what the building consists of.
+    It is built from the equivalent parameters, as in Table 2 of the paper, or by
+    :meth:`from_members` from the members of the building.
 
     Raises
     ------
@@ -39,15 +39,15 @@ class FrameEquivalent(Block):
     Warns
     -----
     ModelWarning
-        The shape factor is below 1. In the plane all mass lies within R0 of
-        the centre, so that :eq:`eq-frame-shape-factor` gives 1 or more. The
-        value is used as given, for Table 2 has such a one.
+        The shape factor is below 1. In the plane all mass lies within R0 of the centre, so that
+        :eq:`eq-frame-shape-factor` gives 1 or more. The value is used nevertheless, as Table 2
+        has one below 1.
 
     Notes
     -----
     Width B' = B_x and height H' = H are those of the building, Eq. (21); the mass is that
-    of all members together. A solid rectangle's shape factor, 3, is not assumed: a frame
-    is hollow.
+    of all members together. The shape factor 3 of a solid rectangle is not assumed, as a frame is
+    hollow.
 
     Examples
     --------
@@ -79,10 +79,10 @@ class FrameEquivalent(Block):
         density: QuantityLike | None = None,
         centre_of_mass: str | None = None,
     ) -> Self:
-        """Build the equivalent of a building from what it consists of.
+        """Build the equivalent block of a building from its members.
 
-        Either give `members`, or the measures of a regular frame, which are
-        those of :class:`RegularFrame`.
+        Give either `members`, or the dimensions of a regular frame, which are those of
+        :class:`RegularFrame`.
 
         Parameters
         ----------
@@ -91,32 +91,30 @@ class FrameEquivalent(Block):
         width : str or Quantity
             Width B_x of the building in the plane of rocking [m].
         height : str or Quantity, optional
-            Height H of the building; follows from `storey_heights` [m].
+            Height H of the building; `storey_heights` determine it, too [m].
         depth : str or Quantity, optional
-            Depth B_y, perpendicular to the plane of rocking; a regular frame's
-            is `width` unless given. With `members` only the space proportion
-            depends on it [m].
+            Depth B_y, perpendicular to the plane of rocking; that of a regular frame is `width`
+            unless given. With `members` only the space proportion depends on it [m].
         storeys : int, optional
             Number of storeys of equal height.
         storey_heights : sequence of str or Quantity, or str, optional
             Height of every storey from the lowest up, instead of `storeys` and
             `height` [m].
         column_width, column_depth : str or Quantity, optional
-            Columns, in and perpendicular to the plane; square unless
+            Sizes of the columns, in and perpendicular to the plane of rocking; square unless
             `column_depth` is given [m].
         beam_height, beam_width : str or Quantity, optional
-            Edge beams; the height includes the slab [m].
+            Sizes of the edge beams; the height includes the slab [m].
         slab_thickness : str or Quantity
-            Slabs [m].
+            Thickness of the slabs [m].
         infill_thickness : str, Quantity or None
-            Infill walls; None for no walls [m].
+            Thickness of the infill walls; None for no walls [m].
         density : str or Quantity, optional
             Mass per volume of all members of a regular frame [kg m^-3].
         centre_of_mass : {"members", "middle"}, optional
-            ``"members"`` takes the centre of mass, its height and how far it is beside the
-            middle, where the members have it: the default for a list of members.
-            ``"middle"`` takes it half way up the middle of the building, as the paper does: the
-            default for a regular frame.
+            ``"members"``, the default for a list of members: the centre of mass of the members,
+            with its height and eccentricity. ``"middle"``, the default for a regular frame: the
+            middle of the outline at half the height, as in the paper.
 
         Returns
         -------
@@ -127,25 +125,25 @@ class FrameEquivalent(Block):
         UnitsError
             A value has the wrong unit, or none.
         ComponentError
-            Arguments are missing, exclude one another or do not fit; a member
-            reaches beyond the building's outline; two have the same name; or
-            together they fill more than the building.
+            Arguments are missing, exclude one another or do not fit; a member reaches beyond the
+            outline of the building; two members have the same name; or together they fill more
+            than the building.
 
         Warns
         -----
         ModelWarning
-            With ``"middle"``: the centre of mass lies more than H/10 above or below
-            H/2, or more than B/10 beside the middle.
+            With ``"middle"``: the centre of mass of the members lies more than H/10 above or
+            below H/2, or more than B/10 to one side of the middle.
 
         Notes
         -----
-        With ``"middle"``, shape factor :eq:`eq-frame-shape-factor`: the inertia is about O,
-        half way up the middle of the building. The centre of mass of a building with heavy
-        floors lies higher (:attr:`centre_of_mass_height`): by 2.5 to 5.7 % of H in the paper's
-        frames, by up to 12 % without their walls. At 10 % of H the real building overturns at
-        a slope a sixth below tan(theta); from there on a warning says so. With ``"members"``,
-        shape factor :eq:`eq-frame-about-centre`. Space proportion
-        :eq:`eq-frame-space-proportion`.
+        With ``"middle"`` the shape factor is :eq:`eq-frame-shape-factor`, with the moment of
+        inertia about O, the middle of the outline at half the height. The centre of mass of a
+        building with heavy floors lies higher (:attr:`centre_of_mass_height`): by 2.5 to 5.7 % of
+        H in the frames of the paper, and by up to 12 % without their walls. If it is 10 % of H
+        higher, the tangent of the real overturning angle is a sixth below tan(theta); beyond this
+        a warning is issued. With ``"members"`` the shape factor is :eq:`eq-frame-about-centre`.
+        The space proportion is :eq:`eq-frame-space-proportion`.
 
         Examples
         --------
@@ -182,17 +180,17 @@ class FrameEquivalent(Block):
 
     @classmethod
     def from_density(cls, **sizes: Any) -> Self:
-        """Refuse: a frame does not fill its outline, so that its density gives no mass.
+        """Raise an error: a frame does not fill its outline, so its density gives no mass.
 
         Parameters
         ----------
         **sizes : object
-            As of :meth:`Block.from_density`.
+            Arguments of :meth:`Block.from_density`.
 
         Returns
         -------
         FrameEquivalent
-            None, ever.
+            It never returns.
 
         Raises
         ------
@@ -200,19 +198,19 @@ class FrameEquivalent(Block):
             Always.
         """
         msg = (
-            f"{cls.__name__}.from_density: a frame is hollow, its outline and density do not give "
-            f"its mass; use {cls.__name__}.from_members(...), or give the mass"
+            f"{cls.__name__}.from_density: outline and density do not give the mass of a frame, "
+            f"which is hollow; use {cls.__name__}.from_members(...), or give the mass"
         )
         raise ComponentError(msg)
 
     @classmethod
     def from_dict(cls, arguments: Mapping[str, float | str]) -> Self:
-        """Build the frame that :meth:`to_dict` described, members included.
+        """Build the frame from the result of :meth:`to_dict`, with its members.
 
         Parameters
         ----------
         arguments : mapping
-            Of the constructor, or of :meth:`from_members`.
+            Arguments of the constructor, or of :meth:`from_members`.
 
         Returns
         -------
@@ -223,7 +221,7 @@ class FrameEquivalent(Block):
         SchemaError
             The members are not readable.
         ComponentError
-            It describes a component of another class.
+            The mapping describes a component of another class.
         TypeError, UnitsError, ComponentError
             As the constructor.
 
@@ -246,13 +244,12 @@ class FrameEquivalent(Block):
         return cls._of_members(**given)
 
     def replace(self, **changes: Any) -> Self:
-        """Build a frame of which some parameters are others.
+        """Build a frame with some parameters changed.
 
         Parameters
         ----------
         **changes
-            Arguments of the constructor; of :meth:`from_members`, where the frame was built
-            by that.
+            Arguments of the constructor, or of :meth:`from_members` if it built the frame.
 
         Returns
         -------
@@ -269,13 +266,13 @@ class FrameEquivalent(Block):
         return type(self).from_members(**replaced(arguments, changes, RegularFrame.alternatives))
 
     def parameters(self) -> tuple[str, ...]:
-        """Name the numbers of the block that the frame stands for, other than zero.
+        """Name the numbers of the equivalent block other than zero.
 
         Returns
         -------
         tuple of str
-            Also of a frame that was built from its members; one of which such a number is
-            scaled is given by its equivalent parameters.
+            A frame built from members has them, too; scaling one of them gives a frame with
+            equivalent parameters, without members.
 
         Examples
         --------
@@ -290,7 +287,7 @@ class FrameEquivalent(Block):
 
     @property
     def members(self) -> tuple[Member, ...]:
-        """Members that the frame was built from; none if it was built from its parameters."""
+        """Members of the frame; none if it was built from equivalent parameters."""
         return () if self._building is None else self._building.members
 
     def _shapes(self) -> list[Polygon]:
@@ -309,31 +306,30 @@ class FrameEquivalent(Block):
 
     @property
     def space_proportion(self) -> float | None:
-        """Chi of Eq. (23), None where the depth or a member's volume is unknown [1]."""
+        """Space proportion chi, Eq. (23); None if the depth or a volume is unknown [1]."""
         return None if self._building is None else self._building.space_proportion
 
     @property
     def centre_of_mass_height(self) -> Quantity | None:
-        """Height of the members' centre of mass; `centre_height` is the model's [m]."""
+        """Height of the centre of mass of the members; the model uses `centre_height` [m]."""
         if self._building is None:
             return None
         return quantity(self._building.centre_of_mass[1], LENGTH)
 
     def members_table(self) -> xr.Dataset:
-        """Give one row for each member: mass, place, size, inertia.
+        """Give a table of mass, position, size and moment of inertia of all members.
 
         Returns
         -------
         xarray.Dataset
-            Dimension ``member``, labelled by name and ``kind``. ``inertia`` is about the
-            member's own centre, ``inertia_about_middle`` about O, half way up
-            the middle of the building. What is unknown is NaN. The attributes
-            hold the sums.
+            Dimension ``member``, labelled by name and ``kind``. ``inertia`` is about the centre
+            of mass of the member, ``inertia_about_middle`` about O, the middle of the outline at
+            half the height. Unknown values are NaN. The attributes contain the sums.
 
         Raises
         ------
         ComponentError
-            The frame was built from its parameters and knows no members.
+            The frame was built from equivalent parameters, without members.
 
         Examples
         --------
@@ -346,7 +342,7 @@ class FrameEquivalent(Block):
         building = self._building
         if building is None:
             msg = (
-                "FrameEquivalent: there are no members to show, for the frame was built from its "
+                "FrameEquivalent: there are no members, as the frame was built from its "
                 "equivalent parameters; use FrameEquivalent.from_members(...)"
             )
             raise ComponentError(msg)

@@ -1,6 +1,6 @@
-"""What a frame is built from, the measures of a regular one or a list of members.
+"""The building of a frame, from the dimensions of a regular one or from a list of members.
 
-Also the mass, inertia, shape factor and space proportion of members.
+It has mass, inertia, shape factor and space proportion of its members.
 """
 
 import json
@@ -19,27 +19,27 @@ from rockframe.errors import ComponentError, shown
 from rockframe.units import INERTIA, LENGTH, MASS, POSITIVE, to_si
 
 _ROUNDING: Final = 1e-9  # relative to the outline
-_FAR: Final = 0.1  # offset of the centre of mass, relative to the outline, that is warned about
-_REMEDY: Final = "centre_of_mass='members' takes it where it is"
+_FAR: Final = 0.1  # offset of the centre of mass over the outline that causes a warning
+_REMEDY: Final = "centre_of_mass='members' uses its real position"
 
 
 class CentreOfMass(StrEnum):
-    """Where the centre of mass of a frame is taken to be."""
+    """Assumed position of the centre of mass of a frame."""
 
     MEMBERS = "members"
-    """Where the members have it."""
+    """Centre of mass of the members."""
     MIDDLE = "middle"
-    """In the middle of the outline, as in Eqs. (21) and (22)."""
+    """Middle of the outline, as in Eqs. (21) and (22)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Building:
-    """Members within outer sizes [m], and the arguments that build them again."""
+    """Members in a building of some outer dimensions [m], and its arguments."""
 
     members: tuple[Member, ...]
     width: float
     height: float
-    depth: float | None  # where it is known
+    depth: float | None  # None if it is unknown
     arguments: dict[str, float | str]
     taken: CentreOfMass
 
@@ -50,17 +50,17 @@ class Building:
 
     @property
     def middle(self) -> tuple[float, float]:
-        """O, half way up the middle: coordinates x, y [m]."""
+        """O, the middle of the outline: coordinates x, y [m]."""
         return 0.0, 0.5 * self.height
 
     @property
     def centre_of_mass(self) -> tuple[float, float]:
-        """Coordinates x, y of that of the members, wherever it is taken to be [m]."""
+        """Coordinates x, y of the centre of mass of the members, also with "middle" [m]."""
         return centre_of_mass([member.si for member in self.members])
 
     @property
     def space_proportion(self) -> float | None:
-        """Chi of :eq:`eq-frame-space-proportion`; None where a volume is unknown [1]."""
+        """Chi of :eq:`eq-frame-space-proportion`; None if a volume is unknown [1]."""
         shares = list[float]()
         for si in (member.si for member in self.members):
             if self.depth is None or si.width is None or si.height is None or si.depth is None:
@@ -71,7 +71,7 @@ class Building:
         return math.fsum(shares)
 
     def shape_factor(self, point: tuple[float, float], radius: float) -> float:
-        """Mu about a point by a radius, summed up as :eq:`eq-frame-mean` [1]."""
+        """Shape factor for inertia about a point and a radius, by :eq:`eq-frame-mean` [1]."""
         inverse = mean_by_mass(
             [member.si for member in self.members], lambda si: _spread(si, point, radius)
         )
@@ -85,14 +85,14 @@ class Building:
             "height": f"{self.height!r} {LENGTH.unit}",
             "mass": f"{mass!r} {MASS.unit}",
         }
-        if self.taken is CentreOfMass.MIDDLE:  # of eq-frame-shape-factor
-            # members may reach over the outline by rounding
+        if self.taken is CentreOfMass.MIDDLE:  # eq-frame-shape-factor
+            # members may exceed the outline by rounding
             mu = max(1.0, self.shape_factor(self.middle, self.radius))
             return {**arguments, "shape_factor": mu}
         x, y = self.centre_of_mass
         if abs(x) > CENTRED * self.width:
             arguments["eccentricity"] = f"{x!r} {LENGTH.unit}"
-        # of eq-frame-about-centre
+        # eq-frame-about-centre
         about_centre = self.shape_factor((x, y), math.hypot(0.5 * self.width, y))
         if math.isinf(about_centre) and math.isfinite(mass):
             msg = f"{owner}: all mass is in one point, so that the building has no inertia"
@@ -101,7 +101,7 @@ class Building:
         return {**arguments, "centre_height": centre_height, "shape_factor": about_centre}
 
     def cautions(self) -> list[str]:
-        """Say where the centre of mass is far from where it is taken to be."""
+        """Warn of a centre of mass far from its assumed position."""
         if self.taken is CentreOfMass.MEMBERS:
             return []
         x, y = self.centre_of_mass
@@ -110,30 +110,30 @@ class Building:
         if abs(above) > _FAR:
             cautions.append(
                 f"the centre of mass lies {y:.4g} m above the base, at {0.5 + above:.3g} of the "
-                "height; the model takes it at half the height, and an overturning angle of "
+                "height; the model assumes half the height, and an overturning angle of "
                 f"{math.atan2(self.width, self.height):.4g} rad instead of "
                 f"{math.atan2(0.5 * self.width, y):.4g} rad; {_REMEDY}"
             )
         if abs(beside) > _FAR:
             cautions.append(
                 f"the centre of mass lies {abs(x):.4g} m {'right' if x > 0.0 else 'left'} of the "
-                f"middle of a base of {self.width:.4g} m; the model takes it in the middle; "
+                f"middle of a base of {self.width:.4g} m; the model assumes the middle; "
                 f"{_REMEDY}"
             )
         return cautions
 
     def check(self, owner: str) -> None:
-        """Refuse members that do not make a building of this outline."""
+        """Refuse members that do not form a building within this outline."""
         members = self.members
         if not 0.0 < self.radius < math.inf:
-            msg = f"{owner}: {self.width} m by {self.height} m is no building's size"
+            msg = f"{owner}: {self.width} m by {self.height} m is not the size of a building"
             raise ComponentError(msg)
         if not members:
             msg = f"{owner}: members is empty; at least one is needed"
             raise ComponentError(msg)
         twice = [name for name, n in Counter(member.name for member in members).items() if n > 1]
         if twice:
-            msg = f"{owner}: members need different names, found twice: {', '.join(twice)}"
+            msg = f"{owner}: members need different names, got twice: {', '.join(twice)}"
             raise ComponentError(msg)
         for member in members:
             self._check_within(member, owner)
@@ -160,7 +160,7 @@ class Building:
             if low < bottom - slack or high > top + slack:
                 msg = (
                     f"{owner}: member {member.name!r} reaches from {axis} = {low:.6g} m to "
-                    f"{high:.6g} m, beyond the building, which lies from {bottom:.6g} m to "
+                    f"{high:.6g} m, beyond the building, which extends from {bottom:.6g} m to "
                     f"{top:.6g} m"
                 )
                 raise ComponentError(msg)
@@ -175,14 +175,14 @@ class Building:
             largest = si.mass * (self.radius - distance) * (self.radius + distance)
             msg = (
                 f"{owner}: member {member.name!r} has an inertia of {si.inertia:.6g} "
-                f"{INERTIA.unit}, but with its mass and place no more than {largest:.6g} "
-                f"{INERTIA.unit} fits into the building"
+                f"{INERTIA.unit}; with its mass and position at most {largest:.6g} "
+                f"{INERTIA.unit} fit into the building"
             )
             raise ComponentError(msg)
 
 
 def _spread(si: MemberSI, point: tuple[float, float], radius: float) -> float:
-    """Mean square distance of a member's mass from a point, over the square of a radius."""
+    """Give the mean square distance of a member's mass from a point, over a radius squared."""
     if si.width is None or si.height is None:
         turning = si.inertia / si.mass / radius / radius
     else:
@@ -197,7 +197,7 @@ _OUTLINE: Final = ("width", "height", "depth")
 def building_of(
     members: object, centre_of_mass: object, measures: Mapping[str, Any], owner: str
 ) -> Building:
-    """Build a frame from a list of its members, or a regular one."""
+    """Make a building from a list of members, or from the dimensions of a regular frame."""
     usual = CentreOfMass.MIDDLE if members is None else CentreOfMass.MEMBERS
     taken = usual
     if centre_of_mass is not None:
@@ -213,14 +213,14 @@ def building_of(
 
 
 def _regular(measures: Mapping[str, Any], owner: str, taken: CentreOfMass) -> Building:
-    """Take a regular frame apart."""
+    """Make the building of a regular frame."""
     needed = ["column_width", "beam_height", "beam_width", "density"]
     if measures.get("storey_heights") is None:
         needed = ["storeys", "height", *needed]
     missing = [name for name in needed if measures.get(name) is None]
     if missing:
         msg = (
-            f"{owner}: give members, or the measures of a regular frame, of which "
+            f"{owner}: give members, or the dimensions of a regular frame, of which "
             f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
         )
         raise ComponentError(msg)
@@ -236,7 +236,7 @@ def _regular(measures: Mapping[str, Any], owner: str, taken: CentreOfMass) -> Bu
 def _of_list(
     members: object, measures: Mapping[str, Any], owner: str, taken: CentreOfMass
 ) -> Building:
-    """Read a list of members, and the sizes of their building."""
+    """Make a building from a list of members and its outer dimensions."""
     foreign = [
         name
         for name, value in measures.items()
@@ -245,7 +245,7 @@ def _of_list(
         and not (isinstance(value, str) and value == _DEFAULTS.get(name))
     ]
     if foreign:
-        msg = f"{owner}: give members or {', '.join(foreign)}, not both; members need none of them"
+        msg = f"{owner}: give members or {', '.join(foreign)}, not both"
         raise ComponentError(msg)
     if measures.get("height") is None:
         msg = f"{owner}: members need the height of the building; it is missing"

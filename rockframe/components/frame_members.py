@@ -1,4 +1,4 @@
-"""A member of a building: what Eqs. (22) and (23) sum over; the table of members."""
+"""A member of a building, over which Eqs. (22) and (23) sum, and the table of members."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ from rockframe.version import __version__
 
 @dataclass(frozen=True)
 class MemberSI(PlaneMass):
-    """A member in SI units; its size is None where only its inertia is known."""
+    """A member in SI units; its size is None if only its inertia is known."""
 
     width: float | None
     height: float | None
@@ -69,10 +69,8 @@ class Member(Component):
         OneOf(("width", "height", "depth"), "inertia"),
     )
 
-    name = Text(doc="What it is called in :meth:`FrameEquivalent.members_table`.")
-    kind = Text(
-        doc='Such as ``"column"``; members of one kind can be looked at together.', default=None
-    )
+    name = Text(doc="Name in :meth:`FrameEquivalent.members_table`.")
+    kind = Text(doc='Kind, such as ``"column"``, by which members can be grouped.', default=None)
     mass = Parameter(MASS, POSITIVE, doc="Mass m_i.", default=DERIVED)
     density = Parameter(
         DENSITY,
@@ -145,12 +143,12 @@ class Member(Component):
         centre: tuple[float, float],
         size: tuple[float, float, float],
     ) -> Self:
-        """Make a rectangular member from SI numbers, without reading them as texts first.
+        """Make a rectangular member from numbers in SI units, without conversion.
 
         Parameters
         ----------
         name, kind : str
-            What it is.
+            Name and kind.
         density : float
             Mass per volume [kg m^-3].
         centre : tuple of float
@@ -201,7 +199,7 @@ class Member(Component):
         for holds, rule in rules:
             if not holds:
                 found = ", ".join(sorted(there)) or "none of them"
-                msg = f"{owner}: {rule}; {found} given"
+                msg = f"{owner}: {rule}; got {found}"
                 raise ComponentError(msg)
 
     def _numbers(self, given: SIValues) -> MemberSI:
@@ -214,7 +212,7 @@ class Member(Component):
         if not (0.0 < mass < math.inf and inertia < math.inf):
             msg = (
                 f"Member {given.name!r}: a mass of {mass:.4g} {MASS.unit} and a moment of inertia "
-                f"of {inertia:.4g} {INERTIA.unit} are beyond what a computer's numbers can hold"
+                f"of {inertia:.4g} {INERTIA.unit} are out of the range of floating-point numbers"
             )
             raise ComponentError(msg)
         return MemberSI(mass, given.x, given.y, inertia, given.width, given.height, given.depth)
@@ -240,7 +238,7 @@ _COLUMNS: Final = {
 def members_table(
     members: Sequence[Member], height: float, attributes: dict[str, float | None]
 ) -> xr.Dataset:
-    """Put members of a building of a height [m] into a table, with what the sums come to."""
+    """Give a table of the members of a building of some height [m], with sums as attributes."""
     variables: dict[str, Any] = {}
     rows = [_row(member.si, height) for member in members]
     for name, (unit, words) in _COLUMNS.items():

@@ -1,4 +1,4 @@
-"""A regular frame on four columns, taken apart into its members."""
+"""A regular frame on four columns, and its members."""
 
 import itertools
 import math
@@ -34,7 +34,7 @@ INFILL_THICKNESS: Final = "0.15 m"
 """Thickness of the infill walls of the paper's frames (section 4.2)."""
 
 _NO_INFILL: Final = "none"
-# the bound keeps a slip of the pen from filling the memory
+# the bound keeps a mistyped number from filling the memory
 _COUNT: Final = Condition(
     "a whole number from 1 to 1000",
     lambda number: 1.0 <= number <= 1000.0 and number.is_integer(),
@@ -64,7 +64,7 @@ class RegularFrameSI:
 
     @property
     def height(self) -> float:
-        """Level of the topmost slab's top [m]."""
+        """Level of the top of the highest slab [m]."""
         return self.levels[-1]
 
 
@@ -75,7 +75,7 @@ class StoreyCount(Declared[int, Missing]):
     annotation = RatioLike
 
     def read(self, given: object, owner: str) -> float:
-        """Take the number."""
+        """Read the number."""
         return to_ratio(given, owner=owner, name=self.name, condition=self.condition, example="3")
 
 
@@ -109,7 +109,7 @@ class StoreyHeights(Declared[Quantity, Missing]):
 
 
 class InfillThickness(Declared[Quantity | None, str]):
-    """Thickness of walls, where there may be none: None, or ``"none"``; zero in SI units."""
+    """Thickness of walls; None or ``"none"`` for no walls, which is zero in SI units."""
 
     written_as = "str, Quantity or None"
     annotation = QuantityLike | None
@@ -122,7 +122,7 @@ class InfillThickness(Declared[Quantity | None, str]):
         return to_si(given, self.measure, owner=owner, name=self.name, condition=self.condition)
 
     def write(self, value: float) -> str:
-        """Write the thickness, or that there are no walls."""
+        """Write the thickness, or ``"none"``."""
         return f"{value!r} {self.unit}" if value else _NO_INFILL
 
     def public(self, value: float) -> Quantity | None:
@@ -142,14 +142,13 @@ class RegularFrame(Component):
 
     Notes
     -----
-    Four columns stand in the corners and are as high as the building. Every
-    storey ends in a slab over the whole plan, cut out where the columns pass,
-    with its top at the storey's level. Four edge beams, flush with the outer
-    faces, run between the columns below it, deep by beam height less slab
-    thickness. Two infill walls stand in every storey in the outer planes
-    parallel to rocking, clear between columns, from the slab below to the beam
-    above. The volumes add up to :eq:`eq-frame-volume`, which gives the printed
-    space proportions of the paper's Table 1.
+    Four columns stand in the corners and are as high as the building. Every storey has a slab over
+    the whole plan, except where the columns pass, with its top at the level of the storey. Below
+    the slab four edge beams run between the columns, flush with the outer faces; their height
+    below it is the beam height less the slab thickness. Every storey has two infill walls in the
+    outer planes parallel to the plane of rocking, between the columns, from the slab below to the
+    beam above. The volumes add up to :eq:`eq-frame-volume`, which gives the space proportions in
+    Table 1 of the paper.
 
     Examples
     --------
@@ -249,7 +248,7 @@ class RegularFrame(Component):
         if not one_by_one and not all(of_all):
             _refuse("give storeys and height, or storey_heights")
         if one_by_one and any(of_all):
-            _refuse("storey_heights tells the storeys and the height; give them without it")
+            _refuse("storey_heights determines storeys and height; do not give these with it")
 
     def _hold(self, values: Mapping[str, object]) -> None:
         square = {
@@ -272,14 +271,14 @@ class RegularFrame(Component):
 
     @property
     def members(self) -> tuple[Member, ...]:
-        """All members: the columns, then slab, beams and walls of each storey upwards."""
+        """All members: the columns, then slab, beams and walls of each storey from below."""
         return tuple(_members(self.si))
 
 
 def _check_fit(si: RegularFrameSI) -> None:
     section = min(si.column_width, si.column_depth)
     rules = (
-        # (holds, what must lie below what)
+        # (holds, name, range of its value)
         (2.0 * si.column_width < si.width, "column_width", "less than half the width"),
         (2.0 * si.column_depth < si.depth, "column_depth", "less than half the depth"),
         (si.beam_height >= si.slab_thickness, "beam_height",

@@ -1,4 +1,4 @@
-"""The state a run starts from."""
+"""The state at the start of a run."""
 
 import math
 import re
@@ -19,7 +19,7 @@ from rockframe.units import (
 
 
 def _in_degrees(rotation: str) -> str:
-    """Ask whether degrees were meant, if the rotation was given in radians."""
+    """Give the question whether degrees were meant by a rotation in radians."""
     degrees = re.sub(r"\brad(ians?)?\b", "deg", rotation)
     return "" if degrees == rotation else f"; was {shown(degrees)} meant?"
 
@@ -32,7 +32,7 @@ _TILTED: Final = Condition(
 
 @dataclass(frozen=True)
 class InitialStateSI:
-    """Initial state in SI units; ``None`` asks for that at rest, or for vertical equilibrium."""
+    """Initial state in SI units; ``None`` means that at rest, or vertical equilibrium."""
 
     rotation: float | None
     angular_velocity: float
@@ -41,14 +41,14 @@ class InitialStateSI:
 
 
 class InitialState(Component):
-    """Rotation and velocities at the start of a run; those at rest unless given.
+    """Rotation, displacement and velocities at the start of a run; those at rest unless given.
 
     Raises
     ------
     UnitsError
         A value has the wrong unit, or none.
     ComponentError
-        Not finite, or a rotation of a right angle and more.
+        A value is not finite, or the rotation is a right angle or more.
 
     Examples
     --------
@@ -71,8 +71,8 @@ class InitialState(Component):
     )
     vertical_displacement = Parameter(
         _RISE,
-        doc="Of the centre of mass from static equilibrium, upwards; unless given, the block "
-        "starts in vertical equilibrium at its rotation.",
+        doc="Upward displacement of the centre of mass from static equilibrium; unless given, "
+        "the block starts in vertical equilibrium at its rotation.",
         default=None,
     )
     vertical_velocity = Parameter(

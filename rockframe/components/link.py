@@ -1,4 +1,4 @@
-"""Ties between points of bodies and the ground, tendons, loads, and a wall behind a body."""
+"""Links: ties between points of bodies and the ground, tendons, loads, and a wall behind a body."""
 
 from enum import StrEnum
 from typing import Any, ClassVar, Final, Literal
@@ -35,11 +35,11 @@ from rockframe.units import (
 )
 
 BODY: Final = 1
-"""The body that a link is on unless another is named."""
+"""Number of the body that a link acts on by default."""
 
 
 class Link(Component):
-    """What acts on a point of a body; bodies are counted from the top down.
+    """A part that acts on a point of a body; bodies are counted from the top down.
 
     Examples
     --------
@@ -52,7 +52,7 @@ class Link(Component):
     noun: ClassVar[str] = "link"
 
     def parameters(self) -> tuple[str, ...]:
-        """Name the arguments that are numbers other than zero, with a unit or without.
+        """Name the arguments that are numbers other than zero, without those of bodies.
 
         Returns
         -------
@@ -74,15 +74,16 @@ def _to_body() -> Count[None]:
 
 
 def _name() -> Text[None]:
-    return Text(doc="What results call it; by its number unless given.", default=None)
+    return Text(doc="Name in results; its number unless given.", default=None)
 
 
 class PointLink(Link):
-    """A link between two points: where it is; classes derived from it say how it pulls.
+    """A link between two points; a class derived from it defines its force.
 
-    Points are given where the bodies stand upright under their weight: from the middle of the
-    base of their body to the right, and above it; on the ground, or a wall that moves with it,
-    from the middle of the lowest base. Bodies are counted from the top down.
+    Coordinates of points are those with all bodies upright and at rest under their weight: to the
+    right of the middle of the base of the body, and above it. Those of a point of the ground, or
+    of a wall that moves with it, are from the middle of the lowest base. Bodies are counted from
+    the top down.
 
     Examples
     --------
@@ -100,14 +101,15 @@ class PointLink(Link):
 
 
 class Restrainer(PointLink):
-    """A tie, an anchor or a bar between two points: a spring beside a dashpot.
+    """A tie, an anchor or a bar between two points: a spring and a dashpot in parallel.
 
-    It pulls only, with a force that grows from where it becomes taut, yields or breaks at its
-    strength, and with `compression` pushes likewise. One that yields keeps what it was stretched
-    by, and hangs slack sooner. The dashpot acts both ways, taut or slack, until the tie breaks.
-    Points are given where the bodies stand upright under their weight: from the middle of the
-    base of their body to the right, and above it; on the ground, or a wall that moves with it,
-    from the middle of the lowest base.
+    The spring takes tension only, unless `compression` is set. Its force grows linearly from the
+    elongation at which it becomes taut. It yields or breaks at its strength. A tie that has
+    yielded keeps its plastic elongation, and becomes slack earlier. The dashpot acts in both
+    directions, taut or slack, until the tie breaks. Coordinates of points are those with all
+    bodies upright and at rest under their weight: to the right of the middle of the base of the
+    body, and above it. Those of a point of the ground, or of a wall that moves with it, are from
+    the middle of the lowest base.
 
     Raises
     ------
@@ -139,24 +141,24 @@ class Restrainer(PointLink):
     preload = Parameter(
         FORCE,
         NOT_NEGATIVE,
-        doc="Force with which it pulls while the bodies stand upright under their weight alone; "
-        "none unless given.",
+        doc="Tension while the bodies stand upright under their weight alone; none unless given.",
         default=None,
     )
     strength = Parameter(
-        FORCE, POSITIVE, doc="Greatest force of its spring; without end unless given.", default=None
+        FORCE, POSITIVE, doc="Greatest force of its spring; unlimited unless given.", default=None
     )
     brittle = Flag(doc="Whether it breaks at its strength, or yields.", default=True)
     breaking_elongation = Parameter(
         THICKNESS.like("50 mm"),
         POSITIVE,
-        doc="Elongation at which it breaks, in the place of a strength; none unless given.",
+        doc="Elongation at which it breaks, in place of a strength; none unless given.",
         default=None,
     )
     damping = Parameter(
-        DAMPING, NOT_NEGATIVE, doc="Of the dashpot; none unless given.", default=None
-    )
-    compression = Flag(doc="Whether it pushes as it pulls.", default=False)
+        DAMPING, NOT_NEGATIVE,
+        doc="Damping coefficient of the dashpot; none unless given.", default=None,
+    )  # fmt: skip
+    compression = Flag(doc="Whether it takes compression as it takes tension.", default=False)
 
     def __init__(
         self,
@@ -187,9 +189,9 @@ class Restrainer(PointLink):
         if given.slack and given.preload:
             faults.append("a tie with slack has no preload: give one of them")
         if given.breaking_elongation and (given.strength or not given.brittle):
-            faults.append("one that breaks at an elongation has no strength: give one of them")
+            faults.append("a tie that breaks at an elongation has no strength: give one of them")
         if given.breaking_elongation and given.breaking_elongation <= (given.slack or 0.0):
-            faults.append("it would break, by breaking_elongation, before its slack is taken up")
+            faults.append("breaking_elongation must exceed the slack, or it breaks before it pulls")
         if given.slack and given.compression:
             faults.append("a bar that pushes has no slack: give slack or compression")
         if faults:
@@ -200,13 +202,14 @@ class Restrainer(PointLink):
 
 
 class Tendon(Link):
-    """A tendon through a body, tensioned between its top and what it stands on.
+    """A tendon through a body, tensioned between its top and the ground or the body below.
 
-    It leaves the body at a point of its base and goes on into the ground, or into the body below,
-    where it is bent over the edges of its duct as the base lifts there: it is longer by how far
-    both edges are apart. Anchored at a depth in a wide duct it is straight from there to the edge.
-    It yields or breaks at its strength. With a :class:`~rockframe.RockingFrame` it is one of each
-    column, along the axis of that and into the beam.
+    It leaves the body at a point of its base and continues into the ground, or into the body
+    below. Where the base lifts off, it is deflected at the edges of both ducts, and its elongation
+    is the distance of the edges. If it is anchored at a depth in a wide duct, it is straight from
+    the anchorage to the edge in the base. It yields or breaks at its strength. In a
+    :class:`~rockframe.RockingFrame` each column has such a tendon, along its axis and into the
+    beam.
 
     Raises
     ------
@@ -233,15 +236,15 @@ class Tendon(Link):
     )
     at = Parameter(
         LENGTH.like("0 m"),
-        doc="Its place in the base, to the right of the middle.", default="0 m",
+        doc="Place in the base, to the right of the middle.", default="0 m",
     )  # fmt: skip
     depth = Parameter(
         LENGTH, NOT_NEGATIVE,
-        doc="How far below the base it is held, in a duct that is wide; on pads and soil it must "
-        "be given.", default="0 m",
+        doc="Depth of its anchorage below the base, in a wide duct; on pads and soil it must be "
+        "given.", default="0 m",
     )  # fmt: skip
     strength = Parameter(
-        FORCE, POSITIVE, doc="Greatest force; without end unless given.", default=None
+        FORCE, POSITIVE, doc="Greatest force; unlimited unless given.", default=None
     )
     brittle = Flag(doc="Whether it breaks at its strength, or yields.", default=False)
     on_body = _on_body()
@@ -270,11 +273,11 @@ class Tendon(Link):
 
 
 class Load(Link):
-    """Forces that stay as they are, at a point that moves with a body, or a mass there.
+    """Constant forces at a point that moves with a body, or a mass at this point.
 
-    Such as a floor that bears on a façade, or the thrust of a vault. The point is given where the
-    bodies stand upright under their weight: from the middle of the base of its body to the right,
-    and above it.
+    Examples are a floor that rests on a façade, and the thrust of a vault. Coordinates of the
+    point are those with all bodies upright and at rest under their weight: to the right of the
+    middle of the base of the body, and above it.
 
     Raises
     ------
@@ -292,7 +295,7 @@ class Load(Link):
 
     noun: ClassVar[str] = "load"
 
-    at = Place(doc="Its point.")
+    at = Place(doc="Point of the body.")
     vertical = Parameter(FORCE, doc="Force downwards; none unless given.", default="0 N")
     horizontal = Parameter(FORCE, doc="Force to the right; none unless given.", default="0 N")
     moving_mass = Parameter(
@@ -336,14 +339,14 @@ def _refuse_preload(owner: str, given: SIValues) -> None:
 
 
 class WallSide(StrEnum):
-    """Where a wall is."""
+    """Side of the body on which a wall is."""
 
     LEFT = "left"
     RIGHT = "right"
 
 
 class WallImpact(StrEnum):
-    """What becomes of the angular velocity at an impact on base and wall."""
+    """Law of the angular velocity after an impact on base and wall."""
 
     SORRENTINO = "sorrentino"
     NEWTON = "newton"
@@ -359,7 +362,7 @@ _OF_SPRING: Final = ("damping", "gap", "height")
 
 
 class _Impact(Declared[Any, Any]):
-    """The parameter that is the name of a law, or the ratio itself."""
+    """A parameter that is the name of a law, or a ratio."""
 
     written_as = '{"sorrentino", "newton"} or float'
     annotation = WallImpactLike
@@ -370,7 +373,7 @@ class _Impact(Declared[Any, Any]):
         super().__init__(measure, REBOUND, doc=doc, default=default)
 
     def read(self, given: object, owner: str) -> WallImpact | float:
-        """Take the word, or the number."""
+        """Read the name of a law, or a number."""
         if isinstance(given, str) and given in list(WallImpact):
             return one_of_words(WallImpact, given, owner=owner, name=self.name)
         return to_ratio(
@@ -379,28 +382,28 @@ class _Impact(Declared[Any, Any]):
         )  # fmt: skip
 
     def write(self, value: WallImpact | float) -> float | str | None:
-        """Write the word, or the number; nothing for the usual law, which elastic walls lack."""
+        """Write the law or the number; None for the default, which elastic walls do not have."""
         if value is self.default:
             return None
         return str(value) if isinstance(value, WallImpact) else value
 
 
 class RearWall(Link):
-    """A wall behind a body, against which it rocks to one side: stiff, or elastic.
+    """A wall behind a body, so that it rocks to one side only: rigid or elastic.
 
-    A stiff one, on rigid ground, touches the body all along its height while that stands. The body
-    rocks away about its front corner; when it comes back, base and wall are struck, and it rocks
-    away again with a share of its speed, :eq:`eq-wall-impact`. Given a `stiffness` the wall is
-    elastic, on any base: a spring and a dashpot that act on the rear face at a height while they
-    are touched, behind a gap; before the spring is unloaded the dashpot may pull.
+    A rigid wall needs rigid ground, and touches the upright body along its whole height. The body
+    rocks away from it about its front corner. When it returns, it strikes base and wall, and
+    rebounds with a fraction of its angular velocity, :eq:`eq-wall-impact`. With a `stiffness` the
+    wall is elastic, and the base may be any: behind a gap, a spring and a dashpot act on the rear
+    face at a height while there is contact, which ends when the spring is unloaded.
 
     Raises
     ------
     UnitsError
         Not a pure ratio.
     ComponentError
-        A value is out of range, `wall_restitution` is given without ``restitution="newton"``, or
-        not with it, or an elastic wall with a restitution.
+        A value is out of range; only one of `wall_restitution` and ``restitution="newton"`` is
+        given; or an elastic wall has a restitution.
 
     Examples
     --------
@@ -413,7 +416,7 @@ class RearWall(Link):
 
     noun: ClassVar[str] = "wall"
 
-    side = Choice(WallSide.LEFT, doc="Where the wall is; the body rocks to the other side.")
+    side = Choice(WallSide.LEFT, doc="Side of the wall; the body rocks to the other side.")
     restitution = _Impact(
         doc="Ratio of the angular velocities after and before an impact: a law, "
         '"sorrentino" (impacts on the base, on the wall and on the base again) or "newton" (the '
@@ -428,19 +431,23 @@ class RearWall(Link):
     )
 
     stiffness = Parameter(
-        STIFFNESS, POSITIVE, doc="Of an elastic wall; it is stiff unless given.", default=None
+        STIFFNESS,
+        POSITIVE,
+        doc="Stiffness of an elastic wall; the wall is rigid unless given.",
+        default=None,
     )
     damping = Parameter(
-        DAMPING, NOT_NEGATIVE, doc="Of an elastic wall, while touched; none unless given.",
+        DAMPING, NOT_NEGATIVE,
+        doc="Damping coefficient of an elastic wall during contact; none unless given.",
         default=None,
     )  # fmt: skip
     gap = Parameter(
         THICKNESS.like("5 mm"), NOT_NEGATIVE,
-        doc="Between the body that stands and an elastic wall; none unless given.", default=None,
+        doc="Distance from the upright body to an elastic wall; none unless given.", default=None,
     )  # fmt: skip
     height = Parameter(
         LENGTH, POSITIVE,
-        doc="Above its base at which a body touches an elastic wall; its top unless given.",
+        doc="Height above its base at which a body touches an elastic wall; its top unless given.",
         default=None,
     )  # fmt: skip
     on_body = Count(doc="Number of the body, from the top down.", default=BODY)
@@ -464,12 +471,12 @@ class RearWall(Link):
 
     @property
     def elastic(self) -> bool:
-        """Whether it gives way."""
+        """Whether the wall is elastic, not rigid."""
         return self.given.stiffness is not None
 
     @property
     def direction(self) -> float:
-        """Sign of the side on which it stands, 1 for the right."""
+        """Sign of its side: 1 for the right, -1 for the left."""
         return -1.0 if self.given.side is WallSide.LEFT else 1.0
 
     def _numbers(self, given: SIValues) -> SIValues:
@@ -484,9 +491,9 @@ class RearWall(Link):
             raise ComponentError(msg)
         of_spring = [name for name in _OF_SPRING if getattr(given, name) is not None]
         if of_spring and given.stiffness is None:
-            msg = f"RearWall: {' and '.join(of_spring)} goes with a stiffness"
+            msg = f"RearWall: {' and '.join(of_spring)} goes with a stiffness, which is missing"
             raise ComponentError(msg)
         if given.stiffness is not None and given.restitution is not WallImpact.SORRENTINO:
-            msg = "RearWall: give restitution or stiffness, not both; an elastic wall throws back"
+            msg = "RearWall: give restitution or stiffness, not both; a spring has no restitution"
             raise ComponentError(msg)
         return SIValues(**vars(given), name="wall")

@@ -1,4 +1,4 @@
-"""Parameters of components, each declared once, as an attribute of its class."""
+"""Parameters of components; each is declared once, as an attribute of the class."""
 
 import re
 from enum import Enum, StrEnum
@@ -26,10 +26,10 @@ from rockframe.units import (
 
 
 class Missing(Enum):
-    """What it means that a parameter is not given, where it then has no value of its own."""
+    """Defaults of parameters without a default value."""
 
     REQUIRED = "it must be given"
-    DERIVED = "it follows from others; the property gives it always"
+    DERIVED = "it follows from others if it is not given; the property always has a value"
 
 
 REQUIRED: Final = Missing.REQUIRED
@@ -48,15 +48,15 @@ class Declared(Generic[Public, Usual]):
     measure : Measure or None
         Kind of quantity.
     condition : Condition or None
-        Range that the value must lie in.
+        Range in which the value must lie.
     doc : str
-        What it is, in a sentence; its range and unit are added.
+        Description in one sentence; range and unit are added.
     default : object
-        Value unless given, as users write it; None for one that may be missing,
-        ``DERIVED`` for one that then follows from others.
+        Default value, as users write it; None for an optional parameter, ``DERIVED`` for one
+        that follows from others if it is not given.
     """
 
-    single: ClassVar[bool] = True  # whether a value is one number or word, as along an axis
+    single: ClassVar[bool] = True  # whether a value is one number or word, so that axes can vary it
     name: str
     written_as: str
     annotation: Any
@@ -101,24 +101,24 @@ class Declared(Generic[Public, Usual]):
         raise AccessError(msg)
 
     def accept(self, given: object, owner: str) -> Any:
-        """Read what was given, where that may be nothing; `owner` is named in messages."""
+        """Read an argument that may be None if it is optional; messages begin with `owner`."""
         missing = given is None and self.default in (None, DERIVED)
         return None if missing else self.read(given, owner)
 
     def read(self, given: object, owner: str) -> Any:
-        """Read what was given: the value in SI units."""
+        """Read an argument and give its value in SI units."""
         raise NotImplementedError
 
     def write(self, value: Any) -> float | str | None:
-        """Write a value so that :meth:`read` gives the same back; None if that is needless."""
+        """Write a value in a form that :meth:`read` reads; None for a default left out."""
         return value
 
     def public(self, value: Any) -> Any:
-        """Give a value as users see it."""
+        """Give a value for users, with its unit."""
         return value
 
     def caution(self, value: Any) -> str | None:
-        """Say what is unusual about a value, if anything is."""
+        """Give a text on an unusual value, None for a usual one."""
         return None
 
 
@@ -130,12 +130,12 @@ class Parameter(Declared[Quantity, Usual]):
     measure : Measure
         Kind of quantity, with its unit and an example for messages.
     condition : Condition, optional
-        Range that the value must lie in.
+        Range in which the value must lie.
     doc : str
-        What it is, in a sentence; its range and unit are added.
+        Description in one sentence; range and unit are added.
     default : str, optional
-        Value unless given; None for one that may be missing, ``DERIVED`` for one that
-        then follows from others.
+        Default value; None for an optional parameter, ``DERIVED`` for one that follows from
+        others if it is not given.
 
     Examples
     --------
@@ -186,14 +186,14 @@ class Ratio(Declared[float, Usual]):
     Parameters
     ----------
     condition : Condition, optional
-        Range that the value must lie in.
+        Range in which the value must lie.
     doc : str
-        What it is, in a sentence; its range is added.
+        Description in one sentence; its range is added.
     default : float, optional
-        Value unless given; None for one that may be missing, ``DERIVED`` for one that
-        then follows from others.
+        Default value; None for an optional parameter, ``DERIVED`` for one that follows from
+        others if it is not given.
     example : str, optional
-        A number that makes sense, for messages.
+        A realistic value, for messages.
 
     Examples
     --------
@@ -224,7 +224,7 @@ class Ratio(Declared[float, Usual]):
         super().__init__(measure, condition, doc=doc, default=default)
 
     def read(self, given: object, owner: str) -> float:
-        """Take the number, with :func:`rockframe.units.to_ratio`."""
+        """Convert to a pure number, with :func:`rockframe.units.to_ratio`."""
         example = self.measure.example
         return to_ratio(
             given, owner=owner, name=self.name, condition=self.condition, example=example
@@ -232,14 +232,14 @@ class Ratio(Declared[float, Usual]):
 
 
 class Choice(Declared[Words, Words]):
-    """A parameter that is one of a few words; the usual one goes without saying.
+    """A parameter that is one of a few words; descriptions leave out the default.
 
     Parameters
     ----------
     default : StrEnum
-        Value unless given; its kind has the words.
+        Default value; its class has all words.
     doc : str
-        What it is, in a sentence.
+        Description in one sentence.
 
     Examples
     --------
@@ -270,7 +270,7 @@ class Choice(Declared[Words, Words]):
         return one_of_words(type(self.default), given, owner=owner, name=self.name)
 
     def write(self, value: Words) -> str | None:
-        """Write the word, unless it is the usual one."""
+        """Write the word; None for the default."""
         return None if value is self.default else str(value)
 
 
@@ -280,9 +280,9 @@ class Text(Declared[str, Usual]):
     Parameters
     ----------
     doc : str
-        What it is, in a sentence.
+        Description in one sentence.
     default : None, optional
-        For one that may be missing.
+        For an optional parameter.
 
     Examples
     --------
@@ -301,12 +301,12 @@ class Text(Declared[str, Usual]):
         super().__init__(None, None, doc=doc, default=default)
 
     def read(self, given: object, owner: str) -> str:
-        """Take the text.
+        """Check that the argument is a text.
 
         Raises
         ------
         ComponentError
-            No text, or an empty one.
+            Not a text, or an empty one.
         """
         if isinstance(given, str) and given.strip():
             return given
@@ -316,7 +316,7 @@ class Text(Declared[str, Usual]):
 
 
 class Flag(Declared[bool, bool]):
-    """A parameter that is true or false; the usual one goes without saying."""
+    """A parameter that is true or false; descriptions leave out the default."""
 
     written_as = "bool"
     annotation = bool
@@ -325,7 +325,7 @@ class Flag(Declared[bool, bool]):
         super().__init__(None, None, doc=doc, default=default)
 
     def read(self, given: object, owner: str) -> bool:
-        """Take the truth value, or the word for it."""
+        """Read a truth value, or the word ``true`` or ``false``."""
         if isinstance(given, bool | np.bool_):
             return bool(given)
         if isinstance(given, str) and given in _TRUTHS:
@@ -334,12 +334,12 @@ class Flag(Declared[bool, bool]):
         raise ComponentError(msg)
 
     def write(self, value: bool) -> str | None:
-        """Write the word, unless it is the usual one."""
+        """Write the word; None for the default."""
         return None if value is self.default else str(value).lower()
 
 
 MOST_COUNTED: Final = 1_000_000
-"""Things that are counted, above which a number is surely wrong."""
+"""Largest plausible count."""
 
 _TRUTHS: Final = {"true": True, "false": False}
 
@@ -354,7 +354,7 @@ class Count(Declared[int, Usual]):
         super().__init__(None, None, doc=doc, default=default)
 
     def read(self, given: object, owner: str) -> int:
-        """Take the number."""
+        """Read the number."""
         number = given if not isinstance(given, bool) else None
         if isinstance(number, int | np.integer | float) and 1 <= number <= MOST_COUNTED:
             whole = int(number)
@@ -364,12 +364,12 @@ class Count(Declared[int, Usual]):
         raise ComponentError(msg)
 
     def write(self, value: int) -> int | None:
-        """Write the number, unless it is the usual one."""
+        """Write the number; None for the default."""
         return None if value == self.default else value
 
 
 class Place(Declared[tuple[Quantity, Quantity], Missing]):
-    """A parameter that is a point: how far to the right it is, and how high."""
+    """A parameter that is a point: its coordinates to the right and upwards."""
 
     single = False
     written_as = "tuple of str or Quantity"
@@ -396,7 +396,7 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
         return x, y
 
     def write(self, value: tuple[float, float]) -> str:
-        """Write the numbers with their unit, so that :meth:`read` gives the same back."""
+        """Write the numbers with their unit, in a form that :meth:`read` reads."""
         return f"({value[0]!r}, {value[1]!r}) m"
 
     def public(self, value: tuple[float, float]) -> tuple[Quantity, Quantity]:
@@ -408,7 +408,7 @@ _PLACE: Final = re.compile(r"\((\S+), (\S+)\) m")
 
 
 class SIValues(SimpleNamespace):
-    """Values in SI units by their names; None of what was not given. Immutable."""
+    """Values in SI units by name, None if not given; immutable."""
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
         msg = f"values of a component are immutable; {name} cannot be set"
@@ -420,41 +420,41 @@ class SIValues(SimpleNamespace):
 
 
 def friction_at_rest(of: str) -> Ratio[None]:
-    """Declare a coefficient of friction at rest under something."""
+    """Declare a static coefficient of friction under a body."""
     words = f"Coefficient of friction under {of} while it does not slip; without one it is held."
     return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.5")
 
 
 def friction_of_slip() -> Ratio[None]:
-    """Declare a coefficient of friction of slip."""
-    words = "Coefficient of friction of slip; that at rest unless given."
+    """Declare a kinetic coefficient of friction."""
+    words = "Kinetic coefficient of friction, of slip; the static one unless given."
     return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.45")
 
 
 def check_frictions(owner: str, given: SIValues) -> SIValues:
-    """Refuse a friction of slip without one at rest, or above it."""
+    """Refuse a kinetic friction without a static one, or above it."""
     static, kinetic = given.friction, given.kinetic_friction
     if kinetic is not None and (static is None or kinetic > static):
-        found = "none is given" if static is None else f"that is {static:.6g}"
+        found = "is not given" if static is None else f"is {static:.6g}"
         msg = (
-            f"{owner}: kinetic_friction, here {kinetic:.6g}, is at most the friction at rest, and "
-            f"{found}"
+            f"{owner}: kinetic_friction must be at most the friction at rest, which {found}; got "
+            f"{kinetic:.6g}"
         )
         raise ComponentError(msg)
     return given
 
 
 CRITICAL: Final = 1.0
-"""Damping ratio beyond which nothing vibrates [1]."""
+"""Damping ratio of critical damping, above which there is no oscillation [1]."""
 
 
 class DampingRatio(Ratio[None]):
-    """A damping ratio that stands for a damping coefficient; a large one brings a warning.
+    """A damping ratio that replaces a damping coefficient; one above 1 causes a warning.
 
     Parameters
     ----------
     doc : str
-        What it is, in a sentence.
+        Description in one sentence.
     """
 
     @hinted()
@@ -462,7 +462,7 @@ class DampingRatio(Ratio[None]):
         super().__init__(NOT_NEGATIVE, doc=doc, default=None)
 
     def caution(self, value: float) -> str | None:
-        """Ask whether per cent were meant, above 1."""
+        """Ask whether per cent was meant by a value above 1."""
         if value <= CRITICAL:
             return None
         return (

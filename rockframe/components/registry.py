@@ -1,4 +1,4 @@
-"""Classes of components by their names, for the way back from a description."""
+"""Registry of the classes of components by name, to build components from descriptions."""
 
 from collections.abc import Mapping
 from inspect import signature
@@ -14,24 +14,24 @@ _TYPE: Final = "type"
 
 
 def register_class(kind: "type[Component]") -> None:
-    """Note a class by its name."""
+    """Register a class by its name."""
     known = _KINDS.setdefault(kind.__name__, kind)
     if _full_name(known) != _full_name(kind):
         msg = (
-            f"{_full_name(kind)}: there is a component of that name, {_full_name(known)}; "
-            "descriptions tell components by their names, so give this one another"
+            f"{_full_name(kind)}: another component has this name, {_full_name(known)}; "
+            "descriptions refer to components by name, so rename one of them"
         )
         raise ComponentError(msg)
     _KINDS[kind.__name__] = kind
 
 
 def kinds() -> Mapping[str, "type[Component]"]:
-    """Give all classes by their names."""
+    """Give all registered classes by name."""
     return _KINDS
 
 
 def component_from_dict(description: Mapping[str, float | str]) -> "Component":
-    """Build any component from its :meth:`Component.to_dict`."""
+    """Build a component of any class from the result of :meth:`Component.to_dict`."""
     if not isinstance(description, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
         msg = f"found {shown(description)}; expected the description of a component, a mapping"
         raise SchemaError(msg)

@@ -14,16 +14,16 @@ from rockframe.notebook import Polygon
 from rockframe.units import LENGTH, MASS, NOT_NEGATIVE, POSITIVE, QuantityLike
 
 FEWEST_COLUMNS: Final = 2
-"""A beam on one column would not stay level."""
+"""Fewest columns that keep a beam level."""
 SPACING: Final = 1.0
-"""Distance of the columns in drawings, over their height."""
+"""Default distance of the columns in drawings, over their height [1]."""
 BEAM_HEIGHT: Final = 0.2
-"""Height of the beam in drawings, over that of the columns."""
+"""Default height of the beam in drawings, over that of the columns [1]."""
 _OF_COLUMN: Final = " of column"
 
 
 class _Column(Declared[Block, Missing]):
-    """The parameter that is a block."""
+    """A parameter that is a block."""
 
     single = False
     written_as = "Block"
@@ -33,7 +33,7 @@ class _Column(Declared[Block, Missing]):
         super().__init__(None, None, doc=doc, default=REQUIRED)
 
     def read(self, given: object, owner: str) -> Block:
-        """Take the block, or what describes it."""
+        """Read a block, or the mapping that describes it."""
         if isinstance(given, Mapping):
             given = component_from_dict({"type": Block.__name__, **given})
         if not isinstance(given, Block):
@@ -41,8 +41,8 @@ class _Column(Declared[Block, Missing]):
             raise ComponentError(msg)
         if given.si.eccentricity != 0.0:
             msg = (
-                f"{owner}: the centre of mass of the {self.name} is "
-                f"{given.si.eccentricity:.6g} m beside the middle of its base; it must be above it"
+                f"{owner}: the centre of mass of the {self.name} must be above the middle of its "
+                f"base, got an eccentricity of {given.si.eccentricity:.6g} m"
             )
             raise ComponentError(msg)
         return given
@@ -56,27 +56,27 @@ class _Column(Declared[Block, Missing]):
 class RockingFrameSI:
     """Columns under a beam in SI units."""
 
-    column: BlockSI  # each of them
-    columns: int  # how many
-    beam_mass: float  # [kg]
-    spacing: float  # from axis to axis, in drawings [m]
-    beam_height: float  # in drawings [m]
+    column: BlockSI  # one column
+    columns: int  # number of columns
+    beam_mass: float  # mass of the beam [kg]
+    spacing: float  # distance between column axes in drawings [m]
+    beam_height: float  # height of the beam in drawings [m]
 
 
 class RockingFrame(Component):
-    """Equal columns that rock together under a rigid beam, as those of a bridge bent.
+    """Equal columns that rock together under a rigid beam, like those of a bridge bent.
 
-    The columns stand free on the ground and the beam free on the columns. All rotate by the same
-    angle, each about a lower corner; the beam, on their upper corners, stays level,
-    :eq:`eq-rocking-frame`.
+    The columns stand free on the ground, and the beam lies free on the columns. All columns rotate
+    by the same angle, each about a lower corner. The beam rests on their upper corners and stays
+    level, :eq:`eq-rocking-frame`.
 
     Raises
     ------
     UnitsError
         A value has the wrong unit, or none.
     ComponentError
-        The column is no :class:`Block` whose centre of mass is above the middle of its base, or
-        there are fewer than two.
+        The column is not a :class:`Block` with its centre of mass above the middle of its base,
+        or there are fewer than two columns.
 
     Examples
     --------
@@ -90,20 +90,19 @@ class RockingFrame(Component):
     si: RockingFrameSI
     noun: ClassVar[str] = "frame"
 
-    column = _Column(doc="Each of the columns.")
-    columns = Count(doc="How many columns there are, from 2 on.")
-    beam_mass = Parameter(MASS, NOT_NEGATIVE, doc="Mass of the beam, with what it carries.")
+    column = _Column(doc="One of the equal columns.")
+    columns = Count(doc="Number of columns, at least 2.")
+    beam_mass = Parameter(MASS, NOT_NEGATIVE, doc="Mass of the beam and of its load.")
     spacing = Parameter(
         LENGTH,
         POSITIVE,
-        doc="From axis to axis of the columns, in drawings, for the motion does not depend on it; "
-        "their height unless given.",
+        doc="Distance between the axes of columns, for drawings only; their height unless given.",
         default=None,
     )
     beam_height = Parameter(
         LENGTH,
         POSITIVE,
-        doc="Height of the beam, in drawings likewise; 0.2 times that of the columns unless given.",
+        doc="Height of the beam, for drawings only; 0.2 times that of the columns unless given.",
         default=None,
     )
 
@@ -123,7 +122,7 @@ class RockingFrame(Component):
 
     def _numbers(self, given: SIValues) -> RockingFrameSI:
         if given.columns < FEWEST_COLUMNS:
-            msg = f"RockingFrame: it has {FEWEST_COLUMNS} columns or more, got {given.columns}"
+            msg = f"RockingFrame: columns must be {FEWEST_COLUMNS} or more, got {given.columns}"
             raise ComponentError(msg)
         si = given.column.si
         spacing = SPACING * si.height if given.spacing is None else given.spacing
@@ -131,7 +130,7 @@ class RockingFrame(Component):
         return RockingFrameSI(si, given.columns, given.beam_mass, spacing, depth)
 
     def cautions(self) -> list[str]:
-        """Say what is unusual about the column.
+        """Give the warnings about unusual values of the column.
 
         Returns
         -------
@@ -140,25 +139,25 @@ class RockingFrame(Component):
         return self.given.column.cautions()
 
     def parameters(self) -> tuple[str, ...]:
-        """Name the numbers that the motion depends on, other than zero.
+        """Name the numbers other than zero on which the motion depends.
 
         Returns
         -------
         tuple of str
-            As "height of column", and "beam_mass".
+            For example "height of column" and "beam_mass".
         """
         of_column = (f"{name}{_OF_COLUMN}" for name in self.given.column.parameters())
         return (*of_column, *(["beam_mass"] if self.si.beam_mass else []))
 
     def with_scaled(self, name: str, factor: float) -> Self:
-        """Build a frame of which one number is larger or smaller.
+        """Build a frame with one number multiplied by a factor.
 
         Parameters
         ----------
         name : str
             One of :meth:`parameters`.
         factor : float
-            New value over old [1].
+            Ratio of the new value to the old one [1].
 
         Returns
         -------
@@ -189,7 +188,7 @@ class RockingFrame(Component):
 
 
 def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
-    """Give the corners of all columns and of the beam, from the middle of the ground [m]."""
+    """Give the corners of all columns and of the beam; the origin is amid their bases [m]."""
     half, height = si.column.half_width, si.column.height
     places = column_places(si)
     reach, top = places[-1] + 2.0 * half, height + si.beam_height
@@ -200,5 +199,5 @@ def frame_outlines(si: RockingFrameSI) -> list[list[tuple[float, float]]]:
 
 
 def column_places(si: RockingFrameSI) -> list[float]:
-    """Give how far the axes of the columns are to the right of the middle of the frame [m]."""
+    """Give the coordinates of the column axes, to the right of the middle of the frame [m]."""
     return [(k - 0.5 * (si.columns - 1)) * si.spacing for k in range(si.columns)]

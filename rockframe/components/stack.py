@@ -1,4 +1,4 @@
-"""Bodies upon one another."""
+"""A stack of bodies, one upon another."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from rockframe.errors import ComponentError, shown, unexpected_argument
 from rockframe.units import LENGTH, Quantity, QuantityLike, quantity, to_si
 
 MOST_BODIES: Final = 12
-"""Bodies of a stack: of more, contacts have more combinations than can be numbered."""
+"""Most bodies in a stack: the combined contact states of more exceed the range of integers."""
 
 
 @dataclass(frozen=True)
@@ -23,32 +23,32 @@ class StackSI:
     """A stack in SI units, from the top down."""
 
     bodies: tuple[BlockSI, ...]  # the bodies
-    # how far the middle of each body's base is to the right of that of the body below; zero of the
-    # lowest [m]
+    # distance of the middle of each base to the right of that of the body below; zero for the
+    # lowest body [m]
     offsets: tuple[float, ...]
 
 
 class Stack(Component):
-    """Blocks upon one another, each on a base of its own on the top of the block below.
+    """A stack of blocks, each with its own base on the top of the block below.
 
     Parameters
     ----------
     *bodies : Block
-        From the top down, two at least: statue and plinth, drums of a column.
+        At least two bodies, from the top down, such as statue and plinth or drums of a column.
     interfaces : sequence of Component
-        The bases between them, from the top down, one less than bodies: each a
-        :class:`TwoSpringSupport`, a :class:`WinklerSoil` or a :class:`RigidGround`. What the
-        lowest body stands on is a part of the system. Frequency and damping ratios of a base are
-        those of all that it carries, as one body.
+        The bases between the bodies, from the top down, one less than bodies: each a
+        :class:`TwoSpringSupport`, a :class:`WinklerSoil` or a :class:`RigidGround`. The base of
+        the lowest body is a part of the system. Frequency ratio and damping ratio of a base refer
+        to all bodies above it as one body.
     offsets : sequence of str or pint.Quantity, optional
-        How far the middle of the base of each body but the lowest is to the right of that of the
-        body below [m]; none unless given.
+        Distance of the middle of the base of each body but the lowest to the right of that of the
+        body below [m]; zero unless given.
 
     Raises
     ------
     ComponentError
-        There are too few or too many bodies, not one interface between each two of them, or a
-        base or an offset reaches beyond the top of the body below.
+        There are too few or too many bodies; the number of interfaces is not one less; or a base
+        reaches beyond the top of the body below.
     UnitsError
         An offset has the wrong unit, or none.
 
@@ -75,7 +75,7 @@ class Stack(Component):
         self._warn()
 
     def _keep(self, bodies: Sequence[Any], interfaces: object, offsets: object) -> None:
-        """Check what is given, and keep it."""
+        """Check the arguments and store them."""
         interfaces = several(interfaces, owner="Stack", name="interfaces", of="bases")
         beside = None if offsets is None else [
             to_si(one, LENGTH, owner="Stack", name=f"offsets[{i}]") for i, one in
@@ -96,12 +96,12 @@ class Stack(Component):
         if len(interfaces) != len(bodies) - 1:
             faults.append(
                 f"{len(bodies)} bodies have {max(len(bodies) - 1, 0)} interfaces between them, got "
-                f"{len(interfaces)}; what the lowest body stands on is a part of the system"
+                f"{len(interfaces)}; the base of the lowest body is a part of the system"
             )
         if beside is not None and len(beside) != len(bodies) - 1:
             faults.append(
-                f"offsets are those of all bodies but the lowest: {max(len(bodies) - 1, 0)}, got "
-                f"{len(beside)}"
+                f"offsets needs {max(len(bodies) - 1, 0)} values, one for each body but the "
+                f"lowest, got {len(beside)}"
             )
         if faults:
             msg = f"Stack: {'; '.join(faults)}"
@@ -120,17 +120,17 @@ class Stack(Component):
 
     @property
     def interfaces(self) -> tuple[Component, ...]:
-        """The bases between them, from the top down."""
+        """The bases between the bodies, from the top down."""
         found: tuple[Component, ...] = self.given.interfaces
         return found
 
     @property
     def offsets(self) -> tuple[Quantity, ...]:
-        """How far each body but the lowest stands to the right of the body below [m]."""
+        """Distance of each base but the lowest to the right of that of the body below [m]."""
         return tuple(quantity(one, LENGTH) for one in self.given.offsets)
 
     def cautions(self) -> list[str]:
-        """Say what is unusual about bodies and interfaces.
+        """Give the warnings about unusual values of bodies and interfaces.
 
         Returns
         -------
@@ -144,7 +144,7 @@ class Stack(Component):
         Returns
         -------
         tuple of str
-            As "height of body 1" and "stiffness of interface 1", from the top down.
+            For example "height of body 1" and "stiffness of interface 1", from the top down.
         """
         return tuple(
             f"{name} of {kind} {k}"
@@ -154,14 +154,14 @@ class Stack(Component):
         )
 
     def with_scaled(self, name: str, factor: float) -> Self:
-        """Build a stack of which one number of a body or an interface is larger or smaller.
+        """Build a stack with one number of a body or an interface multiplied by a factor.
 
         Parameters
         ----------
         name : str
             One of :meth:`parameters`.
         factor : float
-            New value over old [1].
+            Ratio of the new value to the old one [1].
 
         Returns
         -------
@@ -170,8 +170,8 @@ class Stack(Component):
         Raises
         ------
         ComponentError
-            No such parameter, or its new value is out of range, or a body is then wider than what
-            it stands on.
+            No such parameter, its new value is out of range, or a base would reach beyond the
+            body below.
         """
         self._check_name(name, self.parameters())
         own, _, place = name.partition(" of ")
@@ -184,7 +184,7 @@ class Stack(Component):
         return part
 
     def replace(self, **changes: Any) -> Self:
-        """Build a stack of which the bodies, the interfaces or the offsets are others.
+        """Build a stack with other bodies, interfaces or offsets.
 
         Parameters
         ----------
@@ -230,12 +230,12 @@ class Stack(Component):
 
     @classmethod
     def from_dict(cls, arguments: Mapping[str, Any]) -> Self:
-        """Build the stack that :meth:`to_dict` described, without warnings.
+        """Build the stack from the result of :meth:`to_dict`, without warnings.
 
         Parameters
         ----------
         arguments : mapping
-            Bodies and interfaces as they describe themselves, and offsets.
+            Descriptions of bodies and interfaces, and offsets.
 
         Returns
         -------
@@ -244,7 +244,7 @@ class Stack(Component):
         Raises
         ------
         SchemaError, ComponentError, UnitsError
-            As those of its parts, and as the constructor.
+            As for its parts, and as the constructor.
         """
         described = cls._described(arguments)
         part = object.__new__(cls)
@@ -262,7 +262,7 @@ class Stack(Component):
 
 
 def _refuse_overhang(bodies: Sequence[BlockSI], offsets: Sequence[float]) -> None:
-    """Refuse a base that is not on the top of the body below."""
+    """Refuse a base that reaches beyond the top of the body below."""
     for i, (offset, upper, lower) in enumerate(zip(offsets, bodies, bodies[1:], strict=False)):
         reach = abs(offset) + upper.half_width
         if reach > lower.half_width * (1.0 + 1e-12) or not math.isfinite(reach):

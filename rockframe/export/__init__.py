@@ -8,7 +8,7 @@ from rockframe.proposals import attributes_of
 
 __all__ = ["to_openquake", "to_opensees", "to_pelicun"]
 
-if not TYPE_CHECKING:  # or no name would be unknown to type checkers
+if not TYPE_CHECKING:  # otherwise type checkers would accept any name
     __getattr__ = attributes_of(__name__, __all__)
 
 

@@ -39,7 +39,7 @@ _PELICUN_MEASURES: Final = {
     SHORT["SA"]: ("Peak Spectral Acceleration", "g", STANDARD_GRAVITY),
 }
 _QUANTITIES: Final = frozenset({"spectral", "acceleration", "velocity", "displacement", "drift"})
-"""Words by which the type of a demand tells its quantity."""
+"""Words that identify the quantity in the type of a demand."""
 _OPENQUAKE_MEASURES: Final = {
     # (intensity measure type, SI units in its unit)
     SHORT["PGA"]: ("PGA", STANDARD_GRAVITY),
@@ -62,24 +62,24 @@ def to_pelicun(
     Parameters
     ----------
     fragility : xarray.Dataset
-        Of :func:`rockframe.fragility`, over the peak ground acceleration or velocity, or a
+        Result of :func:`rockframe.fragility`, over the peak ground acceleration or velocity, or a
         spectral acceleration.
     component : str
         Identifier of the component, such as ``"E.20.22.106a"``.
     demand : str, optional
-        Type of the demand, such as ``"Peak Floor Velocity"`` where the motions were those of a
-        floor; of the ground unless given.
+        Type of the demand, such as ``"Peak Floor Velocity"`` for motions of a floor; that of the
+        ground unless given.
     offset : int, optional
         Storeys between the component's location and its demand.
     directional : bool, optional
         Whether the demand has a direction, as that of a planar block has. Otherwise pelicun takes
-        the larger demand of two directions, times 1.2.
+        1.2 times the larger demand of two directions.
 
     Returns
     -------
     pandas.DataFrame
-        A row, named after the component; ``to_csv`` writes what pelicun reads. Medians in
-        g or m/s.
+        A row named after the component, with medians in g or m/s; its ``to_csv`` writes the file
+        for pelicun.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def to_pelicun(
 
 
 def _check_demand(demand: str, measure: str, kind: str) -> None:
-    """Refuse a demand whose words tell another quantity than that of the fragility."""
+    """Raise on a demand whose words name another quantity than that of the fragility."""
     told, own = (
         _QUANTITIES.intersection(re.findall("[a-z]+", of.lower())) for of in (demand, kind)
     )
@@ -161,44 +161,44 @@ def to_openquake(
     Parameters
     ----------
     fragilities : mapping of str to xarray.Dataset
-        Of :func:`rockframe.fragility`, by the taxonomy of what they are of; all with the
-        same limit states, over the peak ground acceleration or velocity, or a spectral
-        acceleration.
+        Results of :func:`rockframe.fragility`, by the taxonomy of their assets; all with the same
+        limit states, over the peak ground acceleration or velocity, or a spectral acceleration.
     path : str or path
-        Of the file; its name ends in ``.xml``. One that this function wrote is replaced.
+        The file; its name ends in ``.xml``. A file that this function wrote is replaced.
     name, description : str, optional
-        Of the model.
+        Name and description of the model.
     loss : {"contents", "structural", "nonstructural", "business_interruption"}
         Category of the losses.
     category : str, optional
-        Of the assets.
+        Category of the assets.
     no_damage_limit : float, optional
-        Intensity up to which nothing is exceeded, in g or cm/s; the least of the fragility
-        unless given.
+        Intensity up to which no limit state is exceeded, in g or cm/s; the least intensity of the
+        fragility unless given.
     overwrite : bool, optional
-        Whether a file that is there is replaced whoever wrote it.
+        Whether to replace an existing file that this function did not write.
 
     Returns
     -------
     Path
-        Of the file.
+        The file.
 
     Raises
     ------
     SchemaError
         Not fragilities over one such measure.
     ComponentError
-        A limit state has no fit, or dispersion zero; limit states differ; or a name has
-        other letters than OpenQuake allows.
+        A limit state has no fit, or dispersion zero; limit states differ; or a name has characters
+        that OpenQuake does not allow.
     FileError
-        The file cannot be written, its name has another ending, or it is there already and
-        none that this function wrote.
+        The file cannot be written, its name has another ending, or it exists and this function
+        did not write it.
 
     Notes
     -----
     OpenQuake takes the mean and the standard deviation of the capacity itself, not of its
-    logarithm: with median theta and dispersion beta theta exp(beta^2/2), and that times
-    sqrt(exp(beta^2) - 1). It takes intensities above the greatest of the fragility for that one.
+    logarithm. With median theta and dispersion beta the mean is theta exp(beta^2/2), and the
+    standard deviation is the mean times sqrt(exp(beta^2) - 1). OpenQuake replaces intensities
+    above the greatest one of the fragility by this one.
 
     Examples
     --------
@@ -247,7 +247,7 @@ def to_openquake(
         levels = in_own_units(fragilities[taxonomy], measure, owner=_OPENQUAKE)[measure] / size
         levels = levels.to_numpy()
         limit = float(levels[0]) if limit_given is None else limit_given
-        # what lies below minIML counts as minIML, so that the limit must lie above
+        # intensities below minIML count as minIML, so the limit must be above it
         least = min(float(levels[0]), 0.5 * limit)
         range_of = {"minIML": least, "maxIML": levels[-1], "noDamageLimit": limit}
         numbers = {name: f"{value:.10g}" for name, value in range_of.items()}
@@ -270,7 +270,7 @@ def to_openquake(
 def _fits(
     given: object, measures: Mapping[str, Any], *, owner: str
 ) -> tuple[str, list[tuple[str, float, float]]]:
-    """Give the measure of a fragility, and name, median and dispersion of its limit states."""
+    """Give the measure of a fragility, and the name, median and dispersion of its limit states."""
     dataset = checked_dataset(given, owner=owner)
     known = [name for name in measures if name in dataset.dims]
     if "median_intensity" not in dataset or len(known) != 1:
@@ -318,5 +318,5 @@ def _check_word(given: object) -> None:
 
 
 def _state_name(state: str) -> str:
-    """Give a limit state's name without the blanks and points that are not allowed."""
+    """Give the name of a limit state with characters that are not allowed replaced by ``_``."""
     return re.sub(r"[^A-Za-z0-9_-]", "_", state)

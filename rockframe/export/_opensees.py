@@ -1,4 +1,4 @@
-"""A block on pads, on a bed or on rigid ground as a file that OpenSees runs beside rockframe."""
+"""A block on pads, on a bed or on rigid ground as a file that runs OpenSees for comparison."""
 
 import math
 import pprint
@@ -33,11 +33,11 @@ _KIND: Final = FileKind.marked("a model for OpenSees", (".py",), _MARK)
 _BODY: Final = Path(__file__).with_name("_opensees_model.py")
 _OUTPUT_STEP: Final = 0.01
 _STEPS_PER_PERIOD: Final = 80
-"""Of the block that bounces on its springs; on the stiff ones of rigid ground a quarter does."""
+"""Steps in a period of the block bouncing on its springs; a quarter for rigid ground."""
 _BARS_OVER_SPRINGS: Final = 1e5
 _TOLERANCE: Final = 1e-9
 _RIGID: Final = (400.0, 0.7)
-"""Frequency ratio and damping ratio of the springs that stand for rigid ground."""
+"""Frequency ratio and damping ratio of the springs that model rigid ground."""
 
 
 class Dashpots(StrEnum):
@@ -48,12 +48,12 @@ class Dashpots(StrEnum):
 
 
 class SpringsOfBase(NamedTuple):
-    """What stands for a base in OpenSees."""
+    """The springs that model a base in OpenSees."""
 
     places: list[float]  # along the base [m]
-    stiffness: float  # of one [N/m]
-    damping: float  # [N s/m]
-    words: str  # what they are, and what to expect
+    stiffness: float  # of one spring [N/m]
+    damping: float  # of one dashpot [N s/m]
+    words: str  # the model, and differences to expect
 
 
 @hinted()
@@ -67,29 +67,29 @@ def to_opensees(
     dashpots: str = Dashpots.LET_GO,
     overwrite: bool = False,
 ) -> Path:
-    """Write a block and a motion as a Python file that OpenSees runs, beside rockframe's result.
+    """Write a block and a motion as a Python file for OpenSees, with the result of rockframe.
 
-    The file needs numpy and openseespy alone. It builds the block on springs without tension, runs
-    it, writes both histories of the rotation into a CSV file beside it, and prints both peaks. Its
-    head tells which laws differ, and by how much results then do.
+    The file needs only numpy and openseespy. It builds the block on springs without tension, runs
+    it, writes both histories of the rotation to a CSV file next to it, and prints both peaks. Its
+    docstring states which laws differ, and by how much results then differ.
 
     Parameters
     ----------
     system : System
         A block on pads, on a bed of soil or on rigid ground, without eccentricity.
     motion : GroundMotion
-        The motion, with its vertical component where it has one.
+        The motion, with its vertical component if it has one.
     path : str or Path
-        Of the file; its name ends in ``.py``.
+        The file; its name ends in ``.py``.
     free_vibration : str or Quantity, optional
         Time after the motion, as for :meth:`rockframe.System.simulate` [s].
     springs : int, optional
-        How many stand for a bed of soil.
+        Number of springs that model a bed of soil.
     dashpots : {"let go", "attached"}, optional
-        Whether dashpots let go where contact ends, as rockframe's do (``ViscoelasticGap``), or stay
-        attached, as ``Viscous`` beside ``ENT`` does in many models.
+        Whether dashpots act only during contact, as in rockframe (``ViscoelasticGap``), or remain
+        attached, as a ``Viscous`` parallel to an ``ENT`` does in many models.
     overwrite : bool, optional
-        Whether a file that is there is replaced though it is none that this function wrote.
+        Whether to replace an existing file that this function did not write.
 
     Returns
     -------
@@ -98,14 +98,14 @@ def to_opensees(
     Raises
     ------
     ComponentError
-        Not a system or a motion, a scene with parts or options without a counterpart, or another
-        argument that is none.
+        Not a system or a motion, parts or options without a counterpart in OpenSees, or another
+        argument that cannot be read.
     FileError
         Another ending, or a file that cannot be written or is not replaced.
 
     Notes
     -----
-    The middle of the base is held sideways, as by ``restraint="centre"``.
+    The middle of the base is fixed horizontally, as by ``restraint="centre"``.
 
     Examples
     --------
@@ -131,7 +131,7 @@ def to_opensees(
         motion, free_vibration=free_vibration, output_step=f"{_OUTPUT_STEP} s", outputs=()
     )
     body = system.setting.body
-    # one that overturns ends between two outputs, and its last rotation has no row
+    # a run that overturns ends between two outputs; its last rotation is left out
     whole = np.isclose(
         run["time"] / _OUTPUT_STEP, np.arange(run.sizes["time"]), rtol=0.0, atol=1e-6
     )
@@ -171,7 +171,7 @@ def to_opensees(
 
 
 def _check(system: System) -> None:
-    """Refuse what OpenSees' model has no counterpart of."""
+    """Raise on parts and options without a counterpart in the model of OpenSees."""
     others = [part for part in system.parts.structural() if type(part) not in _KNOWN]
     faults = [f"a {type(part).__name__}" for part in others]
     if not faults:
@@ -183,7 +183,7 @@ def _check(system: System) -> None:
     if faults:
         msg = (
             f"{_OWNER}: expected a block on pads, on a bed of soil or on rigid ground, found "
-            f"{', '.join(faults)}, which the model of OpenSees has no counterpart of"
+            f"{', '.join(faults)}, for which the model of OpenSees has no counterpart"
         )
         raise ComponentError(msg)
 
@@ -192,7 +192,7 @@ _KNOWN: Final = (Block, FrameEquivalent, TwoSpringSupport, WinklerSoil, RigidGro
 
 
 def _springs(system: System, count: int) -> SpringsOfBase:
-    """Give the springs that stand for the base."""
+    """Give the springs that model the base."""
     setting: Any = system.setting
     body = setting.body
     corners = [-body.half_width, body.half_width]
@@ -219,30 +219,30 @@ def _centre(body: Any) -> tuple[float, float]:
 
 
 _SOIL: Final = (
-    "Where dashpots let go, they do so as rockframe's separation='displacement' has it, and both "
-    "programs solve the same equations: measured, peaks differ by 0.2 % and histories by 1 % of "
-    "the peak with restraint='centre'."
+    "If dashpots let go, they do so as with separation='displacement' in rockframe, and both "
+    "programs solve the same equations: in tests with restraint='centre' peaks differed by 0.2 % "
+    "and histories by 1 % of the peak."
 )
 _PADS: Final = (
     "A pad of rockframe lets go when its force, dashpot included, falls to zero, and its corner "
-    "lands with a coefficient of restitution; OpenSees knows neither. Measured, where dashpots let "
-    "go: peaks differ by 0.3 % at most, histories after many impacts by 25 % of the peak. Without "
-    "damping, with restitution=1 and restraint='centre', both solve the same equations, and peaks "
-    "under a pulse differ by 0.003 %."
+    "lands with a coefficient of restitution; OpenSees has neither. In tests in which dashpots let "
+    "go, peaks differed by 0.3 % at most, and histories after many impacts by 25 % of the peak. "
+    "Without damping, with restitution=1 and restraint='centre', both solve the same equations, "
+    "and peaks under a pulse differed by 0.003 %."
 )
 _GROUND: Final = (
-    "OpenSees has no law of impacts: rigid ground is two stiff pads whose dashpots all but stop a "
-    "corner that lands. What an impact takes depends on them, and each impact adds its error: "
-    "expect a few per cent of the peak under pulses, and a third of it after many impacts, where a "
-    "verdict may differ. It is no check of either program."
+    "OpenSees has no law of impacts: rigid ground is modelled by two stiff pads whose dashpots "
+    "almost stop a corner that lands. The energy lost in an impact depends on them, and each "
+    "impact adds an error: expect a few per cent of the peak under pulses, and a third of it after "
+    "many impacts, when verdicts may differ. This is not a check of either program."
 )
 _ATTACHED: Final = (
-    "Dashpots stay attached to a base that lifts, and pull it down: expect peaks that are smaller "
-    "by 5 to 20 % than rockframe's, whose dashpots let go."
+    "Dashpots remain attached to a base that lifts, and pull it down: expect peaks that are "
+    "smaller by 5 to 20 % than those of rockframe, whose dashpots let go."
 )
 _HELD: Final = (
-    "OpenSees holds the middle of the base sideways; the system has restraint={!r}, which holds "
-    "the base elsewhere. Write System(..., restraint='centre') for the same in both."
+    "OpenSees fixes the middle of the base horizontally; the system has restraint={!r}, which "
+    "fixes the base at other points. Write System(..., restraint='centre') for the same in both."
 )
 
 
@@ -252,12 +252,12 @@ def _head(system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: D
     told = [
         f"{_MARK}{__version__}: {system.setting.model} under {motion.name}, in OpenSees.",
         "Run it with numpy and openseespy installed. It writes both histories of the rotation "
-        "into a CSV file of its own name, and prints both peaks.",
+        "to a CSV file of the same name, and prints both peaks.",
         base.words,
         _ATTACHED if dashpots is Dashpots.ATTACHED and base.damping > 0.0 else "",
         _HELD.format(str(system.restraint)) if elsewhere else "",
-        "Steps of integration are fixed, and events are not located in them. After many impacts "
-        "two runs that are close at first need not stay so: compare peaks before histories.",
+        "Steps of integration are fixed, and events within them are not located. After many "
+        "impacts two runs that were close at first may differ: compare peaks before histories.",
     ]
     lines = "\n\n".join(fill(one, 96) for one in told if one)
     return lines.replace("\\", "/").replace('"""', "'''")

@@ -1,6 +1,6 @@
 """The block in OpenSees: what a file written by :func:`rockframe.export.to_opensees` does.
 
-It needs numpy and openseespy alone, because it is copied into that file as it stands.
+It needs only numpy and openseespy, because it is copied into that file unchanged.
 """
 
 import csv
@@ -17,7 +17,7 @@ LIBRARIES = ("libquadmath.so.0", "libgfortran.so.4", "libblas.so.3", "liblapack.
 
 
 def opensees() -> Any:
-    """Import OpenSees, whose wheel for Linux does not say where its own libraries are."""
+    """Import OpenSees; its wheel for Linux needs its own libraries to be loaded first."""
     found = importlib.util.find_spec("openseespylinux")
     if found is not None and found.origin is not None:
         for name in LIBRARIES:
@@ -30,9 +30,9 @@ def opensees() -> Any:
 def build(ops: Any, given: dict[str, Any]) -> tuple[int, int, float]:
     """Build the block on its springs; give the nodes of its axis and the height between them [m].
 
-    The block is a truss of bars that no load stretches noticeably, exact at finite rotations. Four
-    point masses give it its mass, its centre of mass and its moment of inertia: a half of what is
-    at the base in the middle, a quarter at each corner, and the rest at the top.
+    The block is a truss of nearly rigid bars, exact at finite rotations. Four point masses give
+    its mass, its centre of mass and its moment of inertia. Of the mass at the base a half is in
+    the middle, and a quarter at each corner; the rest of the mass is at the top.
     """
     b, h, mass = given["half_width"], given["centre_height"], given["mass"]
     square = given["inertia"] / mass
@@ -43,7 +43,7 @@ def build(ops: Any, given: dict[str, Any]) -> tuple[int, int, float]:
     weight, count = mass * given["gravity"], len(across)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 2)
-    # the two nodes that all others hang on come last, so that few equations are filled
+    # the two nodes connected to all others come last, for a narrow profile of the equations
     nodes = list(range(1, count + 1))  # above the springs
     left, right, middle, above = range(count + 1, count + 5)
     places = {tag: (x, 0.0) for tag, x in zip(nodes, across, strict=True)}
@@ -60,7 +60,7 @@ def build(ops: Any, given: dict[str, Any]) -> tuple[int, int, float]:
     for number, (start, end) in enumerate(bars, 1):
         length = math.dist(places[start], places[end])
         ops.element("corotTruss", number, start, end, length, 1)
-    # springs without tension, which carry the weight from the start, with dashpots as told
+    # springs without tension, which carry the weight from the start, and dashpots
     sunk = -weight / (count * stiffness)
     if given["dashpots"] == "let go" and damping > 0.0:
         ops.uniaxialMaterial("ViscoelasticGap", 2, stiffness, damping, -1e-12)
@@ -112,16 +112,16 @@ def solve(ops: Any, given: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def step_in_parts(ops: Any, step: float, halvings: int = 10) -> bool:
-    """Take a step, or two halves of it where Newton's iteration ends nowhere."""
+    """Take a step, or two half steps if Newton's iteration does not converge."""
     if ops.analyze(1, step) == 0:
         return True
     return halvings > 0 and all(step_in_parts(ops, 0.5 * step, halvings - 1) for _ in range(2))
 
 
 def compare_peaks(given: dict[str, Any], history: Path) -> dict[str, float]:
-    """Run OpenSees, write its history beside that of rockframe, and compare the peaks."""
+    """Run OpenSees, write its history and that of rockframe, and compare the peaks."""
     ops = opensees()
-    ops.logFile(os.devnull, "-noEcho")  # it tells of each impact
+    ops.logFile(os.devnull, "-noEcho")  # it prints a message for each impact
     time, found = solve(ops, given)
     expected = given["rotation"]
     both = min(found.size, expected.size)

@@ -1,4 +1,4 @@
-"""From a measured test back to the parameters of a system."""
+"""Identification of the parameters of a system from a measured test."""
 
 from rockframe.identification.free_decay import fit_free_decay
 

@@ -1,4 +1,4 @@
-"""The steps of a fit, by least squares: start values, and then the peaks, or the history."""
+"""Fit by least squares: first improved start values, then the fit of the peaks or the history."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -14,45 +14,45 @@ from rockframe.identification.unknowns import Circumstance, Unknown, started_at
 from rockframe.signals.arrays import Array
 
 DIFFERENCE: Final = 1e-4
-"""Step of the differences by which derivatives are taken, as a share of an unknown's size.
+"""Step of the differences for derivatives, as a share of an unknown's size.
 
-Runs are accurate to some 1e-8 of the rotation, so that smaller steps would do. But contact
-changes are kinks, and to a derivative at a kink both sides belong; and steps above 1e-3 no
-longer see the end of a decay, where the phase depends most on the parameters."""
+Runs are accurate to some 1e-8 of the rotation, so that smaller steps would suffice. But residuals
+have kinks where contact changes, and a derivative near a kink should include both sides. Steps
+above 1e-3 are too long for the end of a decay, where the phase depends most on the parameters."""
 _FIRST_STEP: Final = 0.05
-"""Longest first step, as a share of an unknown's size: a longer one would leave the valley."""
+"""Longest first step, as a share of an unknown's size: a longer one may reach another minimum."""
 TIGHT: Final = 1e-10
-"""Tolerance of a fit that is to be the result."""
+"""Tolerance of the final fit."""
 MOST_EVALUATIONS: Final = 100
-"""Trials after which a fit is given up; those for derivatives do not count."""
+"""Number of trials after which a fit is given up, without those for derivatives."""
 _SINGULAR: Final = 1e-7
-"""Ratio of singular values below which unknowns cannot be told apart."""
+"""Ratio of singular values below which the effects of unknowns cannot be separated."""
 _UNSEEN: Final = 1e-8
-"""Share of the greatest derivative below which an unknown has no effect but rounding."""
+"""Share of the greatest derivative below which the effect of an unknown is rounding."""
 _AT_BOUND: Final = 1e-5
-"""Share of an unknown's size within which it stands at a bound."""
+"""Distance from a bound, as a share of an unknown's size, within which it is at the bound."""
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Where a fit ended."""
+    """Values, residuals and derivatives at the end of a fit."""
 
     values: Array  # in SI units
-    jacobian: Array  # derivatives of the weighted residuals there
+    jacobian: Array  # derivatives of the weighted residuals
     residuals: Array  # weighted
     status: int  # of :func:`scipy.optimize.least_squares`
     evaluations: int  # number of trials, without those for derivatives
-    at_bound: Any  # which unknowns stand at a bound, and which have an effect on the residuals
-    seen: Any
+    at_bound: Any  # which unknowns are at a bound
+    seen: Any  # which unknowns have an effect on the residuals
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """How far the values of a fit are certain."""
+    """Uncertainty of the values of a fit."""
 
-    standard_error: Array  # NaN where the data cannot tell
-    correlation: Array  # of the values' errors
-    reach: float  # standard errors to each side that make the confidence interval
+    standard_error: Array  # NaN where the data do not determine the value
+    correlation: Array  # correlation of the errors of the values
+    reach: float  # half-width of the confidence interval in standard errors
 
 
 def minimize(
@@ -61,8 +61,8 @@ def minimize(
     *,
     tolerance: float = TIGHT,
 ) -> Solution:
-    """Find the unknowns for which the sum of the squared residuals is least."""
-    # loaded here, since it is slow to load and few scripts need it
+    """Find the values of the unknowns that minimise the sum of the squared residuals."""
+    # imported here, since the import is slow and few scripts need it
     from scipy.optimize import least_squares
 
     start, scale, lower, upper = (
@@ -87,7 +87,7 @@ def minimize(
             columns.append((misfit(up) - misfit(down)) / (up[index] - down[index]))
         return np.stack(columns, axis=1)
 
-    # SciPy makes the first step no longer than the distance of the start from zero
+    # SciPy limits the first step by the distance of the start from zero
     found = least_squares(
         misfit,
         np.full(start.size, _FIRST_STEP),
@@ -100,7 +100,7 @@ def minimize(
     )
     length = np.linalg.norm(found.jac, axis=0)
     seen = length > _UNSEEN * np.max(length)
-    # what has no effect wanders by rounding
+    # rounding moves an unknown without effect: it keeps its start value
     values = np.where(seen, values_at(found.x), start)
     room = np.minimum(values - lower, upper - values) / scale
     return Solution(
@@ -126,7 +126,7 @@ def uncertainty_of(solution: Solution, confidence: float) -> Uncertainty:
     directions = np.where(seen, solution.jacobian, 0.0) / np.where(seen, length, 1.0)
     _, singular, rows = np.linalg.svd(directions, full_matrices=False)
     determined = singular > _SINGULAR * singular[0]
-    # an unknown that has a share in what the data do not tell is itself not told
+    # an unknown with a share in a direction that the data do not determine is itself undetermined
     lost = ~seen | (np.sum(rows[~determined] ** 2, axis=0) > _SINGULAR)
     inverse = (rows[determined].T / singular[determined] ** 2) @ rows[determined]
     variance = float(solution.residuals @ solution.residuals) / freedom
@@ -138,24 +138,24 @@ def uncertainty_of(solution: Solution, confidence: float) -> Uncertainty:
 
 
 _FIRST_WEIGHT: Final = 0.01
-"""Noise that is assumed before residuals tell it: a share of the first peak, and of the time
-between two peaks."""
+"""Noise that is assumed before it is estimated from residuals, as a share of the largest peak and
+of the mean time between two peaks."""
 _LEAST_WEIGHT: Final = 1e-9
-"""The same share below which noise is not told from rounding."""
+"""Least noise, as the same share: less cannot be distinguished from rounding."""
 _ROUGH: Final = 1e-3
 """Tolerance of a fit that gives start values."""
 _FEWEST_PEAKS: Final = 3
-"""Peaks of a history, that of the release among them, from which it is worth while to fit them."""
+"""Least number of peaks of a history, including the release, for a fit of start values to them."""
 _WEIGHTINGS: Final = 4
-"""How often the noise of rotations and of times is estimated anew from their residuals."""
+"""Number of times that the noise of rotations and of times is estimated from their residuals."""
 
 
 @dataclass(frozen=True)
 class Weights:
     """Standard deviations by which the residuals of peaks are divided."""
 
-    rotation: float  # of the peaks' rotations and of their times [rad], [s]
-    time: float
+    rotation: float  # of the rotations of peaks [rad]
+    time: float  # of the times of peaks [s]
 
 
 def fit_history(
@@ -164,7 +164,7 @@ def fit_history(
     swings: Swings,
     unknowns: Sequence[Unknown],
 ) -> Solution:
-    """Fit a history, every sample with the same weight."""
+    """Fit a history with the same weight for every sample."""
 
     def residuals(values: Array) -> Array:
         return prediction.history(values, measured) - measured.rotation
@@ -181,10 +181,10 @@ def fit_history(
 def fit_peaks(
     prediction: Prediction, measured: MeasuredPeaks, unknowns: Sequence[Unknown]
 ) -> Solution:
-    """Fit peaks, each with that of the same number.
+    """Fit peaks, the n-th of the run to the n-th that was measured.
 
-    Rotations and times, where there are times, are weighted by the noise that their residuals
-    show, :eq:`eq-fit-peaks`.
+    Rotations and times, where there are times, are weighted by their noise, which is estimated
+    from the residuals, :eq:`eq-fit-peaks`.
     """
     sizes = weights = _first_weights(measured)
     misfit = _misfit_of(prediction, measured, weights)
@@ -197,7 +197,7 @@ def fit_peaks(
 
 
 def _fit_roughly(residuals: Callable[[Array], Array], unknowns: Sequence[Unknown]) -> Solution:
-    """Fit the circumstances first, so that the parameters are not led astray by them."""
+    """Fit roughly, first the circumstances alone, whose errors would distort the parameters."""
     values = np.array([one.start for one in unknowns])
     where = [index for index, one in enumerate(unknowns) if one.name in tuple(Circumstance)]
 
@@ -222,7 +222,7 @@ def _first_weights(measured: MeasuredPeaks) -> Weights:
 def _misfit_of(
     prediction: Prediction, measured: MeasuredPeaks, weights: Weights
 ) -> Callable[[Array], Array]:
-    """Give the residuals of the peaks over their weights, as a function of the unknowns."""
+    """Give the weighted residuals of the peaks as a function of the unknowns."""
 
     def misfit(values: Array) -> Array:
         times, rotation = prediction.peaks(values, measured)
@@ -240,7 +240,7 @@ def _reweighted(
 ) -> Weights:
     """Estimate the noise of rotations and of times from their residuals."""
     count = measured.rotation.size
-    # each of both bears its share of the unknowns
+    # the unknowns lower the degrees of freedom of both in proportion to their numbers of data
     share = math.sqrt(solution.residuals.size / (solution.residuals.size - solution.values.size))
     least = _LEAST_WEIGHT / _FIRST_WEIGHT
     rotations, times = solution.residuals[:count], solution.residuals[count:]

@@ -1,4 +1,4 @@
-"""A free-decay test: the parameters of a system, from how it came to rest."""
+"""Identification of the parameters of a system from a free-decay test."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -41,71 +41,75 @@ def fit_free_decay(
     confidence: RatioLike = 0.95,
     accuracy: AccuracyLike = AccuracyLevel.STANDARD,
 ) -> xr.Dataset:
-    """Find parameters of a system from a test in which it was tilted and let go.
+    """Find parameters of a system from a free-decay test: it was tilted and released.
 
     Parameters
     ----------
     system : System
-        The system that was tested, with start values of what is to be found. A ground motion
-        among its parts is left out: the ground stands still.
+        The system that was tested, with start values of the parameters that are to be found. A
+        ground motion among its parts is left out, since the ground is at rest.
     measured : xarray.DataArray or ((times, unit), (rotations, unit)), optional
-        History of the block's rotation, from the release or from before it; or a DataArray
-        over its times, both with the attribute ``units``.
+        History of the block's rotation, from the release or from before it. A DataArray has
+        the times as its coordinate, and both have the attribute ``units``.
     parameters : str or sequence of str, optional
-        Pure ratios among the parameters of the system's parts, such as ``"restitution"``,
-        ``"frequency_ratio"``, ``"damping_ratio"``; where several parts have one of the name,
-        with the class, as in ``"TwoSpringSupport.damping_ratio"``.
+        Dimensionless parameters of the system's parts, such as ``"restitution"``,
+        ``"frequency_ratio"``, ``"damping_ratio"``. If several parts have a parameter of this
+        name, it is written with the class, as in ``"TwoSpringSupport.damping_ratio"``.
     peaks : (rotations, unit), Quantity or ((times, unit), (rotations, unit)), optional
-        Instead of `measured`: successive peaks of the rotation to both sides, with or without
-        their signs, but for an eccentric block, with or without their times. The first is the
-        release.
+        Successive peaks of the rotation to both sides, in place of `measured`, with or without
+        their times. They may be without signs, except for an eccentric block. The first peak
+        is the release.
     circumstances : str or sequence of str, optional
-        What of the test is to be found as well, of ``"initial_rotation"``, ``"release_time"``
-        and ``"gauge_offset"``. Unless given: of a history all three; of peaks the initial
-        rotation, and with times the release time. What is not to be found is what the first
-        sample or peak says; the offset is then zero.
+        Unknown quantities of the test that are to be found as well: ``"initial_rotation"``,
+        ``"release_time"`` and ``"gauge_offset"``. By default all three are found from a
+        history; from peaks the initial rotation is found, and with times the release time. The
+        others are taken from the first sample or peak, and the offset is zero.
     confidence : float, optional
         Probability of the confidence intervals [1].
     accuracy : {"fast", "standard", "reference"}, float or Accuracy, optional
-        Of the integration.
+        Accuracy of the integration.
 
     Returns
     -------
     xarray.Dataset
-        Over ``parameter``: ``fitted_value``, ``standard_error``, ``lower_confidence_bound``,
-        ``upper_confidence_bound``, ``start_value`` [1]. ``initial_rotation`` [rad],
-        ``release_time`` [s] and ``gauge_offset`` [rad] with their standard errors, NaN where
-        they were not found. ``correlation`` of all unknowns. Over ``time``
-        ``measured_rotation``, ``fitted_rotation`` and ``rotation_residual`` [rad]; of peaks
-        the same over ``peak``. Root mean squares of the residuals, and their
-        ``residual_autocorrelation`` [1]. ``fit_status`` and ``trial_count``. The attribute
-        ``verdict`` is a sentence; :meth:`rockframe.System.from_dataset` gives the fitted
-        system.
+        - Over ``parameter``: ``fitted_value``, ``standard_error``, ``lower_confidence_bound``,
+          ``upper_confidence_bound`` and ``start_value`` [1].
+        - ``initial_rotation`` [rad], ``release_time`` [s] and ``gauge_offset`` [rad] with their
+          standard errors, which are NaN for those that were not to be found.
+        - ``correlation`` of all unknowns [1].
+        - Over ``time``: ``measured_rotation``, ``fitted_rotation`` and ``rotation_residual``
+          [rad]; of peaks the same over ``peak``.
+        - Root mean squares of the residuals, and their ``residual_autocorrelation`` [1].
+        - ``fit_status`` and ``trial_count``.
+
+        The attribute ``verdict`` is a sentence. :meth:`rockframe.System.from_dataset` gives
+        the fitted system.
 
     Raises
     ------
     UnitsError
-        Arrays without a unit, or with a wrong one.
+        If an array has no unit, or a wrong one.
     ComponentError
-        Data that are no test of this system: not finite, times that do not increase, rotations
-        beyond overturning, nothing that rocks, no more data than unknowns; unknown parameters; or
-        an inclined base.
+        If data are not finite, times do not increase, a rotation is beyond overturning, the
+        block does not rock, there are no more data than unknowns, a parameter is unknown, or
+        the base is inclined.
 
     Warns
     -----
     ModelWarning
-        A value stands at its bound, cannot be told from the data, or the residuals are not the
+        If a value is at its bound, the data do not determine it, or the residuals are not the
         independent noise that the standard errors assume.
 
     Notes
     -----
-    Least squares, :func:`scipy.optimize.least_squares`. A history is fitted from the given
-    start values and from those of a fit to its peaks, each with that of the same number; the
-    better one is kept. On pads the squares have several valleys, some 15 % of the frequency
-    ratio apart: start within 10 %.
-    Standard errors come from the derivatives at the solution and from the residuals,
-    :eq:`eq-fit-covariance`. They assume that the system is right but for the unknowns, and that
-    the residuals are independent and equally large.
+    The fit is one of least squares, by :func:`scipy.optimize.least_squares`. A history is fitted
+    twice: from the given start values, and from those of a fit to its peaks, the n-th of the run
+    to the n-th that was measured. The better fit is kept. On pads the sum of squares has several
+    minima, some 15 % of the frequency ratio apart, so that a start value should be within 10 %.
+
+    Standard errors follow from the derivatives at the solution and from the residuals,
+    :eq:`eq-fit-covariance`. They assume that the model is right except for the unknowns, and
+    that the residuals are independent and of equal variance.
 
     Examples
     --------
@@ -179,7 +183,7 @@ def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
 def _sought(
     given: Sequence[str] | str | None, data: History | MeasuredPeaks
 ) -> tuple[Circumstance, ...]:
-    """Give the circumstances that are to be found; refuse what the data cannot tell."""
+    """Give the circumstances that are to be found; refuse those that the data do not determine."""
     circumstances = [Circumstance.INITIAL_ROTATION]
     if isinstance(data, History) or data.time is not None:
         circumstances.append(Circumstance.RELEASE_TIME)

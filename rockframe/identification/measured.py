@@ -1,4 +1,4 @@
-"""What was measured: a history of the rotation, or its peaks, read and checked."""
+"""Measured data, read and checked: a history of the rotation, or its peaks."""
 
 import math
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ _PEAKS: Final = (
 
 @dataclass(frozen=True)
 class History:
-    """A measured history."""
+    """A measured history of the rotation."""
 
-    time: Array  # [s], [rad]
-    rotation: Array
+    time: Array  # [s]
+    rotation: Array  # [rad]
 
     @property
     def count(self) -> int:
@@ -37,17 +37,17 @@ class History:
 
     @property
     def span(self) -> float:
-        """From the first to the last sample [s]."""
+        """Time from the first to the last sample [s]."""
         return float(self.time[-1] - self.time[0])
 
 
 @dataclass(frozen=True)
 class MeasuredPeaks:
-    """Successive peaks of a rotation, the first one at the release or after it."""
+    """Successive peaks of a rotation, of which the first is the release."""
 
-    rotation: Array  # as given, with their signs or without [rad]
-    sides: Array  # 1 or -1, the signs by which the rotations are given
-    time: Array | None = None  # NaN where it is not known [s]
+    rotation: Array  # with signs or without, as they were measured [rad]
+    sides: Array  # signs of `rotation`: all 1 where peaks are without signs
+    time: Array | None = None  # NaN where a time is not known [s]
 
     @property
     def count(self) -> int:
@@ -56,12 +56,12 @@ class MeasuredPeaks:
 
     @property
     def signed(self) -> bool:
-        """Whether the peaks are on either side in turn, and not sizes only."""
+        """Whether the peaks have signs, and are not absolute values."""
         return bool(self.sides[0] != self.sides[-1] or np.any(np.diff(self.sides)))
 
 
 def read_history(given: object, owner: str) -> History:
-    """Read a measured history."""
+    """Read a history of the rotation, with its times."""
     if isinstance(given, xr.DataArray):
         name = given.dims[0] if given.ndim == 1 else None
         if name is None or name not in given.coords:
@@ -81,7 +81,7 @@ def read_history(given: object, owner: str) -> History:
 
 
 def read_peaks(given: object, owner: str) -> MeasuredPeaks:
-    """Read successive peaks."""
+    """Read successive peaks of the rotation, with or without times."""
     pair = _two(given)
     if pair is not None:
         times = _values(pair[0], TIME, owner, "time")
@@ -107,7 +107,7 @@ def read_peaks(given: object, owner: str) -> MeasuredPeaks:
 def check_below_overturning(
     measured: History | MeasuredPeaks, angles: OverturningAngles, owner: str
 ) -> None:
-    """Refuse a rotation from which no block comes back."""
+    """Refuse rotations at or beyond overturning, and those of which the side is not known."""
     if isinstance(measured, MeasuredPeaks) and not measured.signed and angles.left != angles.right:
         msg = (
             f"{owner}: peaks without their signs do not tell the sides of an eccentric block; give "
@@ -127,7 +127,7 @@ def check_below_overturning(
 
 
 def _two(given: object) -> tuple[object, object] | None:
-    """Give both of a pair of arrays, each with a unit of its own."""
+    """Give the two items of a pair of arrays with units, or None of anything else."""
     if not isinstance(given, tuple | list):
         return None
     items = cast("tuple[object, ...]", given)
@@ -142,7 +142,7 @@ def _history(time: Array, rotation: Array, owner: str) -> History:
 
 
 def _values(given: object, measure: Measure, owner: str, name: str) -> Array:
-    """Convert an array with a unit to numbers in SI units."""
+    """Convert an array with a unit to SI units, and check it."""
     unit: object = None
     values: object = given
     if isinstance(given, xr.DataArray):

@@ -1,4 +1,4 @@
-"""What a test would have shown, had the unknowns other values, and where their search starts."""
+"""Rotation that a test would show for values of the unknowns, and start values of the search."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
@@ -22,22 +22,22 @@ from rockframe.system.assembly import Assembly
 from rockframe.system.options import Rotation
 
 SAMPLES_PER_PERIOD: Final = 100
-"""Samples in the shortest period of the model, between which a cubic is drawn: its error is
-(2 pi / 100)^4 / 384, or 4e-8, of a vibration's amplitude."""
+"""Samples in the shortest period of the model. Between two samples a cubic interpolates; its error
+is (2 pi / 100)^4 / 384, or 4e-8, of a vibration's amplitude."""
 _DOUBLINGS: Final = 6
-"""How often a run that has too few peaks is made twice as long."""
+"""Number of times that the duration of a run with too few peaks is doubled."""
 
 
 @dataclass(frozen=True)
 class FreeMotion:
-    """The rotation after a release; times from then on."""
+    """History of the rotation after a release, at samples and twice at each event."""
 
-    time: Array  # samples, and every event twice: before it and after it [s], [rad]
-    rotation: Array
-    rate: Array  # rate of the rotation, which jumps at an event [rad s^-1]
+    time: Array  # since the release [s]
+    rotation: Array  # [rad]
+    rate: Array  # angular velocity, which jumps between both samples of an event [rad s^-1]
 
     def at(self, time: Array) -> Array:
-        """Give the rotation; before the release and after the end it stays as it is [rad]."""
+        """Give the rotation, constant before the release and after the end of the run [rad]."""
         inside = np.clip(time, self.time[0], self.time[-1])
         first = np.searchsorted(self.time, inside, side="right") - 1
         first = np.clip(first, 0, self.time.size - 2)
@@ -47,12 +47,12 @@ class FreeMotion:
         return start + share * (slope + share * (square + share * cube))
 
     def crossing(self) -> float:
-        """Give the time of the first passage through zero; that of the end if there is none [s]."""
+        """Give the time of the first passage through zero, or of the end without one [s]."""
         beyond = np.flatnonzero(self.rotation * self.rotation[0] <= 0.0)
         return float(self.time[beyond[0] if beyond.size else -1])
 
     def peaks(self) -> tuple[Array, Array]:
-        """Give times and sizes of the largest rotation between passages through zero."""
+        """Give times [s] and magnitudes [rad] of the peaks between passages through zero."""
         side = np.sign(self.rotation)
         there = np.flatnonzero(side)
         turns = there[1:][side[there[1:]] != side[there[:-1]]]
@@ -65,13 +65,13 @@ class FreeMotion:
         return np.array(times), np.array(sizes)
 
     def _peak(self, node: int) -> tuple[float, float]:
-        """Find the turning point next to the sample that stands highest."""
+        """Find time and magnitude of the peak beside the sample of largest rotation."""
         rises = self.rate[node] * self.rotation[node] > 0.0
         first = node if rises else node - 1
         if first < 0 or self.time[first + 1] <= self.time[first]:
             return float(self.time[node]), float(abs(self.rotation[node]))
         start, slope, square, cube = (float(one[0]) for one in self._cubics(np.array([first])))
-        # the root of slope + 2 square s + 3 cube s^2 that is right for a small cube as well
+        # root of slope + 2 square s + 3 cube s^2, in a form that is accurate for a small cube too
         discriminant = max(0.0, square * square - 3.0 * cube * slope)
         divisor = -square - math.copysign(math.sqrt(discriminant), square)
         share = min(max(slope / divisor, 0.0), 1.0) if divisor != 0.0 else 0.0
@@ -80,7 +80,7 @@ class FreeMotion:
         return float(self.time[first]) + share * length, size
 
     def _cubics(self, first: NDArray[np.intp]) -> tuple[Array, Array, Array, Array]:
-        """Give the coefficients of the cubic through rotations and rates of two samples."""
+        """Give the coefficients of the cubic through rotations and rates of two samples [rad]."""
         length = self.time[first + 1] - self.time[first]
         start, step = self.rotation[first], self.rotation[first + 1] - self.rotation[first]
         leaving, arriving = self.rate[first] * length, self.rate[first + 1] * length
@@ -89,10 +89,10 @@ class FreeMotion:
 
 
 def let_go(system: Assembly, rotation: float, duration: float, accuracy: Accuracy) -> FreeMotion:
-    """Let a system go from rest at a rotation, the ground still."""
+    """Compute the motion of a system that is released from rest at a rotation, on still ground."""
     model = system.setting.compile()
     step = 2.0 * math.pi / model.fastest_frequency / SAMPLES_PER_PERIOD
-    # the last sample may stand one step before the end
+    # the last sample may be up to one step before the end
     run = integrate(
         model, Start(rotation), None, accuracy, duration=duration + step, output_step=step
     )
@@ -102,7 +102,7 @@ def let_go(system: Assembly, rotation: float, duration: float, accuracy: Accurac
     time = np.concatenate([np.repeat(events.time, 2), run.time])
     turns = np.stack([events.state_before, events.state_after], axis=1)
     state = np.concatenate([turns.reshape(-1, run.state.shape[1]), run.state])
-    # a sample at the instant of an event would stand on one side of its jump only
+    # a sample at the instant of an event has the rate of one side of its jump only
     kept = np.ones(time.size, dtype=bool)
     kept[2 * events.time.size :] = ~np.isin(run.time, events.time[events.time > 0.0])
     order = np.argsort(time[kept], kind="stable")
@@ -113,7 +113,7 @@ def let_go(system: Assembly, rotation: float, duration: float, accuracy: Accurac
 def first_peaks(
     system: Assembly, rotation: float, count: int, duration: float, accuracy: Accuracy
 ) -> tuple[Array, Array]:
-    """Let a system go, and give its first peaks."""
+    """Give times and magnitudes of the first peaks after a release, zero for missing ones."""
     motion = let_go(system, rotation, duration, accuracy)
     times, sizes = motion.peaks()
     for _ in range(_DOUBLINGS):
@@ -128,13 +128,13 @@ def first_peaks(
 
 
 EARLIER: Final = 0.25
-"""Share of a history's length by which the release may be earlier than its first sample."""
+"""Share of a history's duration by which the release may precede its first sample."""
 _REMEMBERED: Final = 4
-"""Runs that are kept: a change of the gauge's offset or of the release needs no new one."""
+"""Number of runs that are kept, since other values of offset and release time need no new run."""
 
 
 class Prediction:
-    """Predicts what was measured from values of the unknowns."""
+    """Prediction of the measured data from values of the unknowns."""
 
     def __init__(
         self,
@@ -151,18 +151,18 @@ class Prediction:
         self._for_peaks = lru_cache(maxsize=_REMEMBERED)(self._run_peaks)
 
     def values(self, found: Array) -> dict[str, float]:
-        """Give all values by their names, those that are known among them."""
+        """Give the values of all parameters and circumstances by name, including known ones."""
         return {**self._known, **dict(zip(self.names, found.tolist(), strict=True))}
 
     def history(self, found: Array, measured: History) -> Array:
-        """Give the rotation that a gauge would have shown at the times of a history [rad]."""
+        """Give the rotation that the gauge would show at the times of a history [rad]."""
         values = self.values(found)
         motion = self._for_history(*self._key(values), (1.0 + EARLIER) * measured.span)
         since = measured.time - values[Circumstance.RELEASE_TIME]
         return values[Circumstance.GAUGE_OFFSET] + motion.at(since)
 
     def peaks(self, found: Array, measured: MeasuredPeaks) -> tuple[Array, Array]:
-        """Give times and rotations of the peaks as a gauge would have shown them [s], [rad]."""
+        """Give times [s] and rotations [rad] of the peaks that the gauge would show."""
         values = self.values(found)
         count = measured.rotation.size
         times, sizes = self._for_peaks(*self._key(values), count, self._length(measured))
@@ -189,7 +189,7 @@ class Prediction:
         return first_peaks(system, rotation, count, duration, self._accuracy)
 
     def _length(self, measured: MeasuredPeaks) -> float:
-        """Give the length of a run that is likely to have all peaks [s]."""
+        """Give the duration of a run that is likely to contain all peaks [s]."""
         if measured.time is not None:
             return 1.5 * float(measured.time[-1] - np.nanmin(measured.time))
         radius, gravity = self.trials.radius, self.trials.gravity
@@ -197,7 +197,7 @@ class Prediction:
 
 
 _LARGEST: Final = 1.0 - 1e-6
-"""Share of the overturning angle below which a block is let go."""
+"""Largest initial rotation, as a share of the overturning angle."""
 
 
 def starts_of(
@@ -208,7 +208,7 @@ def starts_of(
     sought: Collection[Circumstance],
     accuracy: Accuracy,
 ) -> dict[str, Unknown]:
-    """Give start values and bounds of the parameters, and of all circumstances."""
+    """Give start values and bounds of all parameters and circumstances."""
     peaks = (
         measured
         if isinstance(measured, MeasuredPeaks)

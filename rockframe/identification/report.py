@@ -1,4 +1,4 @@
-"""A fit as a labelled dataset, and in words."""
+"""The results of a fit as a labelled dataset, with a verdict and warnings in words."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -22,19 +22,19 @@ from rockframe.results.variables.studies import FitStatus
 from rockframe.signals.arrays import Array
 
 _DEPENDENT: Final = 0.3
-"""Correlation of residuals with the next from which they do not count as independent."""
+"""Autocorrelation of residuals above which they do not count as independent."""
 _BY_CHANCE: Final = 3.0
-"""Standard deviations, each 1 / sqrt(n), up to which n independent residuals seem dependent."""
+"""Largest autocorrelation of n independent residuals, in standard deviations of 1 / sqrt(n)."""
 _ROUNDING: Final = 1e-5
-"""Share of the initial rotation below which residuals are rounding, not noise."""
+"""Share of the initial rotation below which residuals are rounding and no noise."""
 _CLOSE: Final = 0.98
-"""Correlation from which two unknowns can hardly be told apart."""
+"""Correlation above which the data hardly separate two unknowns."""
 
 
 def fit_sentence(
     values: Mapping[str, Any], names: Sequence[str], confidence: float, reach: float
 ) -> str:
-    """Say in one sentence what was found."""
+    """Give the result of a fit as a sentence."""
     found = ", ".join(
         f"{name.replace('_', ' ')} {_with_error(value, reach * error)}"
         for name, value, error in zip(
@@ -54,7 +54,7 @@ def fit_sentence(
 def cautions_of(
     names: Sequence[str], solution: Solution, uncertainty: Uncertainty, values: Mapping[str, Any]
 ) -> Iterator[str]:
-    """Say what speaks against the values or their errors."""
+    """Give the reasons for which values or their errors may be wrong, as clauses."""
     if solution.status == FitStatus.TRIAL_LIMIT:
         yield f"the fit was given up after {MOST_EVALUATIONS} trials"
     for name, value, bound in zip(names, solution.values, solution.at_bound, strict=True):
@@ -90,7 +90,7 @@ def cautions_of(
 
 
 def _with_error(value: float, error: float) -> str:
-    """Write a value and its error to two digits of the error."""
+    """Write a value and its error, both to two digits of the error."""
     if not math.isfinite(error):
         return f"{value:.4g} +- unknown"
     digits = 6 if error <= 0.0 else min(max(1 - math.floor(math.log10(error)), 0), 12)
@@ -107,7 +107,7 @@ def fit_dataset(
     confidence: float,
     accuracy: str,
 ) -> xr.Dataset:
-    """Label what was found, and warn of what speaks against it."""
+    """Give the results of a fit as a labelled dataset, and warn of reasons for doubt."""
     names, places = list(prediction.names), prediction.trials.places
     uncertainty = uncertainty_of(solution, confidence)
     found = prediction.values(solution.values)
@@ -156,7 +156,7 @@ def fit_dataset(
 def _compared(
     prediction: Prediction, measured: History | MeasuredPeaks, found: Array
 ) -> Mapping[str, Array | float]:
-    """Give what was measured beside what was fitted, by names in the schema."""
+    """Give measured and fitted values with their residuals, by their names in the schema."""
     if isinstance(measured, History):
         fitted = prediction.history(found, measured)
         residual = measured.rotation - fitted
@@ -186,7 +186,7 @@ def _compared(
 
 
 def _noise(residual: Array) -> dict[str, float]:
-    """Give the size of residuals, and how much each tells of the next."""
+    """Give the root mean square of the residuals, and their autocorrelation."""
     total = float(residual @ residual)
     following = float(residual[1:] @ residual[:-1])
     return {

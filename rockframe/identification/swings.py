@@ -1,4 +1,4 @@
-"""What a measured history shows without a model: its swings, and how their peaks decay."""
+"""Swings of a measured history, and the decay of their peaks, found without a model."""
 
 import math
 from dataclasses import dataclass
@@ -11,22 +11,22 @@ from rockframe.identification.measured import History, MeasuredPeaks
 from rockframe.signals.arrays import Array
 
 _LEVEL: Final = 0.1
-"""Share of the first rotation that a swing must exceed: what is smaller may be noise."""
+"""Share of the first rotation that a swing must exceed: smaller ones may be noise."""
 _TOP: Final = 0.8
-"""Share of a swing's peak above which a parabola is laid through the samples."""
+"""Share of a swing's peak above which a parabola is fitted to the samples."""
 _FEWEST: Final = 5
-"""Samples that such a parabola needs."""
+"""Least number of samples for such a parabola."""
 
 
 @dataclass(frozen=True)
 class Swings:
     """The swings of a measured history."""
 
-    # the release and the peak of every complete swing after it. That of the release has no time: it
-    # stands in a plateau, or at the first sample
+    # the release and the peaks of all complete swings after it; the release has no time, since the
+    # rotation is constant before it, or it precedes the first sample
     peaks: MeasuredPeaks
-    crossing: float  # when the rotation first passes through zero [s]
-    # median after that, which a rotation that dies out has where the gauge reads zero [rad]
+    crossing: float  # time at which the rotation first passes through zero [s]
+    # median of the rotation from the first swing on, the reading of the gauge at rest [rad]
     offset: float
 
 
@@ -50,7 +50,7 @@ def swings_of(history: History, owner: str) -> Swings:
     share = swing[before] / (swing[before] - swing[after])
     crossing = float(time[before] + share * (time[after] - time[before]))
     sizes, times = [float(rotation[0])], [math.nan]
-    # the last swing may be cut off
+    # without the last swing, which may be incomplete
     for start, end in zip(marked[turns[:-1] + 1], marked[turns[1:]], strict=True):
         inside = slice(int(start), int(end) + 1)
         when, size = _top(time[inside], swing[inside])
@@ -63,10 +63,10 @@ def swings_of(history: History, owner: str) -> Swings:
 
 
 def restitution_of(peaks: Array, theta: Array, pull: Array, *, small_rotation: bool) -> float:
-    """Give the restitution with which peaks decay on rigid ground.
+    """Estimate the coefficient of restitution from the decay of peaks on rigid ground.
 
-    By :eq:`eq-rigid-decay`, with the overturning angle of the side of each peak, and the pull of
-    gravity on the corner there, p^2, over that of any corner.
+    The estimate is by :eq:`eq-rigid-decay`. `theta` is the overturning angle on the side of each
+    peak, and `pull` is p^2 about the corner on that side over p^2 about the right corner.
     """
     size = np.clip(np.abs(peaks), 1e-9 * theta, theta)
     if small_rotation:
@@ -80,14 +80,14 @@ def restitution_of(peaks: Array, theta: Array, pull: Array, *, small_rotation: b
 
 
 def _offset(rotation: Array) -> float:
-    """Give the median after the first swing has begun."""
+    """Give the median of the rotation after it first falls below half its initial value."""
     first = float(np.median(rotation[:3]))
     left = np.flatnonzero(rotation * np.sign(first) < 0.5 * abs(first))
     return float(np.median(rotation[left[0] :])) if left.size else 0.0
 
 
 def _top(time: Array, swing: Array) -> tuple[float, float]:
-    """Give time and rotation of a swing's peak, of a parabola where there are samples for it."""
+    """Give time and rotation of a swing's peak, by a parabola where it has enough samples."""
     highest = int(np.argmax(np.abs(swing)))
     when, size = float(time[highest]), float(swing[highest])
     near = np.flatnonzero(np.abs(swing) > _TOP * abs(size))

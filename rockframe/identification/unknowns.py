@@ -1,4 +1,4 @@
-"""What a test is to tell: parameters of the system's parts, and circumstances of the test."""
+"""Unknowns of a fit: parameters of the system's parts, and circumstances of the test."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,13 +16,13 @@ from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly, assemble
 
 _ALMOST: Final = 1e-6
-"""Share of a range within which its open end is not tried."""
+"""Distance of the search from an open lower bound, as a share of an unknown's size."""
 _SMALLEST_SCALE: Final = 0.01
-"""What stands for the size of a ratio that starts at zero."""
+"""Size of a ratio whose start value is zero."""
 
 
 class Circumstance(StrEnum):
-    """What of the test itself may be unknown."""
+    """Quantities of the test itself that may be unknown."""
 
     INITIAL_ROTATION = "initial_rotation"
     RELEASE_TIME = "release_time"
@@ -31,21 +31,21 @@ class Circumstance(StrEnum):
 
 @dataclass(frozen=True)
 class Unknown:
-    """A number that is to be found."""
+    """A parameter or circumstance that is to be found."""
 
-    name: str  # of the parameter or the circumstance
-    start: float  # where the search starts
-    scale: float  # its typical size
+    name: str
+    start: float  # start value of the search
+    scale: float  # typical size, the unit of its steps
     lower: float = -math.inf  # bounds
     upper: float = math.inf
 
     def started_at(self, value: float) -> "Unknown":
-        """Give the same with another start value, within the bounds."""
+        """Give the unknown with another start value, within the bounds."""
         return replace(self, start=min(max(value, self.lower), self.upper))
 
 
 def started_at(unknowns: Sequence[Unknown], values: NDArray[np.float64]) -> list[Unknown]:
-    """Give unknowns with other start values, within their bounds."""
+    """Give the unknowns with other start values, within their bounds."""
     return [one.started_at(float(value)) for one, value in zip(unknowns, values, strict=True)]
 
 
@@ -55,18 +55,18 @@ class PartParameter:
 
     part: int  # index of the part
     argument: str  # name of the part's argument
-    start: float  # its value in the system that was given
-    bounds: tuple[float, float]  # numbers between which the part accepts it
+    start: float  # its value in the system that was tested
+    bounds: tuple[float, float]  # bounds of the values that the part accepts
 
     def unknown(self, name: str) -> Unknown:
-        """Give it as an unknown."""
+        """Give the parameter as an unknown of a fit."""
         scale = abs(self.start) or _SMALLEST_SCALE
         lower, upper = self.bounds[0] + _ALMOST * scale, self.bounds[1]
         return Unknown(name, self.start, scale, lower, upper).started_at(self.start)
 
 
 class TrialSystems:
-    """Systems that differ in some parameters from the one that was given."""
+    """Systems that differ from the tested one in the parameters that are to be found."""
 
     def __init__(self, system: System, names: Sequence[str], owner: str) -> None:
         alone = system.parts.signature == frozenset({"block"})
@@ -85,7 +85,7 @@ class TrialSystems:
         self.places = {name: _place_of(name, known, owner) for name in names}
 
     def _ratios(self, system: System) -> Iterator[tuple[str, PartParameter | None]]:
-        """Find the pure ratios of all parts; None where one was not given as such."""
+        """Find the dimensionless parameters of all parts; None for one without a start value."""
         usual = {"restitution": system.parts.the_block.maximum_restitution}
         for index, part in enumerate(self._parts):
             for argument, declared in _declared_ratios(part):
@@ -99,7 +99,7 @@ class TrialSystems:
                 )
 
     def _with(self, values: Mapping[str, float]) -> list[Component]:
-        """Give the parts with other values of the parameters."""
+        """Give the parts with these values of the parameters."""
         changes: dict[int, dict[str, float]] = {}
         for name, value in values.items():
             place = self.places[name]
@@ -110,11 +110,11 @@ class TrialSystems:
         ]
 
     def assembly(self, values: Mapping[str, float]) -> Assembly:
-        """Give a system for a run, without the warnings that a user is to read."""
+        """Assemble a system for a run, without the warnings for users."""
         return assemble(self._with(values), **self._options)
 
     def system(self, values: Mapping[str, float]) -> System:
-        """Give a system as users have it."""
+        """Give the system with these values of the parameters."""
         return System(*self._with(values), **self._options)
 
 

@@ -1,4 +1,4 @@
-"""A ground motion as a labelled dataset, and back, bit for bit."""
+"""Conversion of a ground motion to a labelled dataset and back, without loss."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PIECES_DIMS: Final = ("interval", "power")
 
 
 def to_dataset(motion: MotionValue) -> xr.Dataset:
-    """Write the motion as a dataset that plain xarray can store.
+    """Convert the motion to a dataset that xarray can store.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def to_dataset(motion: MotionValue) -> xr.Dataset:
         if values is not None
     }
     time = np.arange(len(motion)) * si.time_step
-    # no axis and no standard name: CF 4.4 keeps them for times since a date
+    # no axis and no standard name: CF 4.4 reserves them for times since a date
     axis = {"units": str(Unit.SECOND), "long_name": "time from the first sample"}
     attributes: dict[str, str | float] = {
         "Conventions": CONVENTIONS,
@@ -70,12 +70,12 @@ def to_dataset(motion: MotionValue) -> xr.Dataset:
 
 
 def from_dataset(kind: type[Made], dataset: xr.Dataset) -> Made:
-    """Read what :meth:`to_dataset` wrote, bit for bit.
+    """Build the motion from the result of :meth:`to_dataset`, identical bit for bit.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        With ``acceleration`` over ``time``.
+        Dataset with ``acceleration`` over ``time``.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def from_dataset(kind: type[Made], dataset: xr.Dataset) -> Made:
     Raises
     ------
     SchemaError
-        Not such a dataset, or its samples were changed since.
+        The dataset is not of this form, or its samples have been changed.
 
     Examples
     --------

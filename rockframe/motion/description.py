@@ -1,4 +1,4 @@
-"""A ground motion from plain values; its name as people see it; as notebooks show it."""
+"""A ground motion from its description; its name for readers; its HTML for notebooks."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
 
 
 def shown_name(name: str, history: Iterable[str]) -> str:
-    """Put the factor of a scaled motion before its name."""
+    """Give the name of a motion, with the factor of a scaled one before it."""
     steps = [_SCALED.fullmatch(step) for step in history]
     factor = math.prod(float(step[1]) for step in steps if step is not None)
     return name if factor == 1.0 else f"{factor:.6g} times {name}"
 
 
 _TOLD: tuple[str, ...] = ("event", "station", "component")
-"""Metadata that stand on a card, where a file told them."""
+"""Metadata that notebooks show, if the file has them."""
 
 
 def motion_html(motion: MotionValue) -> str:
@@ -50,7 +50,7 @@ def motion_html(motion: MotionValue) -> str:
 
 
 def peak_words(motion: MotionValue) -> str:
-    """Tell the largest horizontal acceleration."""
+    """Give the largest horizontal acceleration of the samples as a text."""
     samples = np.asarray(motion.si.horizontal.samples)
     return _in_gravity(float(np.abs(samples).max(initial=0.0)))
 
@@ -60,7 +60,7 @@ def _in_gravity(peak: float) -> str:
 
 
 CONSTRUCTORS: Final = (*PULSES, "stochastic")
-"""Constructors that a recipe may name."""
+"""Constructors that a description may name."""
 
 OPERATIONS: Final = (
     "window",
@@ -72,16 +72,16 @@ OPERATIONS: Final = (
     "rotated",
     "through_storeys",
 )
-"""Operations that a recipe may name."""
+"""Operations that a description may name."""
 
 
 def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
-    """Build the motion that :meth:`to_dict` described.
+    """Build the motion from the result of :meth:`to_dict`.
 
     Parameters
     ----------
     description : mapping
-        As written by :meth:`to_dict`.
+        Result of :meth:`to_dict`.
 
     Returns
     -------
@@ -90,8 +90,7 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
     Raises
     ------
     SchemaError
-        The motion is a record without its samples, which must be supplied, or the
-        description fits no constructor.
+        The description is of a record without its samples, or does not fit a constructor.
 
     Examples
     --------
@@ -112,14 +111,17 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
         known = " and ".join(
             f"{key} {arguments[key]}" for key in ("name", "sha256") if key in arguments
         )
-        msg = f"found only {known or 'a description'} of a record; supply the record itself"
+        msg = (
+            f"found only {known or 'a description'} of a record without its samples; read the "
+            "record itself"
+        )
         raise SchemaError(msg)
     if constructor not in CONSTRUCTORS:
         found = f"{shown(constructor)}{nearest(constructor, CONSTRUCTORS)}"
         msg = f"found the constructor {found}; expected one of {', '.join(CONSTRUCTORS)}"
         raise SchemaError(msg)
     if constructor == "stochastic":
-        # written where one corner, then the default, was left out
+        # older descriptions leave out one corner, which was the default
         arguments.setdefault("source", "one corner")
     try:
         motion = getattr(kind, constructor)(**arguments)
@@ -133,13 +135,13 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
                 given = {**given, "other": from_dict(kind, given["other"])}
             motion = getattr(motion, name)(**given)
     except TypeError as problem:
-        msg = f"found arguments that do not fit {constructor} or what was done to it: {problem}"
+        msg = f"found arguments that do not fit {constructor} or its operations: {problem}"
         raise SchemaError(msg) from problem
     return motion
 
 
 def _sampled(kind: type[Made], description: Mapping[str, Any]) -> Made:
-    """Build a motion from its samples, which must be those of its digest."""
+    """Build a motion from its samples, and compare these with the digest."""
     try:
         step, upwards = description["time_step"], description["vertical"]
         horizontal = Signal(step, **_arrays(description["horizontal"]))
@@ -155,7 +157,7 @@ def _sampled(kind: type[Made], description: Mapping[str, Any]) -> Made:
         msg = f"found a description that holds no ground motion: {problem}"
         raise SchemaError(msg) from problem
     if motion.sha256 != written:
-        msg = "found samples that differ from those 'sha256' was written for; expected the same"
+        msg = "found samples that differ from those of the digest 'sha256'; expected the same"
         raise SchemaError(msg)
     return motion
 

@@ -1,4 +1,4 @@
-"""The ground motion: what it is made from, and what may be done to it."""
+"""The ground motion with its constructors and operations."""
 
 from __future__ import annotations
 
@@ -28,25 +28,24 @@ from rockframe.signals import Motion
 class GroundMotion(AnalyticMotion):
     """Acceleration of the ground over time; immutable.
 
-    Build one with :meth:`read`, :meth:`example`, :meth:`from_arrays`,
-    :meth:`from_times`, :meth:`from_frame`, :meth:`from_trace`,
-    :meth:`from_dataset`, or as an analytic pulse: :meth:`sine_pulse`, :meth:`type_a_pulse`,
-    :meth:`ricker_wavelet` and others, or as a synthetic earthquake with
-    :meth:`stochastic`. Every processing step returns a new motion
-    and adds a sentence to its `history`.
+    A record comes from :meth:`read`, :meth:`example`, :meth:`from_arrays`, :meth:`from_times`,
+    :meth:`from_frame`, :meth:`from_trace` or :meth:`from_dataset`; an analytic pulse from
+    :meth:`sine_pulse`, :meth:`type_a_pulse`, :meth:`ricker_wavelet` and others; a synthetic
+    earthquake from :meth:`stochastic`. Every operation returns a new motion and adds a sentence to
+    its `history`.
 
     Parameters
     ----------
     si : Motion
-        The motion in SI units, for those who have it.
+        The motion in SI units.
     name : str, optional
-        For titles and messages.
+        Name for titles and messages.
     metadata : mapping, optional
         Strings and numbers.
     history : tuple of str, optional
-        One sentence per step.
+        One sentence per processing step.
     recipe : mapping, optional
-        Constructor and arguments of an analytic motion.
+        Constructor and arguments of an analytic motion, and the operations on it since.
 
     Examples
     --------
@@ -61,7 +60,7 @@ class GroundMotion(AnalyticMotion):
 
         @wraps(MotionValue.__init__, assigned=())
         def __new__(cls, *given, **named):
-            """Refuse what is no motion yet, and tell how motions are made."""
+            """Refuse arguments other than a motion, and name the constructors."""
             if cls.__init__ is not MotionValue.__init__:
                 return super().__new__(cls)
             usage = (
@@ -69,7 +68,7 @@ class GroundMotion(AnalyticMotion):
                 f"or a pulse such as {cls.__name__}.sine_pulse()"
             )
             if not given and "si" not in named:
-                msg = f"{cls.__name__}: it is not built by calling it; write {usage}"
+                msg = f"{cls.__name__}: it is not built by calling the class; write {usage}"
                 raise ArgumentError(msg)
             si = given[0] if given else named["si"]
             if not isinstance(si, Motion):
@@ -77,7 +76,7 @@ class GroundMotion(AnalyticMotion):
                 raise ComponentError(msg)
             return super().__new__(cls)
 
-    # Other constructors and operations are functions, each with its documentation, whose first
+    # Other constructors and operations are functions with their own documentation; their first
     # argument is the class, or the motion.
 
     read = classmethod(records.read)

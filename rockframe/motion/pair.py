@@ -24,35 +24,34 @@ from rockframe.signals.integrals import arias_history
 from rockframe.units import ANGLE, Quantity, QuantityLike
 
 _RIGHT_ANGLE: Final = 90.0
-_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole ones
+_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
 _EXAMPLE: Final = "HorizontalPair(north, east)"
 
 
 @proposing
 @dataclass(frozen=True)
 class HorizontalPair(metaclass=Proposing):
-    """Two horizontal components at a right angle, and perhaps the vertical one.
+    """Two horizontal components at a right angle, and optionally the vertical one.
 
     Parameters
     ----------
     first, second : GroundMotion
-        The horizontal components, of the same time step and, where their files tell it, of the
-        same start, to a tenth of the time step; the shorter one is taken as padded with zeros.
-        Vertical components in them stay beside them.
+        The horizontal components, of the same time step. Their starts, if both are known, agree
+        to a tenth of the time step. The shorter one is padded with zeros. Vertical components in
+        them are kept.
     vertical : GroundMotion, optional
-        The vertical component, upwards.
+        The vertical component, positive upwards.
 
     Raises
     ------
     ComponentError
-        Not motions, of different time steps or starts, or not at a right angle by their
-        azimuths.
+        Not motions, of different time steps or starts, or with azimuths that are not at a right
+        angle.
 
     Warns
     -----
     RecordWarning
-        One of the two has a vertical component beside it and the other has none, so that only
-        one of them shakes vertically.
+        Only one of the two has a vertical component, so that only this one shakes vertically.
 
     Examples
     --------
@@ -92,13 +91,13 @@ class HorizontalPair(metaclass=Proposing):
         if self.vertical is None and upwards[0] != upwards[1]:
             words = (
                 f"{owner}: only the {'first' if upwards[0] else 'second'} component has a vertical "
-                "one beside it; give it as vertical="
+                "one; give it as vertical= for both"
             )
             warn(words, RecordWarning)
 
     @classmethod
     def read(cls, path: RecordLike, format: str | None = None) -> HorizontalPair:  # noqa: A002
-        """Read both horizontal components of one file, and the vertical one if it is there.
+        """Read both horizontal components of one file, and the vertical one if the file has it.
 
         Parameters
         ----------
@@ -115,8 +114,8 @@ class HorizontalPair(metaclass=Proposing):
         Raises
         ------
         RecordError
-            It cannot be read, or does not hold two horizontal components and at most one
-            vertical one.
+            The file cannot be read, or does not contain two horizontal components and at most
+            one vertical one.
 
         Examples
         --------
@@ -157,12 +156,12 @@ class HorizontalPair(metaclass=Proposing):
 
     @property
     def name(self) -> str:
-        """What titles and messages call it."""
+        """Name for titles and messages."""
         return f"{self.first.name}, {self.second.name}"
 
     @property
     def components(self) -> tuple[GroundMotion, GroundMotion]:
-        """Both horizontal components, each with the vertical one beside it, if there is one."""
+        """Both horizontal components, each with the vertical one, if the pair has it."""
         if self.vertical is None:
             return self.first, self.second
         return self.first.with_vertical(self.vertical), self.second.with_vertical(self.vertical)
@@ -187,14 +186,14 @@ class HorizontalPair(metaclass=Proposing):
         Parameters
         ----------
         angle : str or Quantity, optional
-            From the first component towards the second one [rad].
+            Angle from the first component towards the second one [rad].
         azimuth : str or Quantity, optional
-            Instead of `angle`: clockwise from north [rad].
+            Azimuth instead of `angle`, clockwise from north [rad].
 
         Returns
         -------
         GroundMotion
-            With the vertical component beside it, if the pair has one.
+            With the vertical component, if the pair has one.
 
         Raises
         ------
@@ -214,18 +213,18 @@ class HorizontalPair(metaclass=Proposing):
     def velocity_pulse(
         self, *, shortest_period: QuantityLike = SHORTEST, longest_period: QuantityLike = LONGEST
     ) -> VelocityPulse[GroundMotion]:
-        """Find the strongest velocity pulse of all directions, extract it, and judge it.
+        """Find the strongest velocity pulse of all directions, extract it, and classify it.
 
         Parameters
         ----------
         shortest_period, longest_period : str or Quantity, optional
-            Between which periods it is looked for [s].
+            Range of periods of the search [s].
 
         Returns
         -------
         VelocityPulse
-            Of the component in the direction `angle`, in which the wavelet transform of the
-            velocity is greatest, :eq:`eq-pulse-direction` (Shahi and Baker 2014).
+            Pulse of the component in the direction `angle`, in which the wavelet transform of
+            the velocity is greatest, :eq:`eq-pulse-direction` (Shahi and Baker 2014).
 
         Raises
         ------
@@ -250,12 +249,12 @@ class HorizontalPair(metaclass=Proposing):
         return replace(pulse, angle=with_quantity(direction, ANGLE))
 
     def in_axes(self, angle: QuantityLike) -> HorizontalPair:
-        """Give the components along axes that are turned.
+        """Give the components along rotated axes.
 
         Parameters
         ----------
         angle : str or Quantity
-            From the first component towards the second one [rad].
+            Angle of rotation, from the first component towards the second one [rad].
 
         Returns
         -------
@@ -275,14 +274,14 @@ class HorizontalPair(metaclass=Proposing):
         (<Quantity(5.0, 'meter / second ** 2')>, <Quantity(0.0, 'meter / second ** 2')>)
         """
         along = self.first.rotated(self.second, angle)
-        # the second axis of the turned pair is that of the second component, turned back
+        # the second rotated axis lies between the second component and the reversed first one
         mirrored = self.first.scaled(-1.0)
         across = self.second.rotated(mirrored, angle)
         return HorizontalPair(along, across, self.vertical)
 
 
 def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
-    """Compute :eq:`eq-principal-axes`: angle [rad], Arias intensities [m s^-1]."""
+    """Compute :eq:`eq-principal-axes`: angle [rad], principal Arias intensities [m s^-1]."""
     own = [_intensity(one) for one in pair.signals]
     both = _intensity(pair.rotated("45 deg").si.horizontal)
     common = both - 0.5 * (own[0] + own[1])
@@ -305,5 +304,5 @@ def _check_alike(first: GroundMotion, other: GroundMotion, name: str, owner: str
         raise ComponentError(msg)
     starts = first.metadata.get("record_time"), other.metadata.get("record_time")
     if not same_start(starts[0], starts[1], steps[0]):
-        msg = f"{owner}: first starts at {starts[0]}, {name} at {starts[1]}"
+        msg = f"{owner}: first starts at {starts[0]}, {name} at {starts[1]}; expected one start"
         raise ComponentError(msg)

@@ -1,7 +1,7 @@
-"""Analytic motions, sampled so finely that a simulation cannot tell the difference.
+"""Analytic motions as samples with quintic polynomials between them.
 
-Sines and their sums, Ricker wavelets, and impulses of a stated, short length: functions of time
-become samples with a quintic polynomial between each two.
+Sines and their sums, Ricker wavelets, and impulses of short duration. The samples are so dense
+that the interpolation error is negligible in simulations.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.motion import MAXIMUM_SAMPLES
 
 Shape: TypeAlias = Callable[[Array, float], tuple[Array, Array, Array]]
-"""Gives a, a' h and a'' h^2 [m s^-2] at some places, and for the step h between them.
+"""Function of places x and their step h: gives a, a' h and a'' h^2 at these places [m s^-2].
 
-Places and step count periods; the derivatives are those by the place.
+Places and step are times over the period; derivatives are by x.
 """
 
 
@@ -61,7 +61,7 @@ def hermite_pieces(value: Array, slope: Array, curvature: Array) -> Array:
 
 
 INTERVALS_PER_CYCLE: Final = 128
-"""Quintic pieces per cycle: (2 pi/128)^6/(64 * 720) = 3.0e-13 of the amplitude."""
+"""Quintic pieces per cycle; the error is (2 pi/128)^6/(64 * 720) = 3.0e-13 of the amplitude."""
 
 QUARTER_TURN: Final = 0.5 * math.pi
 _HALF: Final = 0.5
@@ -70,7 +70,7 @@ _ROUNDS: Final = 20
 
 
 class _Sine(NamedTuple):
-    """``amplitude sin(2 pi (ratio x + start))`` over the place x, in periods."""
+    """``amplitude sin(2 pi (ratio x + start))``; x is the time over the period."""
 
     amplitude: float
     ratio: float
@@ -99,12 +99,12 @@ def type_c(owner: str, velocity: float, period: float, order: int) -> Motion:
 
 
 def type_c_phase(order: int) -> float:
-    """Find the phase with which a type C pulse brings the ground back to its place.
+    """Find the phase of a type C pulse after which the ground has no residual displacement.
 
     It is the root of :eq:`eq-type-c-phase` in (0, pi/2).
     """
     phase = 0.0
-    for _ in range(_ROUNDS):  # each shrinks the error at least 21 times
+    for _ in range(_ROUNDS):  # each iteration reduces the error at least by a factor of 21
         phase = math.atan(1.0 / ((order + _HALF) * math.pi - phase))
     return phase
 
@@ -112,7 +112,7 @@ def type_c_phase(order: int) -> float:
 def mavroeidis_papageorgiou(
     owner: str, velocity: float, frequency: float, cycles: float, phase: float = 0.0
 ) -> Motion:
-    """Build the pulse of Mavroeidis and Papageorgiou as its three sines, :eq:`eq-mp-sines`."""
+    """Build the pulse of Mavroeidis and Papageorgiou as a sum of three sines, :eq:`eq-mp-sines`."""
     amplitude = -math.pi * frequency * velocity
     start = phase / (2.0 * math.pi)
 
@@ -130,7 +130,7 @@ def mavroeidis_papageorgiou(
 
 
 def sine_of_turns(turns: Array) -> Array:
-    """Compute sin(2 pi x), exactly zero at every half turn."""
+    """Compute sin(2 pi x), exactly zero at multiples of one half."""
     rest = turns - np.round(turns)
     folded = np.where(np.abs(rest) > _QUARTER, np.copysign(_HALF, rest) - rest, rest)
     return np.sin(2.0 * math.pi * folded)
@@ -156,13 +156,13 @@ def _along(part: _Sine, places: Array, step: float) -> tuple[Array, Array, Array
 
 
 INTERVALS_PER_PERIOD: Final = 256
-"""Quintic pieces per period: 6e-14 of the amplitude at most, 105 h^6/(64 * 720)."""
+"""Quintic pieces per period; the error is at most 6e-14 of the amplitude, 105 h^6/(64 * 720)."""
 
 PERIODS_PER_SIDE: Final = 2.5
-"""Periods from the centre to both ends, where 7e-16 of the amplitude is left."""
+"""Periods from the centre to both ends, where the wavelet has 7e-16 of its amplitude."""
 
 _LEFT_ROOT: Final = 3.0 - math.sqrt(6.0)
-"""Square of the place where He_3(x) exp(-x^2/2) is greatest."""
+"""Square of the x at which the magnitude of He_3(x) exp(-x^2/2) is greatest."""
 
 
 class _Derivative(NamedTuple):
@@ -212,15 +212,15 @@ def _hermite(degree: int, place: Array) -> Array:
 
 
 INTERVALS_PER_IMPULSE: Final = 16
-"""Pieces per impulse. One would do, but the samples alone should show it, too."""
+"""Pieces per impulse. One would be exact, but the samples should show the impulse, too."""
 
 _ROUNDING: Final = 1e-9
 _SHORT: Final = 0.01
-"""Length of an impulse over the time between two, unless told otherwise."""
+"""Default duration of an impulse over the time between two [1]."""
 
 
 def impulse_duration(owner: str, longest: float | None, interval: float) -> float:
-    """Give the longest duration of which `interval` is a whole multiple."""
+    """Give the longest duration up to `longest` of which `interval` is a whole multiple."""
     if longest is None:
         longest = _SHORT * interval
     if longest > interval:

@@ -1,4 +1,4 @@
-"""Arrays of quantities: how they come in, and how they leave with their unit."""
+"""Conversion of arrays of quantities to SI units, and back to quantities."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ _EXAMPLE: Final = "(values, 'm/s^2')"
 
 
 def with_quantity(value: float | Array, measure: Measure) -> Quantity:
-    """Give an SI number or array its unit back."""
+    """Make a quantity from a number or array in SI units."""
     registry: Any = pint.get_application_registry()
     own = value.copy() if isinstance(value, np.ndarray) else value
     return registry.Quantity(own, str(measure.unit))
 
 
 def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
-    """Convert an array argument to accelerations in SI units, or refuse it."""
+    """Convert an argument to an array of accelerations [m s^-2]; raise an error otherwise."""
     if isinstance(value, xr.DataArray):
         if _is_quantity(value.data):
             return accelerations_to_si(value.data, owner=owner, name=name)
@@ -70,7 +70,7 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
 
 
 def times_to_si(value: object, *, owner: str, name: str) -> Array:
-    """Convert an array argument to times in seconds, or refuse it."""
+    """Convert an argument to an array of increasing times [s]; raise an error otherwise."""
     values: object
     factor = 1.0
     if getattr(getattr(value, "dtype", None), "kind", "") in {"m", "M"}:
@@ -97,7 +97,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
         raise UnitsError(msg)
     times = _scaled(values, factor, owner, name)
     if times.size < 2 or not np.isfinite(times).all() or not (np.diff(times) > 0.0).all():
-        msg = f"{owner}: {name} needs two or more finite times that rise from each to the next"
+        msg = f"{owner}: {name} needs two or more finite times, in increasing order"
         raise ComponentError(msg)
     return times
 
@@ -105,7 +105,7 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
 def _unit_factor(unit: str, owner: str, name: str, *, udunits: bool = False) -> float:
     known = acceleration_unit(unit)
     if udunits and known is not None and known.spelling.endswith("/s^2"):
-        return known.factor  # 'm s-2', 'm/s2': right in UDUNITS, which labels follow
+        return known.factor  # 'm s-2', 'm/s2': UDUNITS spellings, usual in attributes
     try:
         return to_si(f"1 {unit}", ACCELERATION, owner=owner, name=name)
     except UnitsError as problem:
@@ -137,7 +137,7 @@ def _scaled(values: object, factor: float, owner: str, name: str) -> Array:
 
 
 def _is_quantity(value: object) -> bool:
-    module: Any = pint  # its Quantity is a generic that strict checkers cannot follow
+    module: Any = pint  # pint.Quantity is generic, which strict type checkers cannot follow
     return isinstance(value, module.Quantity)
 
 
@@ -147,13 +147,13 @@ def _has_unit(value: object) -> TypeGuard[tuple[object, str]]:
 
 
 def declared_times(value: object) -> Array | None:
-    """Give the times that an array carries itself: a time axis, or the index of a Series."""
+    """Give the times that an array has itself: a time axis, or the index of a Series."""
     held = cast("tuple[object, ...]", value)[0] if isinstance(value, tuple) and value else value
     if isinstance(held, xr.DataArray):
         if held.dims != ("time",) or "time" not in held.coords:
             return None
         axis = held["time"]
-        whole = axis.dtype.kind in "iu" and "units" in axis.attrs  # without a unit they may count
+        whole = axis.dtype.kind in "iu" and "units" in axis.attrs  # else they may be row numbers
         times = axis.values.astype(np.float64) if whole else axis.values
         return relative_seconds(times, axis.attrs.get("units", "s"))
     if _is_quantity(held):
@@ -165,7 +165,7 @@ def declared_times(value: object) -> Array | None:
 
 
 def relative_seconds(axis: object, unit: object) -> Array | None:
-    """Give an axis in seconds from its first time."""
+    """Convert an axis to seconds from its first time; None if it is no time axis."""
     given: Any = axis
     if getattr(getattr(axis, "dtype", None), "tz", None) is not None:
         import pandas as pd

@@ -1,4 +1,4 @@
-"""Where the readers of records stood before :mod:`rockframe.records`."""
+"""Old name of :mod:`rockframe.records`."""
 
 import warnings
 from typing import Any

@@ -1,7 +1,7 @@
-"""Accelerograms of an earthquake that nobody recorded: the stochastic point source.
+"""Synthetic accelerograms of the stochastic point source.
 
-What an earthquake radiates, what becomes of it between source and site, and what the last
-kilometres below the site do; then windowed noise of the spectrum that this leads to.
+The target spectrum is that of source, path and site: radiation, attenuation in the crust, and
+amplification and diminution near the surface. Windowed noise is given this spectrum.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
 RADIATION_PATTERN: Final = 0.55
-"""Average of the shear waves over the focal sphere [1] (Boore and Thompson 2015)."""
+"""Radiation pattern of shear waves, mean over the focal sphere [1] (Boore and Thompson 2015)."""
 
 PARTITION: Final = 0.707
-"""Share of one of two horizontal components [1] (Boore and Thompson 2015)."""
+"""Fraction of the amplitude in one of two horizontal components [1] (Boore and Thompson 2015)."""
 
 FREE_SURFACE: Final = 2.0
 """A free surface doubles an arriving wave [1] (Boore and Thompson 2015)."""
@@ -31,7 +31,7 @@ REFERENCE_DISTANCE: Final = 1_000.0
 CORNER: Final = 0.4906
 """Factor of the corner frequency [1]: Brune's circular crack, 2.34/(2 pi) cbrt(16/7).
 
-Boore (2003) has it as 4.906e6, for km/s, bar and dyn cm.
+In Boore (2003) it is 4.906e6, for km/s, bar and dyn cm.
 """
 
 
@@ -39,11 +39,11 @@ LOWER_CORNER: Final = (2.181, -0.496)
 """Lower of two corner frequencies: log10(f/Hz) = a + b M (Atkinson and Silva 2000)."""
 
 SHARE_OF_UPPER: Final = (0.605, -0.255)
-"""Share of the upper one in the spectrum: log10 = a + b M (Atkinson and Silva 2000)."""
+"""Weight of the upper one in the spectrum: log10 = a + b M (Atkinson and Silva 2000)."""
 
 
 class Corners(StrEnum):
-    """How many corner frequencies the spectrum of the source has."""
+    """Number of corner frequencies in the spectrum of the source."""
 
     ONE = "one corner"
     TWO = "two corners"
@@ -60,13 +60,13 @@ SMALL_FAULT: Final = (-1.72, 0.43)
 """Saturation length of smaller earthquakes: log10(h/km) = a + b M (Yenier and Atkinson 2014)."""
 
 LARGE_FAULT: Final = (-0.405, 0.235)
-"""The same of larger ones (Yenier and Atkinson 2015)."""
+"""Saturation length of larger earthquakes (Yenier and Atkinson 2015)."""
 
 TRANSITION: Final = 2.0
-"""Width of the passage from one to the other, in magnitudes (Boore and Thompson 2015)."""
+"""Width of the transition between them, in magnitudes (Boore and Thompson 2015)."""
 
 SPREADING_BREAK: Final = 40.0 * KILOMETRE
-"""Waves spread as 1/R up to here, as R^-0.5 beyond [m] (Raoof et al. 1999)."""
+"""Distance up to which waves spread as 1/R, beyond it as R^-0.5 [m] (Raoof et al. 1999)."""
 
 QUALITY_VELOCITY: Final = 3_500.0
 """Velocity for which the quality factor was determined [m s^-1] (Boore and Thompson 2015)."""
@@ -85,11 +85,11 @@ FINAL_SLOPE: Final = 0.156
 """Growth of the path duration beyond the last distance [s/km] (Boore and Thompson 2014)."""
 
 LARGEST_DISTANCE: Final = PATH_DURATIONS[-1][0] * KILOMETRE
-"""Beyond it the path duration is extrapolated [m]."""
+"""Distance beyond which the path duration is extrapolated [m]."""
 
 
 def saturation_length(magnitude: float) -> float:
-    """Compute how far away a large fault seems, seen from itself, :eq:`eq-saturation`."""
+    """Compute the effective distance of a fault at zero distance, :eq:`eq-saturation` [m]."""
     (a, b), (c, d) = SMALL_FAULT, LARGE_FAULT
     start = (c - a) / (b - d) - 0.5 * TRANSITION
     within = min(max(magnitude - start, 0.0), TRANSITION)
@@ -113,14 +113,14 @@ def crustal_attenuation(
 
 
 def path_duration(distance: float) -> float:
-    """Compute how much the path lengthens the motion, :eq:`eq-duration`."""
+    """Compute the duration that the path adds to the motion, :eq:`eq-duration` [s]."""
     kilometres, seconds = zip(*PATH_DURATIONS, strict=True)
     beyond = max(distance - LARGEST_DISTANCE, 0.0) / KILOMETRE
     return float(np.interp(distance / KILOMETRE, kilometres, seconds)) + FINAL_SLOPE * beyond
 
 
 class Site(StrEnum):
-    """Ground of the site, by the mean shear-wave velocity of its upper 30 m in m/s."""
+    """Ground of the site, by the mean shear-wave velocity of the upper 30 m [m s^-1]."""
 
     ROCK_760 = "rock 760"
     ROCK_620 = "rock 620"
@@ -189,7 +189,7 @@ def diminution(frequency: Array, kappa: float) -> Array:
 
 @dataclass(frozen=True)
 class PointSource:
-    """An earthquake, seen from a site: all that the stochastic model knows of both.
+    """Parameters of the stochastic model: an earthquake and a site.
 
     The defaults are those of Boore and Thompson (2015) for active crustal regions.
     """
@@ -212,12 +212,12 @@ class PointSource:
 
     @property
     def corner_frequency(self) -> float:
-        """Of a source that has one, :eq:`eq-corner-frequency` (Brune 1970, 1971) [Hz]."""
+        """Single corner frequency, :eq:`eq-corner-frequency` (Brune 1970, 1971) [Hz]."""
         return CORNER * self.shear_wave_velocity * math.cbrt(self.stress_drop / self.moment)
 
     @property
     def two_corners(self) -> tuple[float, float, float]:
-        """Corners of a large fault [Hz], share of the upper one [1], :eq:`eq-two-corners`."""
+        """Both corners of a large fault [Hz], weight of the upper one [1], :eq:`eq-two-corners`."""
         (a, b), (c, d) = LOWER_CORNER, SHARE_OF_UPPER
         lower = 10.0 ** (a + b * self.magnitude)
         share = 10.0 ** (c + d * self.magnitude)
@@ -250,13 +250,13 @@ class PointSource:
 
     @property
     def displacement_level(self) -> float:
-        """Level of the source's displacement spectrum for long waves, :eq:`eq-source-level`."""
+        """Displacement spectrum of the source at low frequencies, :eq:`eq-source-level` [m s]."""
         share = RADIATION_PATTERN * PARTITION * FREE_SURFACE
         sphere = 4.0 * math.pi * self.density * self.shear_wave_velocity**3 * REFERENCE_DISTANCE
         return share * self.moment / sphere
 
     def shape(self, frequency: Array) -> Array:
-        """Give the shape of the source's spectrum; of two corners :eq:`eq-two-corner-shape`."""
+        """Give the shape of the source spectrum; with two corners :eq:`eq-two-corner-shape`."""
         if self.corners is Corners.ONE:
             return source_shape(frequency, self.corner_frequency)
         lower, upper, share = self.two_corners
@@ -281,32 +281,32 @@ class PointSource:
 
 
 WINDOW_PEAK: Final = 0.2
-"""Place of the window's peak, over its length [1] (Boore 2003)."""
+"""Time of the peak of the window, over its length [1] (Boore 2003)."""
 
 WINDOW_END: Final = 0.05
-"""Window at its end, over its peak [1] (Boore 2003)."""
+"""Value of the window at its end, over its peak [1] (Boore 2003)."""
 
 WINDOW_LENGTH: Final = 2.12
 """Length of the window over the duration of source and path [1] (Boore and Thompson 2015)."""
 
 SHORTEST_FADE: Final = 1.0
-"""The motion takes at least so long to begin, and to end [s]."""
+"""Shortest time in which the motion fades in, and out [s]."""
 
 
 def accelerogram(source: PointSource, time_step: float, seed: int, stream: int = 0) -> Array:
-    """Draw windowed noise of the source's spectrum, :eq:`eq-noise-spectrum`, :eq:`eq-faded`."""
+    """Draw windowed noise with the target spectrum, :eq:`eq-noise-spectrum`, :eq:`eq-faded`."""
     from scipy import fft
 
     window = exponential_window(WINDOW_LENGTH * source.duration, time_step)
     noise = window * normal_numbers(window.size, seed, stream)
     fade = math.ceil(max(1.0 / source.lowest_corner, SHORTEST_FADE) / time_step)
     count = window.size + 2 * fade
-    # twice as long as needed: what the filter spreads beyond the ends must not come round
+    # twice as long as needed, so that the circular convolution does not wrap around
     points = cast("int", fft.next_fast_len(2 * count, real=True))
     padded = np.zeros(points)
     padded[fade : fade + noise.size] = noise / math.sqrt(float(noise @ noise))
     frequency = np.arange(points // 2 + 1) / (points * time_step)
-    # of unit mean square, times the target; the transform's sums stand for integrals over time
+    # noise of unit mean square times the target; the division turns sums into integrals over time
     spectrum = np.fft.rfft(padded) * source.displacement_spectrum(frequency) / time_step
     rate = 2j * math.pi * frequency
     displacement, velocity, acceleration = (
@@ -329,8 +329,9 @@ def exponential_window(length: float, time_step: float) -> Array:
 def normal_numbers(count: int, seed: int, stream: int) -> Array:
     """Draw normally distributed numbers that are the same in every version of NumPy.
 
-    A bit generator's raw numbers are (NEP 19); ``Generator.normal`` may change. They become
-    uniform numbers, :eq:`eq-uniform`, and normal ones through the inverse of the distribution.
+    Only the raw output of a bit generator is stable (NEP 19); ``Generator.normal`` may change.
+    It is converted to uniform numbers, :eq:`eq-uniform`, and by the inverse of the cumulative
+    distribution to normal ones.
     """
     from scipy import special
 
@@ -340,7 +341,7 @@ def normal_numbers(count: int, seed: int, stream: int) -> Array:
 
 
 def faded(count: int, fade: int, time_step: float) -> tuple[Array, Array, Array]:
-    """Compute a smooth step up at the start and down at the end, :eq:`eq-step`."""
+    """Give a smooth step up at the start and down at the end, and derivatives, :eq:`eq-step`."""
     x = np.minimum(np.arange(fade + 1) / fade, 1.0)
     rises = (
         x**3 * (10.0 - 15.0 * x + 6.0 * x**2),

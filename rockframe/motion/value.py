@@ -1,4 +1,4 @@
-"""The immutable value behind a ground motion: its numbers, its name, its past."""
+"""The immutable data of a ground motion: samples, name, metadata and history."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ class MotionValue(metaclass=Proposing):
     si : Motion
         The motion itself.
     name : str, optional
-        For titles and messages.
+        Name for titles and messages.
     metadata : mapping, optional
         Strings and numbers: event, station, unit as read, ...
     history : iterable of str, optional
-        One sentence per step.
+        One sentence per processing step.
     recipe : mapping, optional
-        Constructor and arguments of an analytic motion, and what was done to it since.
+        Constructor and arguments of an analytic motion, and the operations on it since.
 
     Raises
     ------
@@ -45,10 +45,10 @@ class MotionValue(metaclass=Proposing):
     """
 
     __slots__ = {
-        "history": "One sentence per step.",
+        "history": "One sentence per processing step.",
         "metadata": "Strings and numbers: event, station, unit as read, ...",
-        "name": "What titles and messages call it.",
-        "recipe": "Constructor and arguments of an analytic motion, and what was done to it since.",
+        "name": "Name for titles and messages.",
+        "recipe": "Constructor and arguments of an analytic motion, and later operations.",
         "si": "The motion in SI units.",
     }
 
@@ -193,7 +193,7 @@ def _one_line(text: str) -> str:
 
 
 class _Line(str):
-    """A sentence of a history, which is put on one line when it is written, not when copied."""
+    """A sentence of a history on one line; a copy is not processed again."""
 
     __slots__ = ()
 
@@ -207,15 +207,14 @@ def to_dict(motion: MotionValue, *, samples: bool = False) -> dict[str, Any]:
     Parameters
     ----------
     samples : bool
-        Whether a motion that only its samples describe is described by them too, with its
-        metadata and its history.
+        Whether the description of a record contains its samples, metadata and history.
 
     Returns
     -------
     dict
-        Plain values, fit for JSON: constructor and arguments of an analytic motion,
-        with the ``operations`` done to it since; ``constructor`` is None for a
-        motion that only its samples describe.
+        Values for JSON: constructor and arguments of an analytic motion, with the
+        ``operations`` on it since; ``constructor`` is None for a motion that is known by its
+        samples only.
 
     Examples
     --------

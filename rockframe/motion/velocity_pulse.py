@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from rockframe.units import Quantity
 
 LEAST_INDICATOR: Final = 0.85
-"""Of a motion that is pulse-like [1] (Baker 2007)."""
+"""Least pulse indicator of a pulse-like motion [1] (Baker 2007)."""
 
 LEAST_PEAK_VELOCITY: Final = 0.3
-"""Of a motion that is pulse-like [m s^-1] (Baker 2007)."""
+"""Least peak velocity of a pulse-like motion [m s^-1] (Baker 2007)."""
 
 
 @proposing
@@ -29,30 +29,29 @@ class VelocityPulse(Generic[Made]):
     Parameters
     ----------
     period : Quantity
-        Tp, the pseudo-period of its wavelets, :eq:`eq-pseudo-period` [s].
+        Pseudo-period T_p of its wavelets, :eq:`eq-pseudo-period` [s].
     time : Quantity
-        Middle of the strongest wavelet, from the start of the motion [s].
+        Time of the middle of the strongest wavelet, from the start of the motion [s].
     peak_velocity : Quantity
-        Of the whole motion [m s^-1].
+        Peak velocity of the motion [m s^-1].
     peak_ratio, energy_ratio : float
-        Peak and integral of the square of the residual velocity, over those of the whole [1].
+        Peak of the residual velocity, and integral of its square, over those of the motion [1].
     indicator : float
         Pulse indicator, from 0 (no pulse) to 1, :eq:`eq-pulse-indicator` [1].
     pulse_start, motion_start : Quantity
-        When a tenth of the squared velocity of the pulse is reached, and a fifth of that of the
-        motion [s].
+        Times at which a tenth of the integral of the squared velocity of the pulse is reached,
+        and a fifth of that of the motion [s].
     extracted, residual : GroundMotion
-        The motion of the pulse alone, and what it leaves. Together they are the motion, with
-        still ground before and after it so that the pulse begins and ends at rest.
+        The pulse alone, and the residual motion. Their sum is the motion, with zeros before and
+        after it, so that the pulse begins and ends at rest.
     lead : Quantity
-        Length of the still ground before the motion in both of them [s].
+        Duration of the zeros before the motion in both of them [s].
     angle : Quantity or None
-        Of a pair of components: direction of the pulse, from the first towards the
-        second [rad].
+        Direction of the pulse of a pair of components, from the first towards the second [rad].
 
     Notes
     -----
-    Printed, it tells the period, the indicator, and which criteria are not met.
+    Its text (``str``) gives the period, the indicator, and the criteria that are not met.
 
     Examples
     --------
@@ -77,7 +76,7 @@ class VelocityPulse(Generic[Made]):
 
     @property
     def unmet(self) -> tuple[str, ...]:
-        """What keeps the motion from being pulse-like, a sentence each."""
+        """The criteria of a pulse-like motion that are not met, a sentence each."""
         found: list[str] = []
         if not self.indicator > LEAST_INDICATOR:
             found.append(f"indicator {self.indicator:.3g} is not above {LEAST_INDICATOR:g}")

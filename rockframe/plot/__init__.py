@@ -53,7 +53,7 @@ __all__ = [
     "velocity_pulse",
 ]
 
-if not TYPE_CHECKING:  # or no name would be unknown to type checkers
+if not TYPE_CHECKING:  # otherwise type checkers would accept any name
     __getattr__ = attributes_of(__name__, __all__)
 
 

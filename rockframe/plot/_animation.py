@@ -1,4 +1,4 @@
-"""Scenes that move, with the trace of the rotation below."""
+"""Animations of runs: the scene, with the history of the rotation below."""
 
 from collections.abc import Callable
 from functools import partial
@@ -15,7 +15,7 @@ from rockframe.plot._checks import RUN, above_zero, checked_run, draws
 from rockframe.plot._panels import AxesLike, Figure, Panels, sheet
 from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
-from rockframe.plot._runs import Window, runs_of
+from rockframe.plot._runs import Window, runs_of, said_of
 from rockframe.plot._scene import Moving, figure_size
 from rockframe.proposals import proposing
 from rockframe.units import LENGTH
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 
 _USUAL_FRAMES: Final = 200
-"""That an animation has at most unless its speed is given."""
+"""Largest number of frames unless the speed is given."""
 _FRAMED: Final = 60
-"""Instants that the limits of the drawing are taken from."""
+"""Number of instants from which the limits of the drawing follow."""
 _MARK: Final = "animation by rockframe "
 _SIGNED: Final = f"{_MARK}{__version__}".encode()
 _COMMENT: Final = b"\x21\xfe%c%b\x00" % (len(_SIGNED), _SIGNED)  # a block of GIF89a
@@ -44,20 +44,20 @@ class Animation:
     """A run as an animation.
 
     Notebooks show it as a :class:`Player`; :meth:`save` writes a film, or the page of the player;
-    :meth:`play` moves it in a window.
+    :meth:`play` shows it in a window.
 
     Parameters
     ----------
     panels : Panels
-        What it is drawn in.
+        The panels of the figure.
     draw : callable
         Draws a frame by its number.
     rate : float
         Frames per second.
     times : ndarray, shape (frames,)
-        Of the run [s].
+        Times of the frames in the run [s].
     player : callable
-        Makes the same as a player.
+        Makes a player of the same run.
 
     Examples
     --------
@@ -87,7 +87,7 @@ class Animation:
 
     @property
     def figure(self) -> Figure:
-        """The figure that moves."""
+        """The figure in which the frames are drawn."""
         return self.panels.figure
 
     def save(self, path: str | Path, *, dpi: float = 100.0, overwrite: bool = False) -> Path:
@@ -96,13 +96,12 @@ class Animation:
         Parameters
         ----------
         path : str or Path
-            Its name ends in ``.gif``; in ``.mp4``, which ffmpeg makes where it is installed; or in
-            ``.html``, for the page that :func:`player` gives.
+            A file whose name ends in ``.gif``; in ``.mp4``, which needs ffmpeg; or in ``.html``,
+            for the page of :func:`player`.
         dpi : float, optional
             Pixels per inch of the frames of a film.
         overwrite : bool, optional
-            Whether a file that is there is replaced though it is no animation that this method
-            wrote.
+            Whether to replace an existing file that is not an animation written by this method.
 
         Returns
         -------
@@ -113,7 +112,7 @@ class Animation:
         FileError
             Another ending, a file that cannot be written or is not replaced, or no ffmpeg.
         UnitsError, ComponentError
-            A number of pixels that is none.
+            `dpi` is not a number above zero.
         """
         from matplotlib.animation import FFMpegWriter, PillowWriter
 
@@ -121,7 +120,7 @@ class Animation:
         if ending in KIND.endings:
             return self._player().save(path, overwrite=overwrite)
         dots = above_zero(dpi, "animation", "dpi")
-        # before the frames are drawn, which takes a while
+        # checked before the frames are drawn, which takes a while
         checked_path(path, _PICTURES, overwrite=overwrite)
         if ending == ".mp4" and not FFMpegWriter.isAvailable():
             words = "needs the program ffmpeg, which was not found; '.gif' and '.html' do without"
@@ -142,7 +141,7 @@ class Animation:
         return write_file(path, _PICTURES, write, overwrite=overwrite)
 
     def to_html(self) -> str:
-        """Give the page that :func:`player` gives.
+        """Give the page of :func:`player`.
 
         Returns
         -------
@@ -151,7 +150,7 @@ class Animation:
         return self._player().to_html()
 
     def play(self) -> None:
-        """Move the figure in the window that ``figure.show()`` opens, for as long as it is kept."""
+        """Play it in the window of ``figure.show()``, as long as this object exists."""
         self._playing = self._animated()
 
     def close(self) -> None:
@@ -172,7 +171,7 @@ class Animation:
         )
 
     def _repr_html_(self) -> str:
-        self.close()  # or the notebook would show its last picture too
+        self.close()  # otherwise the notebook would show the last frame too
         return self._player()._repr_html_()  # pyright: ignore[reportPrivateUsage]
 
     def __repr__(self) -> str:
@@ -197,36 +196,36 @@ def animation(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Animation:
-    """Animate a run: the scene to scale and where it touches, above the trace of the rotation.
+    """Animate a run: the scene to scale with its contacts, above the history of the rotation.
 
     Parameters
     ----------
     run : xarray.Dataset
         A result with histories.
     window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is shown; all of it unless given [s].
+        Start and end of what is shown; the whole run unless given [s].
     speed : float, optional
-        Time of the run over that of the animation; 1, or more where the animation would have more
-        than 200 frames, unless given [1].
+        Time of the run over that of the animation. Unless given 1, or more if the animation would
+        have more than 200 frames [1].
     frames_per_second : float, optional
-        Of the animation.
+        Frame rate of the animation [s^-1].
     magnify : float, optional
-        By which displacements are multiplied in the drawing of the scene [1].
+        Factor of displacements in the drawing of the scene [1].
     rotation : str, optional
-        Unit of the trace, as for :func:`rockframe.plot.response`; degrees unless given.
+        Unit of the history, as for :func:`rockframe.plot.response`; degrees unless given.
 
     Returns
     -------
     Animation
-        Its frames are the samples that are nearest; contact that changes faster is seen in the
-        strip at the bottom.
+        Its frames show the nearest samples of the run. The strip at the bottom shows contact
+        that changes faster than the frames.
 
     Raises
     ------
     SchemaError
         Not the result of a single run with histories.
     UnitsError, ComponentError
-        A window, speed or factor that is none.
+        A window, speed or factor that cannot be read or is out of range.
 
     Examples
     --------
@@ -248,7 +247,7 @@ def animation(
     times = np.linspace(drawn.time[0], drawn.time[-1], count)
     chosen = units_of(units, "animation")
     trace_in = chosen.rotations(rotation)
-    moving = Moving(drawn.dataset, "animation", magnify, chosen)
+    moving = Moving(drawn.dataset, "animation", magnify, chosen, run)
     shown_at = drawn.nearest(times)
     width, height = figure_size(moving.drawer, wide=False)
     names = ["scene", "rotation", *strips_of([drawn])]
@@ -263,9 +262,9 @@ def animation(
     trace.tick_params(labelbottom=False)
     artist = SceneArtist(above, moving.drawer, length=chosen.of(LENGTH))
     spread = shown_at[np.linspace(0, count - 1, min(count, _FRAMED)).astype(int)]
-    artist.frame([moving.at(int(place)) for place in spread])
-    artist.rest(moving.upright)
     artist.mark(moving.points)
+    artist.frame([moving.upright, *(moving.at(int(place)) for place in spread)])
+    artist.rest(moving.upright)
     cursors = [axes.axvline(times[0], color=GREY, linewidth=1.0) for axes in (trace, *strips)]
     line = trace.get_lines()[0]
     across, up = (np.asarray(values, np.float64) for values in line.get_data())
@@ -284,8 +283,8 @@ def animation(
         clock.set_text(moving.words(place))
 
     draw(0)
-    on.entitle(chosen.reader.of_sentence(str(run.attrs.get("verdict", ""))), title)
-    if ax is None:  # places are found once, not for every frame
+    on.entitle(said_of(run, chosen.reader), title)
+    if ax is None:  # the layout is computed once, not for every frame
         on.panels.figure.canvas.draw()
         on.panels.figure.set_layout_engine("none")
     page = partial(

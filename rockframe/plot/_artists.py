@@ -1,12 +1,14 @@
-"""A drawn scene: what is drawn where, and the artists that move from one instant to the next."""
+"""Drawing of a scene: the places of its parts, and the artists that follow them over time."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from textwrap import wrap
 from typing import Any, Final
 
 import numpy as np
 
+from rockframe.components import Component, Load
 from rockframe.dynamics.events import ContactState
 from rockframe.notebook import arguments_in_words
 from rockframe.plot._axes import (
@@ -19,52 +21,55 @@ from rockframe.plot._axes import (
     Shown,
     ink,
     measured_in,
+    plain,
+    raised,
 )
-from rockframe.plot._panels import Axes
+from rockframe.plot._panels import NO_BREAK, Axes
 from rockframe.results.points import Placement
 from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, LinkedPoints
 from rockframe.system.links import link_labels
 from rockframe.system.parts import Parts
+from rockframe.units.shown import ReaderUnits
 
 _PAD_WIDTH: Final = 0.17
-"""Over that of the base."""
+"""Width of a pad over that of the base."""
 _PAD_THICKNESS: Final = 0.06
 _LEAST_THICKNESS: Final = 0.15
-"""Of a pressed pad, over that of a pad at rest, however much the drawing magnifies."""
+"""Least thickness of a compressed pad over that at rest, at any magnification."""
 _SPRINGS: Final = 81
-"""Places at which the surface of the soil is drawn beneath a base."""
+"""Number of points of the surface of the soil beneath a base."""
 
 
 @dataclass(frozen=True)
 class Layout:
     """A scene in the coordinates of the drawing [m]."""
 
-    block: Array  # outlines; None where there is no cap
-    cap: Array | None
+    block: Array  # outline
+    cap: Array | None  # outline
     members: tuple[Array, ...]  # of a frame
     centre: Array  # the block's centre of mass
-    pads: tuple[Array, ...]  # left and right one, or none
-    pads_bear: tuple[bool, ...]  # whether each of them bears
+    pads: tuple[Array, ...]  # left and right, or none
+    pads_bear: tuple[bool, ...]  # whether each of them is in contact
     soil: Array | None  # its surface, from the left edge of the drawing to the right one
-    touching: tuple[Array, ...]  # where contact is: points, shape (1, 2), and lines
+    touching: tuple[Array, ...]  # contacts: points, shape (1, 2), and lines
     ground: Array  # surface of rigid ground, where there is no soil
     lower: tuple[Array, ...]  # outlines of the bodies of a stack beneath the block
-    ties: tuple[Array, ...]  # both ends of each restrainer, shape (2, 2)
+    ties: tuple[Array, ...]  # both ends of each restrainer, shape (2, 2); NaN once it broke
     others: tuple[Array, ...]  # outlines of a frame's other columns and of its beam
 
 
 @dataclass(frozen=True)
 class Drawer:
-    """Lays scenes out for drawing."""
+    """Lays out a scene for drawing."""
 
     geometry: Geometry  # of the scene
-    magnify: float = 1.0  # by which displacements are multiplied [1]
-    least_reach: float = 0.0  # half the width of the ground that is drawn at least [m]
+    magnify: float = 1.0  # factor of displacements [1]
+    least_reach: float = 0.0  # least half width of the ground in the drawing [m]
 
     @property
     def pad_thickness(self) -> float:
-        """With which pads are drawn; those of the equations have none [m]."""
+        """Thickness with which pads are drawn; those of the equations have none [m]."""
         sink = self.geometry.pads_sink
         if sink is None:
             return 0.0
@@ -72,7 +77,7 @@ class Drawer:
 
     @property
     def reach(self) -> float:
-        """Half the width of the ground that is drawn [m]."""
+        """Half width of the ground in the drawing [m]."""
         size = max(2.0 * self.geometry.base_half_width, 0.5 * self.geometry.height)
         return max(self.geometry.base_half_width + 0.6 * size, self.least_reach)
 
@@ -105,7 +110,10 @@ class Drawer:
         lower = tuple(
             self._moved(partial(at.lower, k), one.outline) for k, one in enumerate(geometry.lower)
         )
-        ties = tuple(self._tie(at, one) for one in geometry.ties)
+        ties = tuple(
+            np.full((2, 2), np.nan) if number in at.broken else self._tie(at, one)
+            for number, one in enumerate(geometry.ties)
+        )
         laid_out = (block, cap, members, centre, pads, bear, soil, touching, ground)
         return self._inclined(Layout(*laid_out, lower, ties, others))
 
@@ -114,17 +122,17 @@ class Drawer:
         ends = list[Array]()
         for point, k in zip(tie.points, tie.bodies, strict=True):
             place = at.block if k == 0 else partial(at.lower, k - 1)
-            if self.geometry.columns:  # tendons end in the beam
+            if self.geometry.columns:  # tendons of a frame end in the beam
                 place = at.beam
             ends.append(point if k < 0 else self._moved(place, point[None])[0])
         return np.array(ends)
 
     def points(self, at: Placement, places: Array) -> Array:
-        """Lay out points of the body that results are of, from the middle of its base."""
+        """Lay out points of the body to which results refer, from the middle of its base."""
         geometry = self.geometry
         below = geometry.place if geometry.stacked or geometry.lower else np.zeros(2)
         drawn = self._moved(at.block, places + below) + self._lift(at)
-        if geometry.columns:  # points of a column are drawn on the first
+        if geometry.columns:  # points of a column are drawn on the first column
             beside = np.where(places[:, 1:] > geometry.height, 0.0, geometry.columns[0])
             drawn = drawn + beside * np.array([1.0, 0.0])
         return self._turned(drawn)
@@ -134,7 +142,7 @@ class Drawer:
         return points + self.magnify * (moved - points)
 
     def _lift(self, at: Placement) -> Array:
-        """Give by how much pads between cap and block raise the block."""
+        """Give the displacement of the block in the drawing by the thickness of pads on a cap."""
         if not self.geometry.stacked:
             return np.zeros(2)
         angle = self.magnify * at.cap_rotation
@@ -192,7 +200,7 @@ class Drawer:
         return np.vstack(edges), touching
 
     def _turned(self, points: Array) -> Array:
-        """Turn the base line up to the right."""
+        """Rotate points by the inclination of the base, which rises to the right."""
         sine, cosine = np.sin(self.geometry.inclination), np.cos(self.geometry.inclination)
         return points @ np.array([(cosine, sine), (-sine, cosine)])
 
@@ -208,11 +216,11 @@ class Drawer:
 CONTACT: Final = VERMILLION
 SOIL: Final = "#a6794f"
 _DEPTH: Final = 0.3
-"""Of the ground that is drawn, over half its width."""
+"""Depth of the ground in the drawing, over half its width."""
 
 
 class SceneArtist:
-    """A drawing that follows a scene."""
+    """The artists of a scene, which follow it over time."""
 
     def __init__(
         self,
@@ -230,15 +238,15 @@ class SceneArtist:
             axes.spines[side].set_visible(False)
 
     def frame(self, shown: Iterable[Placement]) -> None:
-        """Set limits that hold the scene at all instants."""
-        found = [self.drawer.lay_out(at) for at in shown]
-        shown_parts = [
-            part
-            for one in found
-            for part in (one.block, one.ground, *one.lower, *one.ties, *one.others)
-        ]
+        """Set limits that hold the scene, and the points that are marked, at all instants."""
+        wall = self.drawer.geometry.wall
+        shown_parts = [] if wall is None else [wall]
+        for at in shown:
+            one = self.drawer.lay_out(at)
+            shown_parts += (one.block, one.ground, *one.lower, *one.ties, *one.others)
+            shown_parts += (self.drawer.points(at, place) for place in self._marked.values())
         corners = np.vstack(shown_parts)
-        low, high = corners.min(axis=0), corners.max(axis=0)
+        low, high = np.nanmin(corners, axis=0), np.nanmax(corners, axis=0)
         widest = float(max(-low[0], high[0]))
         if widest > self.drawer.reach:
             self.drawer = replace(self.drawer, least_reach=1.08 * widest)
@@ -256,11 +264,11 @@ class SceneArtist:
             self.axes.add_patch(dashed).set_zorder(1)
 
     def mark(self, points: Mapping[str, tuple[float, ...]]) -> None:
-        """Name the points of the body that are to be marked."""
+        """Set the points of the body that are marked, by their names."""
         self._marked = {name: np.array([place]) for name, place in points.items()}
 
     def draw(self, at: Placement) -> None:
-        """Draw, or move, all artists."""
+        """Draw all artists, or move them."""
         found = self.drawer.lay_out(at)
         self._ground(found)
         if self.drawer.geometry.wall is not None:
@@ -279,14 +287,16 @@ class SceneArtist:
         for number, other in enumerate(found.others):
             self._polygon(f"other {number}", other, BLUE, 4, alpha=0.22)
         for number, ends in enumerate(found.ties):
-            self._line(f"tie {number}", ends, color=VERMILLION, linewidth=1.4, zorder=5)
+            self._line(
+                f"tie {number}", ends, color=VERMILLION, linewidth=1.4, zorder=5, marker="."
+            )  # which shows one without a length
         self._dots("centre", found.centre[None], marker="P", color=ink(), markersize=6.0)
         self._touching(found)
         for name, place in self._marked.items():
             self._point(name, self.drawer.points(at, place))
 
     def legend(self) -> None:
-        """Name the parts beside the drawing."""
+        """Write the names of the parts next to the drawing."""
         handles = [
             (self._artists[key], words)
             for slot, words in self._names.items()
@@ -325,8 +335,8 @@ class SceneArtist:
         key = f"name of {name}"
         if key not in self._artists:
             self._artists[key] = self.axes.annotate(
-                name, (0.0, 0.0), xytext=(5, 3), textcoords="offset points", fontsize="small",
-                zorder=7,
+                plain(name), (0.0, 0.0), xytext=(5, 3), textcoords="offset points",
+                fontsize="small", zorder=7,
             )  # fmt: skip
         self._artists[key].xy = tuple(place[0])
 
@@ -352,22 +362,57 @@ class SceneArtist:
         self._artists[key].set_data(places[:, 0], places[:, 1])
 
 
-def part_labels(parts: Parts, geometry: Geometry) -> dict[str, str]:
+_LETTERS: Final = 32
+"""Of a line about a body of a stack, or a load."""
+_DRAWN: Final = ("name", "on", "to", "on_body", "to_body", "depth")
+"""Arguments of links that the drawing shows."""
+
+
+def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[str, str]:
     """Give what the parts of a scene are called, with their numbers, by their slots."""
-    found: dict[str, str] = {}
-    lower = () if parts.stack is None else parts.stack.bodies
-    named = {slot: parts.components.get(slot) for slot in ("block", "wall", "pads", "cap", "soil")}
-    if parts.frame is not None:
-        named["block"] = parts.frame
-    named |= {f"stack {k - 1}" if k else "block": body for k, body in enumerate(lower)}
-    for slot, part in named.items():
+    found: dict[str, list[str]] = {}
+    for slot in ("block", "wall", "pads", "cap", "soil"):
+        part = parts.components.get(slot)
         if part is not None:
-            numbers = [
-                f"{name} {value}" for name, value in arguments_in_words(part.to_dict()).items()
-            ]
-            found[slot] = "\n   ".join([type(part).__name__, *numbers])
-    for number, name in enumerate(link_labels(parts.links)[: len(geometry.ties)]):
-        found[f"tie {number}"] = name
-    if geometry.bed_sinks is None:
-        found["ground"] = "rigid ground"
-    return {**found, "centre": "centre of mass", "touching": "contact"}
+            found[slot] = [type(part).__name__, *_numbers(part, units)]
+    if parts.frame is not None:
+        column = [f"column {one}" for one in _numbers(parts.frame.column, units)]
+        found["block"] = [type(parts.frame).__name__, *column, *_numbers(parts.frame, units)]
+    if parts.stack is not None:
+        bases = [*parts.stack.interfaces, None]
+        for k, (body, base) in enumerate(zip(parts.stack.bodies, bases, strict=True)):
+            lines = [f"body {k + 1}: {type(body).__name__}", *_in_lines(_numbers(body, units))]
+            if base is not None:
+                lines += _in_lines([f"on {type(base).__name__}", *_numbers(base, units)])
+            found[f"stack {k - 1}" if k else "block"] = lines
+    if parts.stack is not None and "pads" in found:  # which are not drawn beneath a stack
+        found["ground"] = found.pop("pads")
+    elif geometry.bed_sinks is None:
+        found["ground"] = ["rigid ground", *_numbers(parts.components.get("ground"), units)]
+    for number, (name, link) in enumerate(zip(link_labels(parts.links), parts.links, strict=True)):
+        lines = [plain(name), *_numbers(link, units, _DRAWN)]
+        if number < len(geometry.ties):
+            found[f"tie {number}"] = lines[:1] if link is parts.wall else lines
+        elif isinstance(link, Load):  # not drawn, so it is told with its body
+            body = link.si.on_body - 1
+            found[f"stack {body - 1}" if body else "block"] += _in_lines(lines)
+    words = {slot: raised("\n   ".join(lines)) for slot, lines in found.items()}
+    return {**words, "centre": "centre of mass", "touching": "contact"}
+
+
+def _in_lines(words: Sequence[str]) -> list[str]:
+    whole = ", ".join(words).replace(" ", NO_BREAK).replace(f",{NO_BREAK}", ", ")
+    return [line.replace(NO_BREAK, " ") for line in wrap(whole, _LETTERS)]
+
+
+def _numbers(part: Component | None, units: ReaderUnits, without: Sequence[str] = ()) -> list[str]:
+    """Give the numbers of a part in words; in the reader's units where there are some."""
+    if part is None:
+        return []
+    given = {name: one for name, one in part.to_dict().items() if name not in without}
+    found = arguments_in_words({name: one for name, one in given.items() if one != "0.0 N"})
+    for name, one in given.items():
+        told = units.of_sentence(str(one))
+        if told != str(one):
+            found[name.replace("_", " ")] = told
+    return [f"{name} {words}" for name, words in found.items()]

@@ -1,11 +1,12 @@
-"""What the axes of all figures share: labels with units, colours, a light grid.
+"""Shared by all figures: labels with units, colours, a light grid.
 
-The colours have the hues of those of Okabe and Ito, which people with any colour vision tell apart,
-and a lightness each, so that they are told apart in print without colours too. The first ones are
+The colours have the hues of Okabe and Ito, which people with any colour vision can distinguish.
+Their lightness differs too, so that they differ in print without colours. The first ones are
 legible on white and on black. Text and axes have the colours of matplotlib's style.
 """
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -29,25 +30,30 @@ ORANGE: Final = "#e69f00"
 SKY: Final = "#8cccf0"
 COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 STYLES: Final[tuple[Any, ...]] = ("-", "--", "-.", (0, (1, 1)))
-"""Of lines that are compared, so that they are told apart without colours too."""
+"""Dashes of lines that are compared, so that they differ without colours too."""
 STANDS: Final = "#dfe7ef"
+_LEAST_TICKS: Final = 3
+"""Of an axis that can be read."""
 _MANY_DECADES: Final = 200.0
-"""End over start of axes that have no room for more than powers of ten."""
+"""Ratio of the ends of an axis above which only powers of ten have room as labels."""
 GREY: Final = "0.5"
-"""Of what stands behind, legible on white and on black."""
+"""Colour of the background of a figure's data, legible on white and on black."""
 
 
 _LETTER, _LINE, _HANDLE = 0.07, 0.19, 0.55
-"""Sizes of a legend in small letters: a letter's width, a line's height, and what stands before
-words [in]."""
+"""Sizes of a legend in small letters: width of a letter, height of a line, and width of the handle
+before the words [in]."""
 
 
+_MOST_LETTERS: Final = 52
+"""Of names in legends."""
+_LEAST_LETTERS: Final = 12
 _FEW: Final = 4
-"""Labels that are written whole, whatever they have in common."""
+"""Number of labels up to which all are written in full."""
 
 
 def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> None:
-    """Write a legend above what is drawn and named, for which the axis is made longer."""
+    """Write a legend above the data, and extend the axis to make room for it."""
     handles, words = axes.get_legend_handles_labels() if named is None else named
     if not words:
         return
@@ -56,13 +62,15 @@ def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> Non
         common, words = apart(words)
         style |= {"title": common, "title_fontsize": "small"} if common else {}
     title = str(style.get("title", ""))
+    room = int((0.95 * width - _HANDLE) / _LETTER)
+    words = [one if "$" in one else plain(one, max(room, _LEAST_LETTERS)) for one in words]
     entry = _HANDLE + _LETTER * max(map(len, words))
     columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
     rows = -(-len(words) // columns) + bool(title)
     share = min(0.6, (0.08 + _LINE * rows) / height)
     linear = axes.get_yscale() == "linear"
     low, top = axes.get_ylim()
-    # what is above the end of the axis stays there
+    # data beyond the end of the axis stay outside
     high = min(top, axes.dataLim.y1 + (0.05 * axes.dataLim.height if linear else 0.0))
     if linear and high > low:
         axes.set_ylim(low, low + (high - low) / (1.0 - share))
@@ -75,11 +83,34 @@ def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> Non
 
 
 def apart(words: list[str]) -> tuple[str, list[str]]:
-    """Give what labels have in common, between commas, and what tells them apart."""
+    """Give the parts between commas that labels have in common, and their remaining parts."""
     parts = [one.split(", ") for one in words]
     common = [one for one in parts[0] if all(one in other for other in parts)]
     rest = [", ".join(one for one in other if one not in common) for other in parts]
     return (", ".join(common), rest) if all(rest) else ("", words)
+
+
+def escaped(text: str) -> str:
+    """Give a text so that matplotlib writes it letter by letter."""
+    return text.replace("$", r"\$")
+
+
+def plain(name: str, most: int = _MOST_LETTERS) -> str:
+    """Give a name as matplotlib writes it letter by letter, in legends too.
+
+    The middle of a long one is left out: it would take the room of what is drawn.
+    """
+    if len(name) > most:
+        name = f"{name[: most - most // 3 - 3]}...{name[-(most // 3) :]}"
+    # legends leave out what begins with an underscore
+    return escaped(f" {name}" if name.startswith("_") else name)
+
+
+def plain_names(names: Iterable[str], most: int = _MOST_LETTERS) -> list[str]:
+    """Give names as :func:`plain` does, numbered where they would be alike."""
+    found = [plain(name, most) for name in names]
+    alike = len(set(found)) < len(found)
+    return [f"{k}: {one}" for k, one in enumerate(found, 1)] if alike else found
 
 
 def ink() -> Any:
@@ -100,31 +131,31 @@ def style_of(number: int) -> Any:
 
 
 def label_of(values: xr.DataArray) -> str:
-    """Give name and unit of values, for an axis."""
+    """Give the name and unit of values, for an axis."""
     return axis_label(str(values.name).replace("_", " "), str(values.attrs.get("units", "1")))
 
 
 def label_of_value(value: xr.DataArray) -> str:
     """Give a value along an axis with its unit, for a legend."""
     unit = str(value.attrs.get("units", "1"))
-    text = f"{value.item():.4g}" if value.dtype.kind == "f" else str(value.item())
+    text = f"{value.item():.4g}" if value.dtype.kind == "f" else plain(str(value.item()))
     return text if unit == "1" else f"{text} {powers_in_mathtext(unit)}"
 
 
 def label_of_intensity(values: xr.DataArray, study: xr.Dataset) -> str:
-    """Give name, period and unit of an intensity measure of a study, for an axis."""
+    """Give the name, period and unit of an intensity measure of a study, for an axis."""
     words = measure_words(str(values.name), study.attrs.get(PERIOD_OF))
     return axis_label(words, str(values.attrs.get("units", "1")))
 
 
 def axis_label(words: str, unit: str) -> str:
-    """Put a unit behind words, for an axis."""
+    """Append a unit to words, for an axis."""
     blank = "" if words.endswith("\n") else " "
     return f"{words}{blank}[{'-' if unit == '1' else powers_in_mathtext(unit)}]"
 
 
 def powers_in_mathtext(unit: str) -> str:
-    """Write powers of a unit as powers."""
+    """Write the powers of a unit as superscripts of mathtext."""
     return re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
 
 
@@ -132,37 +163,42 @@ _RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def raised(text: str) -> str:
-    """Write powers of units in a text as powers, in letters."""
+    """Write the powers of units in a text as superscript characters."""
     return re.sub(r"(?<=[^\W\d_])\^(-?\d+)", lambda power: power[1].translate(_RAISED), text)
 
 
 def grid(axes: "Axes") -> None:
-    """Draw a light grid behind what is drawn."""
+    """Draw a light grid behind the data."""
     axes.grid(visible=True, which="major", color=GREY, alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
 
 
 def zero_line(axes: "Axes") -> None:
-    """Draw a thin line at zero behind what is drawn."""
+    """Draw a thin line at zero behind the data."""
     axes.axhline(0.0, color=GREY, alpha=0.6, linewidth=0.5, zorder=0)
 
 
 def plain_ticks(axes: "Axes", which: str = "xy") -> None:
-    """Write powers of ten, and 2 and 5 of them where there is room, beside logarithmic axes."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+    """Label logarithmic axes at powers of ten; on short ones more numbers, three at least."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
     both = (("x", axes.xaxis, axes.get_xscale()), ("y", axes.yaxis, axes.get_yscale()))
     for name, axis, scale in both:
         if scale == "log" and name in which:
             low, high = axis.get_view_interval()
             wide = high > _MANY_DECADES * low
-            axis.set_major_locator(LogLocator(subs=(1.0,) if wide else (1.0, 2.0, 5.0)))
+            for subs in ((1.0,) if wide else (1.0, 2.0, 5.0), tuple(range(1, 10)), ()):
+                locator = LogLocator(subs=subs) if subs else MaxNLocator(5)
+                axis.set_major_locator(locator)
+                places = np.asarray(locator.tick_values(low, high))
+                if np.count_nonzero((places >= low) & (places <= high)) >= _LEAST_TICKS:
+                    break
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_locator(NullLocator())
 
 
 def colour_steps(along: xr.DataArray) -> Any:
-    """Give values for colours from dark to light, one for each label."""
+    """Give colours from dark to light, one for each label."""
     from matplotlib import colormaps
 
     return colormaps["viridis"](np.linspace(0.1, 0.85, along.size))
@@ -172,11 +208,11 @@ METRES: Final = Shown(str(LENGTH.unit), 1.0)
 
 
 def measured_in(axes: "Axes", length: Shown) -> None:
-    """Write lengths beside axes on which metres are drawn."""
+    """Label axes drawn in metres in another unit of length."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     class Places(MaxNLocator):
-        """Round numbers in the unit, where they are on the axis."""
+        """Ticks at round numbers in the unit."""
 
         def tick_values(self, vmin: float, vmax: float) -> Any:
             places = super().tick_values(vmin / length.size, vmax / length.size)
@@ -190,18 +226,18 @@ def measured_in(axes: "Axes", length: Shown) -> None:
 
 
 RELATIVE: Final = "relative"
-"""The word for values that are made relative to a scale of the body."""
+"""Word for values that are divided by a scale of the body."""
 
 
 @dataclass(frozen=True)
 class FigureUnits:
-    """Units of a figure's axes: that of an axis by its name, else the reader's, else the usual."""
+    """Units of a figure's axes: by the axis's own argument, else by `units`, else the default."""
 
     owner: str
     reader: ReaderUnits
 
     def of(self, measure: Measure, usual: str = "", **given: object) -> Shown:
-        """Give the unit of an axis, of which the argument of its own may be given by its name."""
+        """Give the unit of an axis; `given` has the axis's own argument by its name."""
         for name, unit in given.items():
             if unit is not None:
                 return shown_unit(unit, measure, owner=self.owner, name=name)
@@ -217,7 +253,7 @@ class FigureUnits:
         return None if told_relative else self.of(measure, "", **given)
 
     def rotations(self, rotation: str | None) -> str | None:
-        """Give the unit of a trace of rotations: the given one, the reader's, or degrees."""
+        """Give the unit of a history of rotations: the given one, that of `units`, or degrees."""
         return "deg" if rotation is None and self.reader.chose(ANGLE) is None else rotation
 
 

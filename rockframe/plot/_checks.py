@@ -1,4 +1,4 @@
-"""What a figure is drawn from, and what is said of anything else."""
+"""The datasets that figures are drawn from, and messages on anything else."""
 
 import json
 import warnings
@@ -29,14 +29,14 @@ Drawing = TypeVar("Drawing", bound=Callable[..., Any])
 class DatasetKind:
     """A kind of dataset that a function draws."""
 
-    what: str
-    call: str  # that gives it
-    known: tuple[str, ...]  # variables by which it is known
-    needed: tuple[str, ...] = ()  # variables that are drawn beside these
+    what: str  # its name in messages
+    call: str  # the call that gives it
+    known: tuple[str, ...]  # variables by which it is recognised
+    needed: tuple[str, ...] = ()  # further variables that are drawn
 
     @property
     def words(self) -> str:
-        """What it is, and where it is from."""
+        """Its name, and the call that gives it."""
         return f"{self.what}, as {self.call} gives it" if self.call else self.what
 
 
@@ -53,11 +53,11 @@ RUN: Final = DatasetKind(
     ),
 )
 KINDS: Final[dict[str, DatasetKind]] = {}
-"""What is known by its variables, by the function that draws it; the first of them that fits."""
+"""Kinds recognised by their variables, by the function that draws them; the first match counts."""
 _NEEDED: Final[dict[str, str]] = {}
-"""What each function draws, in words."""
+"""The kind that each function draws, in words."""
 _NOT_BY_KIND: Final = (
-    # (variables, what they are, what draws them), the first that fits
+    # (variables, their name in messages, how to draw them); the first match counts
     (RUN.known, "the result of a run", "rf.plot.response draws it"),
     (
         ("overturned", "peak_rotation"),
@@ -83,9 +83,9 @@ _NOT_BY_KIND: Final = (
 
 
 _UNITS: Final = (
-    "Units by what they are of, such as ``{'acceleration': 'g', 'force': 'kN'}``: of "
-    f"{', '.join(SHOWN_KINDS)}. An argument that names the unit of one axis goes before it; "
-    "what has no unit stays without."
+    "Units by quantity, such as ``{'acceleration': 'g', 'force': 'kN'}``: of "
+    f"{', '.join(SHOWN_KINDS)}. An argument for the unit of a single axis overrides it; "
+    "dimensionless values remain as they are."
 )
 
 
@@ -93,18 +93,18 @@ def draws(
     what: str | DatasetKind, call: str = "", known: tuple[str, ...] = (),
     needed: tuple[str, ...] = (), *, ax: str = "Axes", title: str = "",
 ) -> Callable[[Drawing], Drawing]:  # fmt: skip
-    """Say what a figure is drawn from, a dataset as a `DatasetKind` does.
+    """Register what a figure is drawn from, for a dataset by a `DatasetKind`.
 
-    And in the docstring what figures share: `units`, `ax`, `title`, and what is refused. Words of
-    the manual are given for what `ax` may be, and for the title unless one is given.
+    Add to the docstring what figures share: `units`, `ax`, `title` and errors. The words `ax` and
+    `title` describe the Axes and the default title in the manual.
     """
     kind = what if isinstance(what, DatasetKind) else DatasetKind(what, call, known, needed)
     usual = f"; {title} unless given" if title else ""
-    within = "" if ax == "Axes" else " Or a figure or subfigure, for panels in it."
+    within = "" if ax == "Axes" else " A figure or subfigure gets new panels."
     shared = {
         "units": Argument(None, "mapping of str to str, optional", _UNITS),
         "ax": Argument(
-            None, f"{ax}, optional", f"What is drawn in; a new figure unless given.{within}"
+            None, f"{ax}, optional", f"Axes to draw in; a new figure unless given.{within}"
         ),
         "title": Argument(None, "str, optional", f"Title of the figure{usual}."),
     }
@@ -149,9 +149,9 @@ def drawn_by(given: xr.Dataset) -> str:
 
 
 def checked_run(given: object, function: str) -> xr.Dataset:
-    """Refuse what is not the result of one run with histories; give it up to its end.
+    """Raise unless given the result of one run with histories; give it up to its end.
 
-    Histories of a case of a sweep go on behind that, as NaN, as long as those of other cases.
+    The histories of a case of a sweep are padded with NaN to the length of the longest case.
     """
     owner = f"rf.plot.{function}"
     given = in_units_of_schema(_checked(given, function, RUN), owner=owner)
@@ -173,7 +173,7 @@ def checked_run(given: object, function: str) -> xr.Dataset:
 
 
 def drawable(given: object, function: str, units: UnitsLike = None) -> xr.Dataset:
-    """Give the dataset that a function draws, in units of choice, and refuse any other thing."""
+    """Give the dataset that a function draws, in the chosen units; raise on anything else."""
     dataset = _checked(given, function, KINDS[function])
     return reader_units(units, owner=f"rf.plot.{function}").of_all(dataset)
 
@@ -192,7 +192,7 @@ def _got(function: str, what: str) -> SchemaError:
 
 
 def above_zero(given: object, function: str, name: str) -> float:
-    """Read a number above zero."""
+    """Read a number greater than zero."""
     return to_ratio(given, owner=f"rf.plot.{function}", name=name, condition=POSITIVE, example="2")
 
 
@@ -206,20 +206,20 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         )
         raise SchemaError(msg)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RockframeWarning)  # they were said when it ran
+        warnings.simplefilter("ignore", RockframeWarning)  # issued already by the run
         if "axes_json" in run.attrs:
             return system_of_case(run, owner=f"rf.plot.{function}")
         return System.from_dict(json.loads(text))
 
 
 def refuse(function: str, given: object) -> str:
-    """Say what a function draws, what was given, and which way leads to a figure."""
+    """Write what a function draws, what was given, and how the latter can be drawn."""
     what, way = _words(function, given)
     return f"rf.plot.{function} needs {_needed(function)}, got {what}" + (f"; {way}" if way else "")
 
 
 def _words(function: str, given: object) -> tuple[str, str]:
-    """Say what was given, and which way leads to a figure."""
+    """Describe what was given, and how it can be drawn."""
     if isinstance(given, str | PathLike):
         name = str(cast("object", given))
         of_motions = function in ("motion", "spectra")
@@ -228,7 +228,7 @@ def _words(function: str, given: object) -> tuple[str, str]:
     if isinstance(given, GroundMotion):
         return f"a GroundMotion, {given.name!r}", "rf.plot.motion and rf.plot.spectra draw it"
     if isinstance(given, System):
-        way = "rf.plot.scene draws it, rf.plot.response(system.simulate(motion)) what becomes of it"
+        way = "rf.plot.scene draws it, rf.plot.response(system.simulate(motion)) its response"
         return "a System", way
     if isinstance(given, xr.DataArray):
         return f"a DataArray, {given.name!r}", "a figure is drawn from the whole Dataset"
@@ -246,7 +246,7 @@ def _words(function: str, given: object) -> tuple[str, str]:
 
 
 def _needed(function: str) -> str:
-    """Say what a function draws; cards of notebooks are of runs."""
+    """Name what a function draws; all others draw runs, as in notebooks."""
     return _NEEDED.get(function, RUN.words)
 
 
@@ -257,7 +257,7 @@ def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:
 def overturning_angles(dataset: xr.Dataset) -> tuple[float, float]:
     """Give the overturning angles to the left and to the right [rad].
 
-    A case of a sweep has those of both sides as NaN where the body has but one.
+    In a sweep those of both sides are NaN for a case whose body is symmetric.
     """
     least = dataset["overturning_angle"]
     left, right = (dataset.get(f"{side}_overturning_angle", least) for side in ("left", "right"))

@@ -11,7 +11,9 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
+    plain,
     plain_ticks,
+    raised,
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, single
@@ -31,15 +33,15 @@ def cloud(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw runs on logarithmic axes, with their line and the levels that are limit states.
+    """Draw runs on logarithmic axes, with their regression line and the limit states.
 
-    Light, one and two dispersions about the line. Above the frame of the others stand runs that
-    overturned, below it those in which nothing moved.
+    Light bands reach one and two dispersions from the line. Runs that overturned are drawn above
+    all others, runs in which nothing moved below them.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.cloud_analysis`.
+        Result of :func:`rockframe.cloud_analysis`.
 
     Returns
     -------
@@ -72,7 +74,7 @@ def cloud(
     )
     axes.plot(along[still], np.full(still.sum(), low), "v", color=COLOURS[2], ms=5, label="at rest")
     x = np.geomspace(along.min(), along.max(), 101)
-    # the line is fitted in SI units; its middle is that of the runs in any
+    # the line was fitted in SI units; in any units it passes through the mean of the runs
     logs = np.log(along[between])
     slope, spread = float(given["regression_slope"]), float(given["residual_dispersion"])
     if np.isfinite(slope):
@@ -91,7 +93,7 @@ def cloud(
     plain_ticks(axes)
     grid(axes)
     on.name_lines()
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes
 
 
@@ -108,12 +110,12 @@ def annual_rate(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw which intensities contribute to the annual rate of limit states.
+    """Draw the contributions of intensities to the annual rate of limit states.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.annual_rate`, of one structure.
+        Result of :func:`rockframe.annual_rate`, of one structure.
 
     Returns
     -------
@@ -148,7 +150,7 @@ def annual_rate(
     edges = np.exp(np.append(logs - 0.5 * step, logs[-1] + 0.5 * step))
     for number in range(given.sizes["limit_state"]):
         one = given.isel(limit_state=number)
-        state = str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"
+        state = plain(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"
         rate = float(one["annual_rate"])
         if np.isnan(rate):
             continue
@@ -164,5 +166,5 @@ def annual_rate(
     plain_ticks(axes)
     grid(axes)
     on.name_lines()
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes

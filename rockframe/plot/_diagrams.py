@@ -1,4 +1,4 @@
-"""Diagrams of runs without time along the axis, and energies: phases, moments, balances."""
+"""Phase diagrams, moment-rotation diagrams and the energy balance of runs."""
 
 from typing import Any, Final
 
@@ -28,8 +28,10 @@ from rockframe.units.kinds import ENERGY, MOMENT
 from rockframe.units.shown import UnitsLike
 
 _STATES: Final = ("kinetic_energy", "potential_energy", "elastic_energy")
+_FAR: Final = 0.2
+"""Peak over the rotation of unstable equilibrium below which that is outside of a phase diagram."""
 _ANGLES: Final = 401
-"""At which a body is held for a curve of moments."""
+"""Number of rotations at which a body is held for a curve of moments."""
 
 
 @draws(RUN, title="the verdict")
@@ -42,7 +44,7 @@ def phase(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw the rate of the rotation over the rotation.
+    """Draw the angular velocity over the rotation.
 
     Parameters
     ----------
@@ -51,13 +53,14 @@ def phase(
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is drawn; all of it unless given [s].
     rotation : str, optional
-        Unit of rotations, such as ``"deg"``; rates have it per second. Or ``"relative"``, over
-        the overturning angle, which is usual.
+        Unit of rotations, such as ``"deg"``, and of angular velocities per second; or
+        ``"relative"``, the default: over the overturning angle.
 
     Returns
     -------
     matplotlib.axes.Axes
-        A dot marks the start of each run, crosses the rotations of unstable equilibrium.
+        A dot marks the start of each run; crosses mark the rotations of unstable equilibrium, where
+        the runs come near them.
 
     Raises
     ------
@@ -81,6 +84,7 @@ def phase(
     chosen = units_of(units, "phase")
     unit = chosen.unless_relative(ANGLE, rotation=rotation)
     on = single(ax, "phase", (5.6, 4.4))
+    reach, end = 0.0, np.inf
     for run in given:
         across, up = of_rotation(run, unit), _rate(run, unit)
         on.axes.plot(across, up, color=run.colour, ls=run.style, lw=0.9, label=run.label)
@@ -89,6 +93,9 @@ def phase(
         ends = np.array([-left, right])
         ends = relative(ends, left, right) if unit is None else unit.of(ends)
         on.axes.plot(ends, [0.0, 0.0], "x", color=ink(), markersize=6.0)
+        reach, end = max(reach, float(np.abs(across).max())), min(end, float(np.abs(ends).min()))
+    if 0.0 < reach < _FAR * end:  # or what is drawn would be a line upwards
+        on.axes.set_xlim(-1.1 * reach, 1.1 * reach)
     _about_zero(on.axes)
     if unit is None:
         on.axes.set(xlabel=r"rotation $\alpha/\theta$ [-]")
@@ -114,27 +121,27 @@ def moment_rotation(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw the moment of the base over the rotation: held, and in runs.
+    """Draw the moment of the base over the rotation, in static equilibrium or in runs.
 
     Parameters
     ----------
     given : System, or xarray.Dataset, or sequence or mapping of them
-        A system, of which the moment that the base gives is drawn in vertical equilibrium,
+        A system, whose base moment is drawn in vertical equilibrium by
         :meth:`rockframe.System.moment_rotation`; or runs with
-        ``outputs=("base_overturning_moment",)``. Beneath a single run of one body that moment is
-        dashed.
+        ``outputs=("base_overturning_moment",)``. For a single run of one body the moment in
+        equilibrium is dashed.
     largest : float, optional
-        Rotation up to which a system is held, over the overturning angle of the side [1].
+        Largest rotation of a system, over the overturning angle of the side [1].
     window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is drawn of runs; all of it unless given [s].
+        Start and end of runs in the figure; the whole runs unless given [s].
     rotation, moment : str, optional
         Units; degrees and kN m unless given.
 
     Returns
     -------
     matplotlib.axes.Axes
-        Of a block on pads on a cap the rotations are those of the block on the cap, of a stack
-        those of the highest body on the one below, where a run is drawn.
+        The rotations of a run of a block on a cap are those relative to the cap; of a stack those
+        of the uppermost body relative to the body below.
 
     Raises
     ------
@@ -189,7 +196,7 @@ def energies(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw where the energy of a run is, and where it went.
+    """Draw the energy balance of a run.
 
     Parameters
     ----------
@@ -203,8 +210,8 @@ def energies(
     Returns
     -------
     matplotlib.axes.Axes
-        Areas above one another: energies from their values at the start, and what was lost; a
-        line is what was put in. Where the areas reach up to the line the balance holds.
+        Stacked areas are the changes of energies since the start, and the losses; a line is the
+        input. The balance holds where the areas above zero less those below it reach the line.
 
     Raises
     ------
@@ -243,7 +250,7 @@ def energies(
     areas = [name for name in reversed(order) if np.any(from_start[name] != 0.0)]
     names = {name: name.removesuffix("_energy").replace("_", " ") for name in ENERGIES}
     colours = {name: COLOURS[number % len(COLOURS)] for number, name in enumerate(order)}
-    # what can fall below zero, as gravity energy of a leaning body, is drawn below zero
+    # energies below zero, such as that of gravity of a leaning body, are stacked below zero
     for sign in (1.0, -1.0):
         below = np.zeros(part.time.size)
         for name in areas:
@@ -266,7 +273,7 @@ def energies(
 
 
 def _rate(run: Run, unit: Shown | None) -> Any:
-    """Give the rate of the rotation; over the overturning angle of its side without a unit."""
+    """Give the angular velocity; without a unit over the overturning angle of its side."""
     rate = run.dataset["angular_velocity"].to_numpy()
     if unit is not None:
         return unit.of(rate)
@@ -277,6 +284,9 @@ def _rate(run: Run, unit: Shown | None) -> Any:
 def _held(system: System, largest: float) -> xr.Dataset:
     left, right = system.setting.overturning_angles
     largest = above_zero(largest, "moment_rotation", "largest")
+    wall = system.parts.wall
+    if wall is not None and not wall.elastic:  # the body is held to the other side alone
+        left, right = (left, 0.0) if wall.direction > 0.0 else (0.0, right)
     angles = np.linspace(-largest * left, largest * right, _ANGLES)
     return system.moment_rotation((angles, str(ANGLE.unit)))
 
@@ -291,14 +301,14 @@ def _draw_held(axes: Axes, held: xr.Dataset, angle: Shown, size: Shown) -> None:
 
 
 def _on_base(run: xr.Dataset) -> xr.DataArray:
-    """Give the rotation of a run's body on what it stands on."""
+    """Give the rotation of the body relative to its support."""
     if "body" in run.dims:
         return run["body_rotation_on_base"].isel(body=0)
     return run["rotation_on_cap" if "rotation_on_cap" in run else "rotation"]
 
 
 def _draw_beneath(axes: Axes, run: Run, angle: Shown, size: Shown) -> None:
-    """Draw the moment in equilibrium beneath that of a run, as far as it rotates."""
+    """Draw the moment in equilibrium over the range of rotations of a run."""
     system = system_of_run(run.dataset, "moment_rotation")
     rotation = run.dataset["rotation"].to_numpy()
     angles = np.linspace(rotation.min(), rotation.max(), _ANGLES)

@@ -1,4 +1,4 @@
-"""Dynamic analyses: the intensity over the response, and over the share of the motions."""
+"""Dynamic analyses: the intensity over the response, and over the share of motions."""
 
 from typing import Any, Final
 
@@ -13,6 +13,8 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
+    plain,
+    raised,
     style_of,
     units_of,
 )
@@ -23,20 +25,20 @@ from rockframe.studies.fragility.trials import at_scales
 from rockframe.units.shown import UnitsLike
 
 _PANELS: Final = {"peaks": 1.4, "shares": 1.0}
-"""What is drawn side by side, and how wide."""
+"""Panels, which are side by side, and their relative widths."""
 _LEAST_FRACTILES: Final = 4
 _FRACTILES: Final = (0.16, 0.5, 0.84)
 _STYLED: Final = (1, 0, 2)
-"""Dashes of each."""
+"""Dashes of each fractile, by their numbers."""
 _HEIGHTS: Final = 400
 _ROOM: Final = 1.15
 """End of the axis over the highest intensity at which a verdict changes."""
 _CAPPED: Final = 1.0
-"""Peaks over the overturning angle that are drawn alike."""
+"""Peaks over the overturning angle above this are drawn at this value."""
 
 
 def of_one_structure(given: xr.Dataset) -> xr.Dataset:
-    """Give an analysis without the axes of which it has one value; refuse several structures."""
+    """Give an analysis without axes of a single value; raise on several structures."""
     dims = given["capacity_scale"].dims
     beside = [dim for dim in dims if dim not in ("limit_state", "motion")]
     several = [f"{dim} ({given.sizes[dim]})" for dim in beside if given.sizes[dim] > 1]
@@ -64,20 +66,21 @@ def dynamic_analysis(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Panels:
-    """Draw the intensity over the peak rotation that it brings, and the share that overturned.
+    """Draw the intensity over the peak rotation, and over the share of motions that overturned.
 
-    Left, a line in grey for each motion, up to where it first overturns, with a mark there; hollow
-    marks where the verdict changes again. Of four motions or more, fractiles: the peaks below which
-    16, 50 and 84 % of the motions stay at an intensity; where one turns level, that share has
-    overturned. Fewer motions have a colour each. Right, the share of motions whose capacity is
-    below an intensity, for each limit state.
+    The left panel has a grey line for each motion. A filled marker shows where the motion first
+    overturns, hollow markers show where the verdict changes again. Of four motions or more the
+    fractiles are drawn too: the peaks below which 16, 50 and 84 % of the motions stay at an
+    intensity; where one becomes horizontal, only that share still stands. Fewer motions have a
+    colour each. The right panel shows the share of motions whose capacity is below an intensity,
+    for each limit state.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.incremental_dynamic_analysis`.
+        Result of :func:`rockframe.incremental_dynamic_analysis`.
     panels : str or tuple of str, optional
-        Which are drawn, of ``"peaks"``, left, and ``"shares"``, right; both unless given.
+        Panels to draw: ``"peaks"``, left, and ``"shares"``, right; both unless given.
 
     Returns
     -------
@@ -111,14 +114,14 @@ def dynamic_analysis(
         _peaks(drawn["peaks"], given, intensity, flips)
     if "shares" in drawn:
         _shares(drawn["shares"], given, intensity)
-    # nothing happens above where the last verdict changes, if all motions have overturned
+    # if all motions have overturned, nothing changes above the last change of a verdict
     highest = [float(places.max(initial=0.0)) for places in flips]
     above = _ROOM * max(highest) if min(highest) > 0.0 else np.inf
     top = min(max(axes.get_ylim()[1] for axes in on.panels), above)
     for axes in on.panels:
         axes.set_ylim(0.0, top)
         grid(axes)
-    # the axes of given panels may stand anywhere
+    # given panels may be anywhere in a figure, so each has its label
     for axes in on.panels if on.own is None else on.panels[:1]:
         axes.set_ylabel(label_of_intensity(measure, given))
     on.name_lines()
@@ -136,13 +139,15 @@ def _flips(given: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
 
 
 def _peaks(axes: Axes, given: xr.Dataset, intensity: xr.DataArray, flips: list[np.ndarray]) -> None:
-    """Draw the peaks of the motions, and fractiles of many."""
+    """Draw the peaks of the motions, and the fractiles of four motions or more."""
     several, lines = given.sizes["motion"] >= _LEAST_FRACTILES, list[tuple[Any, Any]]()
     for number, places in enumerate(flips):
         one, along = given.isel(motion=number), intensity.isel(motion=number).to_numpy()
         line = _until_flips(along, one["peak_relative_rotation"].to_numpy(), places)
         colour = GREY if several else colour_of(number)
-        words = ("motions" if number == 0 else None) if several else str(one["motion"].item())
+        words = (
+            ("motions" if number == 0 else None) if several else plain(str(one["motion"].item()))
+        )
         axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
         for some, face in ((places[:1], colour), (places[1:], "none")):
             axes.plot(np.full(len(some), _CAPPED), some, "o", mfc=face, color=colour, ms=3)
@@ -168,19 +173,19 @@ def _shares(axes: Axes, given: xr.Dataset, intensity: xr.DataArray) -> None:
         ]
         ordered = np.sort(np.array([0.0, *places]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
-        axes.step(shares, ordered, where="pre", color=colour_of(number), label=str(state))
+        axes.step(shares, ordered, where="pre", color=colour_of(number), label=plain(str(state)))
     axes.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
 
 
 def _until_flips(along: Any, peaks: Any, flips: Any) -> tuple[Any, Any]:
-    """Give intensities and peaks of a motion, with those at which the verdict changes."""
+    """Give the intensities and peaks of a motion, also where the verdict changes."""
     up = np.concatenate([along, flips])
     order = np.argsort(up, kind="stable")
     return up[order], np.concatenate([peaks.clip(max=_CAPPED), np.full(len(flips), _CAPPED)])[order]
 
 
 def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]:
-    """Give shares of the motions, and the peaks below which these stay at intensities."""
+    """Give shares of the motions, and the fractiles of the peaks at intensities."""
     peaks = np.sort(
         [np.interp(up, np.append(0.0, along), np.append(0.0, peak)) for along, peak in lines],
         axis=0,
@@ -188,7 +193,7 @@ def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]
     places = np.array(_FRACTILES) * (len(lines) - 1)
     below, above = (peaks[rounded(places).astype(int)] for rounded in (np.floor, np.ceil))
     within = below + (places % 1.0)[:, None] * (above - below)
-    # between a peak and a fall nothing lies
+    # no interpolation between the peak of one motion and overturning under another
     return list(zip(_FRACTILES, np.where(above >= _CAPPED, _CAPPED, within), strict=True))
 
 
@@ -207,14 +212,14 @@ def fractile_curves(
 ) -> Axes:
     """Draw the intensity over the response: runs in grey, and their fractiles.
 
-    Full lines are fractiles of the response at an intensity, broken ones those of the intensity by
-    which a level of the response is reached. Where a full line ends in a level one to the right,
-    that share of the motions has overturned.
+    Solid lines are fractiles of the response at an intensity, dashed lines fractiles of the
+    intensity at which a level of the response is reached. Where a solid line leaves the figure
+    horizontally to the right, the runs beyond that fractile have overturned.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.fractile_curves`.
+        Result of :func:`rockframe.fractile_curves`.
 
     Returns
     -------
@@ -246,7 +251,7 @@ def fractile_curves(
     shares = given["quantile"].to_numpy().round(9).tolist()
     for number, share in enumerate(shares):
         colour, words = colour_of(number), f"{100.0 * share:.3g} %"
-        # what most responses stay below is what few intensities are below
+        # a high fractile of the response corresponds to a low one of the intensity
         rest = round(1.0 - share, 9)
         paired = colour_of(shares.index(rest)) if rest in shares else colour
         one = given.isel(quantile=number)
@@ -259,10 +264,10 @@ def fractile_curves(
         xlabel=label_of(given["response_level"].rename(words)),
         ylabel=label_of_intensity(given[name], given),
         xlim=(0.0, right),
-        # above where the last motion stands nothing is left to see
+        # nothing is drawn above the intensity at which the last motion overturns
         ylim=(0.0, min(up[-1], _ROOM * up[np.isfinite(runs).any(axis=0)].max(initial=up[0]))),
     )
     grid(axes)
     on.name_lines()
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes

@@ -1,4 +1,4 @@
-"""Empirical distributions, what overturning depends on, and fragilities."""
+"""Empirical distributions, sensitivities of overturning, and fragilities."""
 
 from typing import Final
 
@@ -13,6 +13,9 @@ from rockframe.plot._axes import (
     label_of,
     label_of_intensity,
     label_of_value,
+    plain,
+    plain_names,
+    raised,
     style_of,
     units_of,
 )
@@ -35,12 +38,12 @@ def ensemble(
 ) -> Axes:
     """Draw an empirical distribution with its bands.
 
-    Dark, the bounds that hold at each value; light, those that hold everywhere at once.
+    The dark band has the bounds at each single value, the light one the simultaneous bounds.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.ensemble_statistics`.
+        Result of :func:`rockframe.ensemble_statistics`.
 
     Returns
     -------
@@ -69,7 +72,7 @@ def ensemble(
     axes.step(values, given["cumulative_probability"], where="post", color=COLOURS[0])
     axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes
 
 
@@ -87,15 +90,15 @@ def probability(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Panels:
-    """Draw what the verdict depends on, and how the share that overturns goes with it.
+    """Draw the sensitivity of the verdict to parameters.
 
-    Left, first-order indices; right, for the parameter that matters most, the shares that
-    overturned in groups of cases.
+    The left panel shows first-order indices. The right one shows, for the parameter with the
+    largest index, the shares that overturned in groups of cases.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.probability_of_overturning`.
+        Result of :func:`rockframe.probability_of_overturning`.
 
     Returns
     -------
@@ -116,8 +119,12 @@ def probability(
     on = sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
     left, right = on.panels
     names = [str(name).replace("_", " ") for name in given["parameter"].to_numpy()]
-    left.barh(names[::-1], given["first_order_index"].to_numpy()[::-1], color=COLOURS[0])
-    left.set(xlabel="first-order index [-]", xlim=(0.0, None))
+    indices = given["first_order_index"].fillna(0.0).to_numpy()
+    left.barh(names[::-1], indices[::-1], color=COLOURS[0])
+    left.set(xlabel="first-order index [-]", xlim=(0.0, None), ylim=(-0.6, len(names) - 0.4))
+    if given["first_order_index"].isnull().all():
+        left.set_xticks([])
+        left.text(0.5, 0.5, "all verdicts are alike", ha="center", transform=left.transAxes)
     first = given[str(given["parameter"].to_numpy()[0])]
     verdict = overturns(given).to_numpy()
     known = ~np.isnan(verdict)
@@ -132,6 +139,9 @@ def probability(
         shares = [verdict[known][place == k].mean() for k in range(len(labels))]
         right.bar(range(len(labels)), shares, color=COLOURS[1], alpha=0.6)
         right.set(xlabel="motion")
+        if len(labels) <= _MOST_NAMED:
+            ticks = plain_names(labels, 20)
+            right.set_xticks(range(len(labels)), ticks, rotation=90, fontsize="x-small")
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
@@ -153,15 +163,15 @@ def subset_simulation(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw how probable it is that the demand is reached, level by level.
+    """Draw the probability that the demand reaches a value, level by level.
 
-    Dotted, the thresholds of the levels; at the right or at the limit, the probability of the limit
-    state with its bounds.
+    Dotted lines are the thresholds of the levels. The probability of the limit state, with its
+    bounds, is drawn at the limit, or at the right if the limit is infinite.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.subset_simulation`.
+        Result of :func:`rockframe.subset_simulation`.
 
     Returns
     -------
@@ -186,11 +196,11 @@ def subset_simulation(
     demand, level = demand[order], given["sample_level"].to_numpy()[known][order]
     reached = np.cumsum(given["sample_weight"].to_numpy()[known][order])
     finite = np.isfinite(demand)
-    # of samples that demand the same the last one has the weight of all
+    # of samples with equal demand the last one has the weight of all
     last = np.flatnonzero(finite & np.append(demand[1:] != demand[:-1], True))
     for number in given["sampling_level"].to_numpy():
         those = last[level[last] == number]
-        # where levels meet, samples of both stand side by side
+        # near a threshold there are samples of both levels
         axes.plot(demand[those], reached[those], ".", ms=3.5, color=colour_of(int(number) - 1))
     for threshold in given["demand_threshold"].to_numpy():
         if np.isfinite(threshold):
@@ -206,18 +216,20 @@ def subset_simulation(
     else:
         axes.plot(place, ends[1], "v", ms=6.0, color="0.1")
     axes.set(
-        yscale="log", xlabel=label_of(given["demand"]), xlim=(0.0, None),
+        yscale="log", xlabel="response over its limit [-]", xlim=(0.0, None),
         ylabel="probability of reaching it [-]",
     )  # fmt: skip
     grid(axes)
-    on.entitle(str(given.attrs["verdict"]), title)
+    on.entitle(raised(str(given.attrs["verdict"])), title)
     return axes
 
 
+_MOST_NAMED: Final = 30
+"""Motions whose names stand below their bars."""
 _NAME: Final = "exceedance_probability"
 _LEVELS: Final = (0.05, 0.16, 0.5, 0.84, 0.95)
 _MOST_STRUCTURES: Final = 12
-"""That colours and lines tell apart."""
+"""Largest number of structures that colours and dashes can distinguish."""
 _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
 
 
@@ -237,26 +249,26 @@ def fragility(
 ) -> Axes | Panels:
     """Draw the probability that limit states are exceeded.
 
-    Over one measure, a curve for each limit state with its band, where it has bounds, and the
-    shares that were counted, with the bounds of Clopper and Pearson. Of several structures, a panel
-    for each limit state, and a curve for each structure in it. Over two measures, contours of the
+    Over one measure there is a curve for each limit state, with its band if it has bounds, and the
+    counted shares with the bounds of Clopper and Pearson. Several structures have a panel for each
+    limit state, with a curve for each structure. Over two measures there are contours of the
     probability, in a panel for each limit state that has a fit.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.fragility`.
+        Result of :func:`rockframe.fragility`.
 
     Returns
     -------
     matplotlib.axes.Axes, or Panels
-        The latter over two measures, and of several structures.
+        Panels for two measures and for several structures.
 
     Raises
     ------
     SchemaError
-        The dataset is no fragility; the message names the function that draws what was given. Or
-        it has more structures than a figure shows: twelve, over two measures one.
+        The dataset is not a fragility; the message names the function that draws what was given.
+        Or it has more structures than a figure shows: twelve, or one over two measures.
 
     Examples
     --------
@@ -290,7 +302,7 @@ def fragility(
             _contours(axes, one, measures)
     if len(measures) == 1:
         on.name_lines()
-    on.entitle(verdict_of_fragility(given), title)
+    on.entitle(raised(verdict_of_fragility(given)), title)
     return on.axes if len(measures) == 1 and not structures else on.panels
 
 
@@ -305,7 +317,7 @@ def _check_structures(one: xr.Dataset, structures: list[str], most: int) -> None
 
 
 def _sheet(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
-    """Take a panel for each limit state."""
+    """Give a panel for each limit state."""
     return sheet(
         ax, "fragility", [_name(one) for one in states], (0.8 + 3.6 * len(states), 3.8),
         lambda figure: figure.subplots(1, len(states)),
@@ -313,7 +325,7 @@ def _sheet(ax: AxesLike, states: list[xr.Dataset]) -> Sheet:
 
 
 def _each(one: xr.Dataset, structures: list[str]) -> list[tuple[str, xr.Dataset]]:
-    """Give each structure with the words that tell it apart."""
+    """Give each structure with its label."""
     found: list[tuple[str, xr.Dataset]] = []
     for place in np.ndindex(*(one.sizes[dim] for dim in structures)):
         part = one.isel(dict(zip(structures, place, strict=True)))
@@ -341,8 +353,8 @@ def _curves(axes: Axes, named: list[tuple[str, xr.Dataset]], measure: str) -> No
         fraction = one["stripe_fraction"].to_numpy()
         ends = [one[f"stripe_fraction_{end}_bound"].to_numpy() for end in ("lower", "upper")]
         reach = np.abs(np.stack(ends) - fraction)
-        reach[:, one["stripe_trials"].to_numpy() < 2] = np.nan  # bounds of one trial say nothing
-        # side by side where limit states were counted at one intensity
+        reach[:, one["stripe_trials"].to_numpy() < 2] = np.nan  # no bounds from a single trial
+        # side by side, since limit states are counted at the same intensities
         place = one["stripe_intensity"].to_numpy() * 1.012 ** (number - 0.5 * (len(named) - 1))
         axes.errorbar(place, fraction, yerr=reach, fmt="o", color=colour, ms=3.0, lw=0.8, alpha=0.7)
     axes.set_xlabel(label_of_intensity(named[0][1][measure], named[0][1]))
@@ -363,4 +375,4 @@ def _contours(axes: Axes, one: xr.Dataset, measures: list[str]) -> None:
 
 
 def _name(one: xr.Dataset) -> str:
-    return str(one["limit_state"].item()) if "limit_state" in one.coords else "counted"
+    return plain(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"

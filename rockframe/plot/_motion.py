@@ -1,4 +1,4 @@
-"""Motions along time: acceleration, velocity, displacement; the strongest pulse in the velocity."""
+"""Motions over time: acceleration, velocity, displacement; the strongest pulse in the velocity."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,6 +22,7 @@ from rockframe.plot._axes import (
     grid,
     ink,
     key,
+    plain_names,
     style_of,
     units_of,
     zero_line,
@@ -37,7 +38,7 @@ MotionsLike: TypeAlias = GroundMotion | Sequence[GroundMotion] | Mapping[Any, Gr
 
 @dataclass(frozen=True)
 class Drawn:
-    """A motion with its label, colour and dashes; without a label where there is but one."""
+    """A motion with its label, colour and dashes; a single motion has no label."""
 
     motion: GroundMotion
     label: str | None
@@ -46,7 +47,7 @@ class Drawn:
 
 
 def motions_title(given: list[Drawn]) -> str:
-    """Give the title of a figure: the name of the one motion that it shows."""
+    """Give the title of a figure: the name of a single motion, else none."""
     if len(given) != 1:
         return ""
     (one,) = given
@@ -72,7 +73,9 @@ def drawn_motions(given: object, function: str) -> list[Drawn]:
     if labelled and all(isinstance(one, GroundMotion) for one in labelled.values()):
         return [
             Drawn(one, label, colour_of(number), style_of(number))
-            for number, (label, one) in enumerate(labelled.items())
+            for number, (label, one) in enumerate(
+                zip(plain_names(labelled), labelled.values(), strict=True)
+            )
         ]
     if not isinstance(given, GroundMotion):
         raise ComponentError(refuse(function, given))
@@ -94,23 +97,23 @@ def motion(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Panels:
-    """Draw acceleration, velocity and displacement of the ground along time.
+    """Draw acceleration, velocity and displacement of the ground over time.
 
     Parameters
     ----------
     motion : GroundMotion, or sequence or mapping of them
-        The motion, or several to compare, of which the horizontal components are drawn. The ground
-        starts from rest; nothing is corrected. A vertical component is drawn behind the horizontal
-        one.
+        The motion, or several to compare. The vertical component of a single motion is drawn
+        behind the horizontal one; of several only the horizontal components are drawn. The ground
+        starts from rest, and nothing is corrected.
     window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is drawn; all of it unless given [s].
+        Start and end of what is drawn; the whole motion unless given [s].
     acceleration, velocity, displacement : str, optional
         Units, such as ``"g_0"``, ``"cm/s"`` and ``"cm"``.
 
     Returns
     -------
     Panels
-        The three of them. Peaks of what is drawn are marked.
+        Three panels. Of a single motion the peaks of what is drawn are marked.
 
     Raises
     ------
@@ -191,7 +194,7 @@ def _mark_peak(axes: Axes, dataset: xr.Dataset, name: str, unit: Shown, colour: 
 @draws(
     "a VelocityPulse, as motion.velocity_pulse() gives it",
     ax="two Axes",
-    title="name of the motion, period and verdict",
+    title="the name of the motion, period and verdict",
 )
 def velocity_pulse(
     pulse: VelocityPulse[GroundMotion],
@@ -205,12 +208,12 @@ def velocity_pulse(
     Parameters
     ----------
     pulse : VelocityPulse
-        As :meth:`rockframe.GroundMotion.velocity_pulse` gives it.
+        Result of :meth:`rockframe.GroundMotion.velocity_pulse`.
 
     Returns
     -------
     Panels
-        Time is that of the motion, the still ground before it is at negative times.
+        Time is that of the motion; ground at rest before it is at negative times.
 
     Raises
     ------

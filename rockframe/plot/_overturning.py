@@ -15,6 +15,7 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
+    plain_names,
     plain_ticks,
     units_of,
 )
@@ -25,12 +26,12 @@ from rockframe.units import ACCELERATION
 from rockframe.units.shown import UnitsLike
 
 _MOST_NAMED: Final = 8
-"""Motions with a line in the legend."""
+"""Largest number of motions that are named in the legend."""
 _WAYS: Final = (VERMILLION, BLUE, SKY, PURPLE, GREEN)
 MAP_COLOURS: Final = (STANDS, *_WAYS)
-"""Of what stands, and of what overturns after none, one and more impacts."""
+"""Colours of runs that stand, and of those that overturn after no, one and more impacts."""
 _CAPPED: Final = 1.0
-"""Peaks over the overturning angle that are drawn alike."""
+"""Peaks over the overturning angle above this are drawn at this value."""
 
 
 @draws(
@@ -45,18 +46,18 @@ def overturning_map(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw which pulses overturn, after how many impacts, and the boundaries between.
+    """Draw which pulses overturn, after how many impacts, and the boundaries between them.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.overturning_map`.
+        Result of :func:`rockframe.overturning_map`.
 
     Returns
     -------
     matplotlib.axes.Axes
-        On rigid ground the axes are amplitude over that of uplift and frequency over the block's,
-        unless `units` has one of accelerations.
+        On rigid ground the axes are the amplitude over that of uplift and the frequency over the
+        frequency parameter of the block, unless `units` has a unit of accelerations.
 
     Examples
     --------
@@ -101,7 +102,7 @@ def overturning_map(
         words.append("no verdict")
         patches.append(Patch(facecolor="none", edgecolor="0.6", label=words[-1]))
     on.legend(patches, words, columns=2)
-    on.entitle("What overturns: dots are boundaries that were halved", title)
+    on.entitle("Overturning; dots are boundaries found by bisection", title)
     return axes
 
 
@@ -118,12 +119,12 @@ def rocking_spectrum(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Panels:
-    """Draw peak rotations over the size of the block, a panel for each slenderness.
+    """Draw peak rotations over the size of the block, with a panel for each slenderness.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.rocking_spectrum`.
+        Result of :func:`rockframe.rocking_spectrum`.
 
     Returns
     -------
@@ -169,7 +170,7 @@ def overturning_spectrum(
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.overturning_spectrum`.
+        Result of :func:`rockframe.overturning_spectrum`.
 
     Returns
     -------
@@ -204,16 +205,16 @@ def _after(count: int, told: int) -> str:
 
 
 def _by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: Any) -> Sheet:
-    """Draw a line for each motion over the size of the block, a panel for each slenderness."""
+    """Draw a line for each motion over the size of the block, in a panel for each slenderness."""
     names = [f"H/B = {float(value):.3g}" for value in values["slenderness"]]
     on = sheet(
         ax, function, names, (1.2 + 3.2 * len(names), 3.9),
         lambda figure: figure.subplots(1, len(names), sharey=True),
     )  # fmt: skip
     for place, axes in enumerate(on.panels):
+        motions = plain_names(map(str, values["motion"].to_numpy()))
         for number, colour in enumerate(colour_steps(values["motion"])):
-            one = values.isel(slenderness=place, motion=number)
-            label = str(one["motion"].item())
+            one, label = values.isel(slenderness=place, motion=number), motions[number]
             axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)
         axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
         grid(axes)

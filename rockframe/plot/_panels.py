@@ -1,4 +1,4 @@
-"""Panels that figures are drawn in: those of a new pyplot figure, or given ones."""
+"""The panels of figures: those of a new pyplot figure, or given ones."""
 
 import re
 from collections.abc import Callable, Iterable, Sequence
@@ -10,7 +10,7 @@ import numpy as np
 
 from rockframe.arguments import text
 from rockframe.errors import ComponentError, nearest, shown
-from rockframe.plot._axes import key
+from rockframe.plot._axes import escaped, key
 from rockframe.proposals import proposing
 
 if TYPE_CHECKING:
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
 
     AxesLike: TypeAlias = Axes | Figure | SubFigure | Iterable[Any] | None
-else:  # matplotlib is loaded when something is drawn, not when hints are read
+else:  # matplotlib is imported when something is drawn, not for type hints
     Axes = AxesLike = Figure = Any
 
 
 _LETTERS_PER_INCH: Final = 12.0
-"""At matplotlib's own size of letters, with a margin of about a fifteenth on both sides."""
+"""At matplotlib's default size of letters, with a margin of about a fifteenth on both sides."""
 _USUAL_SIZE: Final = 10.0
 
 
-_NO_BREAK: Final = "\N{NO-BREAK SPACE}"
+NO_BREAK: Final = "\N{NO-BREAK SPACE}"
 _FACTOR: Final = r"(?:[kMGmc]?(?:m|N|Pa|J|g|rad|Hz|s)|t|°|%|deg|mm|ft|lbf)(?:\^-?\d+)?(?![\w^])"
 _NUMBER: Final = re.compile(rf"(?<![\w.])-?\d[\d.e+-]*(?: {_FACTOR}(?:/{_FACTOR})?)+")
-"""A number with its unit, between which no line of a title ends."""
+"""A number with its unit, which lines of a title do not separate."""
 
 
 def set_title(figure: "Figure | SubFigure", words: str) -> None:
@@ -40,19 +40,17 @@ def set_title(figure: "Figure | SubFigure", words: str) -> None:
     letters = _LETTERS_PER_INCH * _USUAL_SIZE / float(rcParams["font.size"])
     width = int(letters * figure.bbox.width / figure.get_dpi())
     lines = [
-        line.replace(_NO_BREAK, " ")
-        for given in words.splitlines()
-        for line in _lines(given, width)
+        line.replace(NO_BREAK, " ") for given in words.splitlines() for line in _lines(given, width)
     ]
     # matplotlib breaks lines that still do not fit, as those of wide letters
     figure.suptitle("\n".join(lines), fontsize="medium", wrap=True)
 
 
 def _lines(words: str, width: int) -> list[str]:
-    """Break first behind semicolons and sentences, and only then between words."""
+    """Break lines after semicolons and sentences, and otherwise between words."""
     if len(words) <= width:
         return [words]
-    words = _NUMBER.sub(lambda one: one[0].replace(" ", _NO_BREAK), words)
+    words = _NUMBER.sub(lambda one: one[0].replace(" ", NO_BREAK), words)
     for mark in ("; ", ". "):
         for place in range(width - 1, width // 3, -1):
             if words.startswith(mark, place):
@@ -67,8 +65,8 @@ _LETTERS_OF_HANDLE: Final = 7
 class Panels(tuple[Any, ...]):
     """The panels of one figure, in the order in which they were drawn.
 
-    A tuple of :class:`matplotlib.axes.Axes`, which can be handed back as ``ax=`` to draw something
-    else in the same panels.
+    A tuple of :class:`matplotlib.axes.Axes`, which can be passed as ``ax=`` to draw something else
+    in the same panels.
 
     Examples
     --------
@@ -85,8 +83,8 @@ class Panels(tuple[Any, ...]):
 
     @property
     def figure(self) -> "Figure":
-        """The figure that the panels belong to."""
-        # that of the panel may be a part of it
+        """The figure to which the panels belong."""
+        # the figure of a panel may be a subfigure
         return cast("Figure", self[0].figure.figure)
 
     def __repr__(self) -> str:
@@ -96,7 +94,7 @@ class Panels(tuple[Any, ...]):
 
 @dataclass(frozen=True)
 class Sheet:
-    """What is drawn on: panels, and their figure where they were made in it."""
+    """Panels to draw in, and their figure if the panels were made here."""
 
     panels: Panels
     own: "Figure | SubFigure | None"
@@ -107,22 +105,22 @@ class Sheet:
         return self.panels[0]
 
     def entitle(self, usual: str, title: str | None) -> None:
-        """Write the title above the figure; above given panels only one that was asked for."""
+        """Write the title above a new figure; above given panels only a title of the caller."""
         if title is not None:
             text(title, owner="rf.plot", name="title")
         if self.own is not None:
-            set_title(self.own, title or usual)
+            set_title(self.own, title or escaped(usual))
         elif title:
             self.axes.set_title(title, fontsize="medium", wrap=True)
 
     def legend(
         self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any
     ) -> None:
-        """Write a legend below the figure; of given panels, above what is drawn in the last one.
+        """Write a legend below a new figure; of given panels, above the data of the last one.
 
-        It has as many columns as there is room for, and no more than told.
+        It has as many columns as there is room for, and `columns` at most.
         """
-        if self.own is None:
+        if self.own is None or not labels:
             key(self.panels[-1], (handles, labels))
             return
         width = _LETTERS_PER_INCH * self.own.bbox.width / self.panels.figure.get_dpi()
@@ -131,7 +129,7 @@ class Sheet:
         self.own.legend(handles, labels, loc="outside lower center", frameon=False, **style)
 
     def name_lines(self) -> None:
-        """Write one legend of what is named in all panels."""
+        """Write one legend of the labels of all panels."""
         named = {
             label: handle
             for axes in self.panels
@@ -149,11 +147,10 @@ def sheet(
     *,
     choice: bool = False,
 ) -> Sheet:
-    """Take the panels that are given, or make new ones in the figure that is given or in a new one.
+    """Take the given panels, or make new ones in the given figure or in a new one.
 
-    Where the function has the argument `panels`, a message about them tells that there is a choice.
-
-    A new figure is one of pyplot, so that a notebook shows it and ``show()`` opens a window.
+    With `choice`, the function has the argument `panels`, which messages then mention. A new figure
+    is one of pyplot, so that a notebook shows it and ``show()`` opens a window.
     """
     if len(names) > 1 and _is_figure(ax):
         given = cast("Figure", ax)
@@ -167,7 +164,7 @@ def sheet(
 
 
 def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[str, ...]:
-    """Read which panels of a figure are drawn; all unless some are given."""
+    """Read the choice of panels of a figure; all unless given."""
     names = list(known)
     if panels is None:
         return tuple(names)
@@ -184,7 +181,7 @@ def chosen_panels(panels: object, known: Iterable[str], function: str) -> tuple[
 
 
 def single(ax: "AxesLike", function: str, size: tuple[float, float]) -> Sheet:
-    """Take the one panel that is given, or make a figure with one; see :func:`sheet`."""
+    """Take the given panel, or make a figure with one; see :func:`sheet`."""
     return sheet(ax, function, ("the figure",), size, lambda figure: figure.subplots())
 
 

@@ -1,4 +1,4 @@
-"""A run as a page that plays it: drawn by the browser, from numbers alone."""
+"""A page that plays a run, drawn by the browser from numbers."""
 
 import base64
 import json
@@ -25,7 +25,7 @@ from rockframe.plot._response import (
     of_rotation,
     strips_of,
 )
-from rockframe.plot._runs import Window, runs_of
+from rockframe.plot._runs import Window, runs_of, said_of
 from rockframe.plot._scene import Moving
 from rockframe.proposals import proposing
 from rockframe.results.outcome import LEAST_SLIP
@@ -37,15 +37,15 @@ from rockframe.writing import FileKind, generator, write_file
 
 _FRAMES_PER_SECOND: Final = 25.0
 _MOST_FRAMES: Final = 900
-"""Between which the browser interpolates."""
+"""Largest number of instants of a page; the browser interpolates between them."""
 _TRACE: Final = 700
-"""Parts of the time of which a trace keeps the least and the largest value."""
+"""Number of intervals of time of which a trace keeps the least and the largest value."""
 _MOST_SLIPS: Final = 4
-"""Traces of slip that have room beside each other."""
+"""Largest number of traces of slip."""
 _ROUNDING: Final = 1e-9
-"""Share of the reach of a trace within which it comes back to zero."""
+"""Ends of a trace below this share of its range are rounding, and set to zero."""
 _LEVELS: Final = 30000
-"""Of the numbers that a page holds, from the least to the largest of their kind."""
+"""Steps between the least and the largest number of a kind in a page."""
 _NOWHERE: Final = -32768
 _TEMPLATE: Final = Path(__file__).with_name("player.html")
 _TITLE: Final = "player"
@@ -53,31 +53,31 @@ KIND: Final = FileKind.marked(
     "a player", (".html", ".htm"), generator(_TITLE), generator("animation")
 )
 _HEIGHT: Final = 640
-"""Of the player in a notebook [pixels]."""
+"""Height of the player in a notebook [pixels]."""
 
 
 class _Layer(NamedTuple):
     """One thing that is drawn."""
 
     name: str
-    shape: str  # how the page draws it
-    colour: str  # "ink" is that of the page's text, "soft" of what stands behind
+    shape: str  # name of the function that draws it in the page
+    colour: str  # "ink" is that of the page's text, "soft" that of its background
     fill: float  # opacity [1]
     points: Array  # at all instants, shape (instants, points, 2) [m]
 
 
 @proposing
 class Player:
-    """A run as a page that plays it, a few tens of kilobytes in size.
+    """A page that plays a run, a few tens of kilobytes in size.
 
-    Notebooks show it; :meth:`save` writes it into a file that needs no other and makes no request.
+    Notebooks show it; :meth:`save` writes it to a file that needs no other file and no network.
 
     Parameters
     ----------
     html : str
         The page.
     length : float
-        Time of the run that it plays [s].
+        Duration of the run in the page [s].
 
     Examples
     --------
@@ -94,14 +94,14 @@ class Player:
         self._html, self._length = html, length
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> Path:
-        """Write the page into a file.
+        """Write the page to a file.
 
         Parameters
         ----------
         path : str or Path
-            Its name ends in ``.html``.
+            A file whose name ends in ``.html``.
         overwrite : bool, optional
-            Whether a file that is there is replaced though it is no player that this method wrote.
+            Whether to replace an existing file that is not a player written by this method.
 
         Returns
         -------
@@ -141,22 +141,23 @@ def player(
     units: UnitsLike = None,
     title: str | None = None,
 ) -> Player:
-    """Make a page that plays a run: the scene to scale above traces of rotation, slips and ground.
+    """Make a page that plays a run: the scene above histories of rotation, slip and the ground.
 
-    The page has a button that plays, a slider, a choice of speeds, a cursor in the traces that
-    follows the pointer, and a strip of what bears. It is drawn by the browser from the numbers,
-    and is made in a fraction of a second, where an :func:`animation` draws picture by picture.
+    The page has a button to play, a slider, a choice of speeds, a cursor in the histories that
+    follows the pointer, and a strip of contact states. The browser draws it from the numbers. It
+    is therefore made in a fraction of a second, while an :func:`animation` is drawn frame by
+    frame.
 
     Parameters
     ----------
     run : xarray.Dataset
         A result with histories.
     window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is shown; all of it unless given [s].
+        Start and end of what is shown; the whole run unless given [s].
     magnify : float, optional
-        By which displacements are multiplied in the drawing of the scene [1].
+        Factor of displacements in the drawing of the scene [1].
     rotation : str, optional
-        Unit of the trace, as for :func:`rockframe.plot.response`; degrees unless given.
+        Unit of the history, as for :func:`rockframe.plot.response`; degrees unless given.
 
     Returns
     -------
@@ -165,9 +166,9 @@ def player(
     Raises
     ------
     SchemaError
-        Not the result of a single run with histories, or one that does not tell its system.
+        Not the result of a single run with histories, or one without its system.
     UnitsError, ComponentError
-        A window, unit or factor that is none.
+        A window, unit or factor that cannot be read or is out of range.
 
     Examples
     --------
@@ -184,13 +185,14 @@ def player(
     chosen = units_of(units, "player")
     unit = chosen.unless_relative(ANGLE, rotation=chosen.rotations(rotation))
     ground = chosen.of(ACCELERATION)
-    moving = Moving(drawn.dataset, "player", magnify, chosen)
+    moving = Moving(drawn.dataset, "player", magnify, chosen, run)
     start, end = float(drawn.time[0]), float(drawn.time[-1])
     count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MOST_FRAMES))
     shown_at = drawn.nearest(np.linspace(start, end, count))
     store = _Numbers()
     layers = _layers(moving, shown_at, store)
-    label = _label("rotation", "-" if unit is None else unit.words)
+    whose = " of body 1" if "body" in drawn.dataset.dims else ""
+    label = _label(f"rotation{whose}", "-" if unit is None else unit.words)
     length = chosen.of(LENGTH)
     traces = [
         _trace(of_rotation(drawn, unit), label, BLUE, store),
@@ -200,7 +202,7 @@ def player(
                _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip
     sentence = (
-        chosen.reader.of_sentence(str(run.attrs.get("verdict", "")))
+        said_of(run, chosen.reader)
         if title is None
         else text(title, owner="rf.plot.player", name="title")
     )
@@ -221,13 +223,13 @@ def player(
 
 
 class _Numbers:
-    """Columns of numbers, as whole multiples of steps, one behind another."""
+    """Columns of numbers as integer multiples of steps, one after another."""
 
     def __init__(self) -> None:
         self._columns: list[np.ndarray] = []
 
     def add(self, values: np.ndarray, low: float, high: float) -> int:
-        """Take columns, NaN where there is nothing, and give the place of the first."""
+        """Add columns, with NaN for missing values, and give the place of the first."""
         step = (high - low) / _LEVELS or 1.0
         whole = np.where(np.isnan(values), _NOWHERE, np.rint((values - low) / step))
         before = sum(column.size for column in self._columns)
@@ -235,16 +237,16 @@ class _Numbers:
         return before
 
     def packed(self) -> str:
-        """Give the differences of neighbours, as text; few bytes where little changes."""
+        """Give the differences of neighbours as compressed text."""
         whole = np.concatenate(self._columns)
         steps = np.diff(whole, prepend=0).astype("<i2")  # modulo 2**16, as the page adds them up
-        # low bytes behind one another, then high bytes, which are mostly alike
+        # first all low bytes, then all high bytes: these are mostly equal, and compress well
         halves = steps.view(np.uint8).reshape(-1, 2).T.tobytes()
         return base64.b64encode(zlib.compress(halves, 9)).decode()
 
 
 def _layers(moving: Moving, shown_at: np.ndarray, store: _Numbers) -> dict[str, Any]:
-    """Give what is drawn and where, at all instants."""
+    """Give everything that is drawn, at all instants."""
     placements = [moving.at(int(place)) for place in shown_at]
     found = [moving.drawer.lay_out(at) for at in placements]
     layers = [*_of_parts(moving, found), *_of_contacts(found)]
@@ -275,7 +277,7 @@ def _layers(moving: Moving, shown_at: np.ndarray, store: _Numbers) -> dict[str, 
 
 
 def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
-    """Give the parts of a scene, from behind to the front."""
+    """Give the parts of a scene, from the back to the front."""
     upright, first = moving.drawer.lay_out(moving.upright), found[0]
 
     def still(points: Array) -> Array:
@@ -306,7 +308,7 @@ def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
 
 
 def _of_contacts(found: Sequence[Layout]) -> Iterator[_Layer]:
-    """Give where bases bear: both ends of each line; a point is a line of no length."""
+    """Give the contacts: both ends of each line; a point is a line of zero length."""
     for k in range(max(len(one.touching) for one in found)):
         points = np.full((len(found), 2, 2), np.nan)
         for row, one in zip(points, found, strict=True):
@@ -316,7 +318,7 @@ def _of_contacts(found: Sequence[Layout]) -> Iterator[_Layer]:
 
 
 def _slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
-    """Give the slips of the bodies that slid farthest, and what they are called."""
+    """Give the slips of the bodies that slid farthest, with their names."""
     found = {SLIP: run[SLIP]} if SLIP in run else {}
     if OF_BODIES in run:
         found = {
@@ -330,7 +332,7 @@ def _slips(run: xr.Dataset) -> list[tuple[str, xr.DataArray]]:
 
 
 def _surface(found: Layout) -> Array:
-    """Give the corners of the surface of soil, which is straight between them."""
+    """Give the corners of the surface of the soil, which is straight between them."""
     surface = cast("Array", found.soil)
     bend = int(np.argmax(np.abs(np.diff(surface[:, 1], 2)[2:-2]))) + 3
     return surface[[0, 1, 2, bend, -3, -2, -1]]
@@ -341,7 +343,7 @@ def _label(words: str, unit: str) -> str:
 
 
 def _trace(values: np.ndarray, label: str, colour: str, store: _Numbers) -> dict[str, Any]:
-    """Give the least and the largest value of equal parts of the time."""
+    """Give the least and the largest value in equal intervals of time."""
     edges = np.linspace(0, values.size, min(_TRACE, values.size) + 1).astype(int)
     least = np.minimum.reduceat(values, edges[:-1])
     most = np.maximum.reduceat(values, edges[:-1])
@@ -363,7 +365,7 @@ def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
 
 
 def _page(sentence: str, motion: str, data: dict[str, Any]) -> str:
-    # "</script>" in a text would end the script
+    # otherwise "</script>" in a text would end the script
     written = json.dumps(data, separators=(",", ":")).replace("</", "<\\/")
     page = _TEMPLATE.read_text(encoding="utf-8")
     filled = {"GENERATOR": generator(_TITLE, __version__), "TITLE": escape(sentence or "A run"),

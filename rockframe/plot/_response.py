@@ -1,4 +1,4 @@
-"""The response along time, laid out as in Figs. 7-15 of the paper.
+"""The response over time, laid out as in Figs. 7-15 of the paper.
 
 Events are marked on the rotation, and strips below it show the contact states.
 """
@@ -26,6 +26,7 @@ from rockframe.plot._axes import (
     colour_of,
     ink,
     key,
+    plain,
     units_of,
     zero_line,
 )
@@ -42,28 +43,28 @@ CONTACT_COLOURS: Final = {
     "right": "#cc6677",
     "flight": "#ddcc77",
 }
-"""Of each state, by its name in the schema; as shades of grey they differ as well."""
+"""Colour of each state, by its name in the schema; the colours differ as shades of grey too."""
 
 _COLUMNS: Final = 1 << 14
-"""More than a figure has pixels, so that what is narrower than a pixel is averaged twice only."""
+"""More than the pixels of a figure: the colours within a pixel are then averaged well."""
 
 
 def draw_contact(axes: Axes, state: xr.DataArray, name: str) -> None:
-    """Draw which corner bears, in the colour of the state.
+    """Draw the contact state as a strip of colours.
 
-    Where states change faster than the figure can show, the colours are mixed by the shares
-    of time: bars would show whichever was painted last.
+    Where states change faster than the figure can show, their colours are averaged over time:
+    bars would show only the one that was drawn last.
     """
     time = state["time"].to_numpy()
     colours, ends = mixed_colours(state, _COLUMNS)[np.newaxis], (time[0], time[-1], 0.0, 1.0)
     axes.imshow(colours, extent=ends, aspect="auto", interpolation="antialiased")
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
-    axes.set_ylabel(name, rotation=0, ha="right", va="center")
+    axes.set_ylabel("\n".join(wrap(name, 26)), rotation=0, ha="right", va="center")
 
 
 def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
-    """Name the colours below the strip."""
+    """Write the legend of the colours below the strip."""
     from matplotlib.patches import Patch
 
     names = [name for _, name in names_of_flags(state)]
@@ -75,7 +76,7 @@ def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
 
 
 def mixed_colours(state: xr.DataArray, columns: int) -> Any:
-    """Give the mean colour of equal parts of the time."""
+    """Give the mean colour in equal intervals of time."""
     from matplotlib.colors import to_rgb
 
     time, values = state["time"].to_numpy(), state.to_numpy()
@@ -114,11 +115,11 @@ MARKS: Final = {
     "soil_contact": ("1", PURPLE),
 }
 """Marker and colour of each kind of event that is drawn, by its name in the schema. Changes of the
-horizontal restraint are not drawn: they come with a separation or a contact."""
+horizontal restraint are not drawn: they coincide with a separation or a contact."""
 
 
 def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
-    """Mark events where they happened on the rotation, and name them in the legend."""
+    """Mark events on the history of the rotation, and name them in the legend."""
     named: set[str] = set()
     for run in runs:
         dataset = run.dataset
@@ -143,19 +144,24 @@ def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
                 markersize=4.5, markeredgewidth=0.9, label=label, zorder=3,
             )  # fmt: skip
     if named:
-        key(axes)
+        several = any("event_body" in run.dataset for run in runs)
+        key(axes, title="events of all bodies" if several else "", title_fontsize="small")
 
 
 CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
-"""Strips of contact states, and what they are called where there are two."""
+"""Histories drawn as strips of contact states, and their names where there are two."""
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
+_NEAR: Final = 5.0
+"""Uplift angle over the peak rotation beyond which its line would leave no room for the curve."""
 _AT_REST: Final = 1e-12
-"""Rotations below are rounding [rad]."""
+"""Rotations below this are rounding [rad]."""
+_MOST_OF_PART: Final = 24
+"""Letters of the name of a point or a restrainer."""
 SLIP: Final = "slip"
 OF_BODIES: Final = "body_slip"
 OF_CAP: Final = "cap_slip"
 SLIPS: Final = (SLIP, OF_BODIES, OF_CAP)
-"""Histories of slip, of which one panel shows what there is."""
+"""Histories of slip; one panel shows those that a run has."""
 _STACKED: Final = "rotation_on_cap"
 
 
@@ -173,28 +179,28 @@ def response(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Panels:
-    """Draw rotation, vertical displacement and contact states along time.
+    """Draw rotation, vertical displacement and contact states over time.
 
     Parameters
     ----------
     runs : xarray.Dataset, or sequence or mapping of them
         A result with histories; or several to compare. The keys of a mapping are the labels;
-        in a list, runs are called by their motions, models or accuracies, or else numbered.
+        the runs of a list are labelled by their motions, models or accuracies, or else numbered.
     panels : str or tuple of str, optional
-        Which are drawn, of ``"ground"``, ``"rotation"``, ``"vertical"`` and ``"contact"``, and
-        any history that some run holds, by its name, such as ``"base_shear"``; these four unless
-        given, and the slip where a body slid. Contact is a strip for each run; for each of its
-        bases, where a cap carries the block.
+        Panels to draw: ``"ground"``, ``"rotation"``, ``"vertical"``, ``"contact"``, and any
+        history of the runs by its name, such as ``"base_shear"``; these four unless given, and
+        the slip if a body slid. Contact is a strip for each run, and for each base of a run whose
+        block stands on a cap.
     window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is drawn; all of it unless given [s].
+        Start and end of what is drawn; the whole run unless given [s].
     rotation : str, optional
-        Unit of rotations, such as ``"deg"`` or ``"rad"``; or ``"relative"``, over the overturning
-        angle, with degrees at the right, which is usual.
+        Unit of rotations, such as ``"deg"`` or ``"rad"``; or ``"relative"``, the default: over the
+        overturning angle, with degrees on the right.
     vertical : str, optional
-        Unit of vertical displacements, such as ``"mm"``; or ``"relative"``, over the settlement
-        under the weight where the base gives way, with millimetres at the right, which is usual.
+        Unit of vertical displacements, such as ``"mm"``; or ``"relative"``, the default: on a
+        deformable base over the settlement under the weight, with millimetres on the right.
     acceleration : str, optional
-        Unit of the ground's acceleration, such as ``"g"``.
+        Unit of the ground acceleration, such as ``"g"``.
     events : bool, optional
         Whether events are marked on the rotation.
 
@@ -202,13 +208,13 @@ def response(
     -------
     Panels
         Their ``figure`` is one of :mod:`matplotlib.pyplot`. Where contact changes faster than the
-        figure can show, the strip has the mean colour of the states, by their shares of time.
+        figure can show, the strip has the colours of the states averaged over time.
 
     Raises
     ------
     SchemaError
-        Not the result of a single run, or of one without histories; the message names the
-        function that draws what was given.
+        Not the result of a single run, or one without histories; the message names the function
+        that draws what was given.
     UnitsError, ComponentError
         A unit of another kind, an unknown panel, a window without samples, or Axes that are not
         as many as the panels.
@@ -271,7 +277,7 @@ def response(
 
 
 def of_rotation(run: Run, unit: Shown | None, name: str = "rotation") -> Any:
-    """Give a rotation in a unit; over the overturning angle of its side where there is none."""
+    """Give a rotation in a unit; without a unit over the overturning angle of its side."""
     values = run.dataset[name].to_numpy()
     if unit is not None:
         return unit.of(values)
@@ -284,13 +290,13 @@ def relative(rotation: Any, left: float, right: float) -> Any:
 
 
 def has_slid(run: xr.Dataset) -> bool:
-    """Whether a run has slip to be shown, of whatever body."""
+    """Whether any body of a run slid enough for a panel of its slip."""
     slips = (run[name] for name in SLIPS if name in run)
     return any(float(np.abs(slip).max()) >= LEAST_SLIP for slip in slips)
 
 
 def usual_panels(runs: list[Run]) -> tuple[str, ...]:
-    """Give the panels of runs unless others are chosen."""
+    """Give the default panels of runs."""
     slid = any(has_slid(run.dataset) for run in runs)
     of_bodies = len(runs) == 1 and OF_BODIES in runs[0].dataset
     *above, contact = _HEIGHTS
@@ -315,7 +321,7 @@ def _chosen(panels: object, runs: list[Run]) -> tuple[str, ...]:
 
 
 def histories_of(run: xr.Dataset) -> list[str]:
-    """Name the histories of a run, those of several points or bodies too."""
+    """Give the names of the histories of a run, also of those of several points or bodies."""
     return [
         str(name)
         for name, values in run.data_vars.items()
@@ -324,7 +330,7 @@ def histories_of(run: xr.Dataset) -> list[str]:
 
 
 def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
-    """Give the strips of contact states with what is written beside them."""
+    """Give the strips of contact states with their labels."""
     found: dict[str, tuple[xr.DataArray, str]] = {}
     for run in runs:
         names = [name for name in CONTACTS if name in run.dataset]
@@ -333,32 +339,32 @@ def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
         for name in names:
             words = [] if run.label is None else [run.label]
             words += [CONTACTS[name]] if len(names) > 1 else []
+            words = words or ["body 1"] * ("body" in run.dataset.dims)
             text = ", ".join(words) or "contact"
             found[f"contact of {text}" if words else text] = run.dataset[name], text
     return found
 
 
 def _ground(axes: Axes, runs: list[Run], unit: Shown) -> None:
-    alike = all(
-        run.dataset["ground_acceleration"].identical(runs[0].dataset["ground_acceleration"])
-        for run in runs
-    )
+    across, upwards = "ground_acceleration", "vertical_ground_acceleration"
+    moved = [
+        run.dataset[[name for name in (across, upwards) if name in run.dataset]] for run in runs
+    ]
+    alike = all(one.equals(moved[0]) for one in moved)
     for run in runs[:1] if alike else runs:
-        colour = ink() if alike else run.colour
-        if alike and "vertical_ground_acceleration" in run.dataset:
-            upwards = unit.of(run.dataset["vertical_ground_acceleration"])
-            axes.plot(run.time, upwards, color=GREY, linewidth=0.6, label="vertical")
-        across = unit.of(run.dataset["ground_acceleration"])
-        axes.plot(run.time, across, color=colour, linewidth=0.8)
+        for name, style, width in ((upwards, "-" if alike else ":", 0.6), (across, "-", 0.8)):
+            if name not in run.dataset:
+                continue
+            colour = run.colour if not alike else ink() if name == across else GREY
+            label = "vertical" if name == upwards else None
+            values = unit.of(run.dataset[name])
+            axes.plot(run.time, values, style, color=colour, linewidth=width, label=label)
     key(axes)
     axes.set_ylabel(axis_label("ground\n", unit.words))
 
 
 def _history(axes: Axes, runs: list[Run], name: str, units: ReaderUnits) -> None:
-    """Draw a history without a panel of its own kind, of those runs that hold it.
-
-    Of several points there is a line for each.
-    """
+    """Draw any other history, of the runs that have it, with one line for each point."""
     runs = [run for run in runs if name in run.dataset]
     unit = units.of(str(runs[0].dataset[name].attrs.get("units", "1")))
     for run in runs:
@@ -366,7 +372,7 @@ def _history(axes: Axes, runs: list[Run], name: str, units: ReaderUnits) -> None
         rows = values if values.ndim > 1 else values.expand_dims("row")
         first = str(rows.dims[0])
         for number, row in enumerate(rows):
-            part = str(row[first].item()) if first in row.coords else ""
+            part = plain(str(row[first].item()), _MOST_OF_PART) if first in row.coords else ""
             label = ", ".join(filter(None, (run.label, part))) or None
             colour = run.colour if len(rows) == 1 else colour_of(number)
             axes.plot(run.time, unit.of(row), color=colour, linestyle=run.style, linewidth=0.9,
@@ -387,12 +393,12 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         dataset = run.dataset
         axes.plot(
             run.time, of_rotation(run, unit), color=run.colour, linestyle=run.style, linewidth=1.1,
-            label=run.label or "block",
+            label=run.label or ("body 1" if "body" in dataset.dims else "block"),
         )  # fmt: skip
         if _STACKED in dataset and not several:
             cap = of_rotation(run, unit, "cap_rotation")
             axes.plot(run.time, cap, color=ORANGE, linewidth=0.9, label="cap")
-        elif not several:
+        elif not several and "body" not in dataset.dims:  # of a stack it is that on the base
             _uplift(axes, dataset, unit)
         if bool(dataset["overturned"]):
             colour = run.colour if several else VERMILLION
@@ -401,7 +407,7 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         key(axes)
     zero_line(axes)
     if max(float(np.abs(run.dataset["rotation"]).max()) for run in runs) < _AT_REST:
-        axes.set_ylim(-1e-3, 1e-3)  # rounding is no rotation
+        axes.set_ylim(-1e-3, 1e-3)  # otherwise the axis would show rounding errors
     if unit is not None:
         axes.set_ylabel(axis_label("rotation", unit.words))
         return
@@ -412,9 +418,9 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
 
 
 def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
-    """Draw the rotations at which contact is first lost."""
-    uplift = float(dataset["uplift_angle"])
-    if not (np.isfinite(uplift) and uplift > 0.0):
+    """Draw the rotations at which contact is first lost, where the run comes near them."""
+    uplift, peak = float(dataset["uplift_angle"]), float(np.abs(dataset["rotation"]).max())
+    if not (np.isfinite(uplift) and 0.0 < uplift < _NEAR * peak):
         return
     both = np.array([-uplift, uplift])
     drawn = relative(both, *overturning_angles(dataset)) if unit is None else unit.of(both)
@@ -423,7 +429,7 @@ def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
 
 
 def _beside_in_degrees(axes: Axes, left: float, right: float) -> None:
-    """Write degrees at the right of an axis of rotations over the overturning angle."""
+    """Add degrees on the right of an axis of rotations over the overturning angle."""
 
     def degrees(share: Any) -> Any:
         share = np.asarray(share, np.float64)
@@ -448,7 +454,7 @@ def _vertical(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
     if not over_settlement:
         axes.set_ylabel(axis_label("vertical $y$", metres.words))
         return
-    stacked = any(_STACKED in run.dataset for run in runs)  # two settlements, so say which
+    stacked = any(_STACKED in run.dataset for run in runs)  # pads and soil: two settlements
     whose = "\n($\\delta$ of the pads)" if stacked else ""
     axes.set_ylabel(rf"vertical $y/\delta$ [-]{whose}")
     sizes = {settlement_in(run.dataset) for run in runs}
@@ -459,7 +465,7 @@ def _vertical(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
 
 
 def settlement_in(run: xr.Dataset) -> float:
-    """Find the settlement by which vertical displacements were made relative [m]."""
+    """Find the settlement by which vertical displacements were divided [m]."""
     share = run["relative_vertical_displacement"].to_numpy()
     most = int(np.argmax(np.abs(share)))
     if share[most] == 0.0:

@@ -1,5 +1,6 @@
-"""Runs that are drawn: one, or several to compare, and a part of their time."""
+"""The runs of a figure: one, or several to compare, and the window of time."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias, cast
@@ -8,8 +9,10 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, shown
-from rockframe.plot._axes import colour_of, style_of
+from rockframe.plot._axes import colour_of, plain_names, style_of
 from rockframe.plot._checks import checked_run
+from rockframe.results.outcome import verdict_of
+from rockframe.results.variables.variable import unit_behind
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.shown import ReaderUnits
 
@@ -19,7 +22,7 @@ RunsLike: TypeAlias = xr.Dataset | Sequence[xr.Dataset] | Mapping[Any, xr.Datase
 
 @dataclass(frozen=True)
 class Run:
-    """A run with its label, colour and dashes; without a label where there is but one."""
+    """A run with its label, colour and dashes; a single run has no label."""
 
     dataset: xr.Dataset
     label: str | None
@@ -39,28 +42,28 @@ class Run:
 
 
 def runs_of(given: object, function: str, window: Window) -> list[Run]:
-    """Read one or several runs, and take the part of them that is drawn."""
+    """Read one or several runs, and cut out the window that is drawn."""
     cut = window_of(window, function)
     labelled = _labelled(given)
     if labelled is None:
         return [Run(_part(checked_run(given, function), cut, function), None, colour_of(0), "-")]
-    runs = {label: checked_run(one, function) for label, one in labelled.items()}
+    runs = [checked_run(one, function) for one in labelled.values()]
     return [
         Run(_part(one, cut, function), label, colour_of(number), style_of(number))
-        for number, (label, one) in enumerate(runs.items())
+        for number, (label, one) in enumerate(zip(plain_names(labelled), runs, strict=True))
     ]
 
 
 def window_of(window: object, function: str, name: str = "window") -> tuple[float, float]:
-    """Read a part of the time, or of periods; infinite where an end is not given [s]."""
+    """Read a window of times or of periods; an end that is not given is infinite [s]."""
     if window is None:
         return -np.inf, np.inf
     owner = f"rf.plot.{function}"
     ends = list(cast("Any", window)) if isinstance(window, tuple | list) else []
     if len(ends) != 2:
         msg = (
-            f"{owner}: {name} must be a pair of times, of which None leaves an end open, such as "
-            f"('2 s', '8 s'), got {shown(window)}"
+            f"{owner}: {name} must be a pair of times, such as ('2 s', '8 s'), or None for an open "
+            f"end, got {shown(window)}"
         )
         raise ComponentError(msg)
     start, end = (
@@ -74,15 +77,45 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
 
 
 def runs_title(runs: list[Run], units: ReaderUnits) -> str:
-    """Give the title of a figure: the verdict of a run; of several, what they have in common."""
+    """Give the title of a figure: the verdict of a run; of several, their common motion."""
     if len(runs) == 1:
-        return units.of_sentence(str(runs[0].dataset.attrs.get("verdict", "")))
+        return said_of(runs[0].dataset, units)
     motions = {str(run.dataset.attrs.get("motion", "")) for run in runs}
     return motions.pop() if len(motions) == 1 else ""
 
 
+def said_of(run: xr.Dataset, units: ReaderUnits) -> str:
+    """Give the verdict of a run; of a case of a sweep, whose verdict is that of all, its own."""
+    if "axes_json" not in run.attrs:
+        return units.of_sentence(str(run.attrs.get("verdict", "")))
+    fell = verdict_of(run)
+    if fell is None:
+        flags = run["status"].attrs
+        words = dict(zip(flags["flag_values"], str(flags["flag_meanings"]).split(), strict=True))
+        text = f"no verdict, {words[run['status'].item()].replace('_', ' ')}"
+    elif fell:
+        text = f"overturned at {float(run['overturning_time']):.4g} s"
+    else:
+        share = 100.0 * float(run["peak_relative_rotation"])
+        peak = f"peak rotation {float(run['peak_rotation']):.4g} rad"
+        text = f"did not overturn, {peak}, {share:.3g} % of the overturning angle"
+    return units.of_sentence(f"{_labels_of(run)}: {text}")
+
+
+def _labels_of(run: xr.Dataset) -> str:
+    """Tell which case of a sweep a run is."""
+    axes = [str(one["name"]) for one in json.loads(str(run.attrs["axes_json"]))]
+    names = [name for name in ("motion", *axes) if name in run.coords and not run[name].dims]
+    labels = [(name.replace("_", " "), run[name].item(), run[name].attrs) for name in names]
+    words = [
+        f"{name} {f'{one:.6g}' if isinstance(one, float) else one}{unit_behind(attrs)}"
+        for name, one, attrs in labels
+    ]
+    return ", ".join(words) or "case of a sweep"
+
+
 def _labelled(given: object) -> dict[str, Any] | None:
-    """Give several runs by their labels; None where there is but one."""
+    """Give several runs by their labels; None for a single run."""
     if isinstance(given, Mapping) and not isinstance(given, xr.Dataset):
         told = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
         return told if told and _all_runs(list(told.values())) else None
@@ -91,8 +124,9 @@ def _labelled(given: object) -> dict[str, Any] | None:
     runs = list(cast("Sequence[Any]", given))
     if not _all_runs(runs):
         return None
-    for attribute in ("motion", "model", "accuracy"):
-        names = [str(run.attrs.get(attribute, "")) for run in runs]
+    cases = [_labels_of(run) if "axes_json" in run.attrs else "" for run in runs]
+    attributes = ("motion", "model", "accuracy")
+    for names in [cases, *([str(run.attrs.get(one, "")) for run in runs] for one in attributes)]:
         if len(set(names)) == len(runs):
             return dict(zip(names, runs, strict=True))
     return {f"run {number}": run for number, run in enumerate(runs, start=1)}
@@ -103,7 +137,7 @@ def _all_runs(given: list[Any]) -> bool:
 
 
 def _part(run: xr.Dataset, cut: tuple[float, float], function: str) -> xr.Dataset:
-    """Cut out a part of the time, and the events in it."""
+    """Cut out a window of time, with the events in it."""
     if not np.isfinite(cut).any():
         return run
     time = run["time"].to_numpy()

@@ -1,4 +1,4 @@
-"""Scenes to scale: as they stand, and at an instant of a run."""
+"""Scenes to scale: at rest, and at an instant of a run."""
 
 from collections.abc import Mapping
 from typing import Final, cast
@@ -37,11 +37,11 @@ _FOLLOWED: Final = (
     "cap_slip",
     "soil_contact_state",
 )
-"""What the place of a scene's parts follows from; of the cap, where there is one."""
+"""Histories that give the places of a scene's parts; those of the cap only where there is one."""
 _OF_BODIES: Final = (
     "body_rotation", "body_horizontal_displacement", "body_vertical_displacement",
 )  # fmt: skip
-"""The same of all bodies of a stack."""
+"""The same for all bodies of a stack."""
 
 
 @draws("a System")
@@ -61,17 +61,17 @@ def scene(
     system : System
         The scene.
     points : mapping of str to (str or Quantity, str or Quantity), optional
-        Points to be marked, as for :meth:`rockframe.System.simulate` [m].
+        Points to mark, as for :meth:`rockframe.System.simulate` [m].
     legend : bool, optional
-        Whether the parts are named beside the drawing, with their numbers.
+        Whether the parts and their parameters are listed next to the drawing.
 
     Returns
     -------
     matplotlib.axes.Axes
-        To scale, in metres unless `units` has one of lengths, with the middle of the lowest base
-        at the origin. A block is drawn as the
-        rectangle of its width and height, whatever it was made from; a frame with its members.
-        Pads have no thickness in the equations; they are drawn with one.
+        To scale, in metres or in the unit of lengths in `units`, with the middle of the lowest
+        base at the origin. A block is drawn as the rectangle of its width and height, whatever it
+        was made from, and a frame with its members. Pads, which have no thickness in the
+        equations, are drawn with one.
 
     Raises
     ------
@@ -99,14 +99,18 @@ def scene(
         msg = f"rf.plot.scene: {'; '.join(faults)}"
         raise ComponentError(msg)
     on = single(ax, "scene", figure_size(drawer, wide=named))
-    names = part_labels(system.parts, drawer.geometry)
-    artist = SceneArtist(on.axes, drawer, names, units_of(units, "scene").of(LENGTH))
-    artist.frame([at])
+    chosen = units_of(units, "scene")
+    names = part_labels(system.parts, drawer.geometry, chosen.reader)
+    artist = SceneArtist(on.axes, drawer, names, chosen.of(LENGTH))
     artist.mark({point.name: (point.x, point.y) for point in marked})
+    artist.frame([at])
     artist.draw(at)
     if named:
         artist.legend()
     on.entitle("", title)
+    if named and on.own is not None:  # the layout finds the room of the legend step by step
+        for _ in range(2):
+            on.panels.figure.draw_without_rendering()
     return on.axes
 
 
@@ -120,29 +124,29 @@ def state(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Axes:
-    """Draw a scene to scale at an instant of a run, and where it touches.
+    """Draw a scene to scale at an instant of a run, with its contacts.
 
     Parameters
     ----------
     run : xarray.Dataset
         A result with histories.
     time : str or Quantity, optional
-        The instant; the nearest sample is drawn. That of the largest rotation over the overturning
-        angle unless given [s].
+        The instant; the nearest sample is drawn. By default the instant of the largest rotation
+        over the overturning angle [s].
     magnify : float, optional
-        By which displacements are multiplied [1].
+        Factor of displacements [1].
 
     Returns
     -------
     matplotlib.axes.Axes
-        As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; dashed, the block at
-        rest.
-        Contact has its own colour: points and lines where bases bear, pads that are pressed.
+        As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the block at rest is
+        dashed. Contact has its own colour: points and lines of bases in contact, and compressed
+        pads. A broken restrainer is not drawn.
 
     Raises
     ------
     SchemaError
-        Not the result of a single run with histories, or one that does not tell its system.
+        Not the result of a single run with histories, or one without its system.
     UnitsError, ComponentError
         The time has no unit or lies outside of the run; the factor is not positive.
 
@@ -162,9 +166,9 @@ def state(
     at = moving.at(place)
     on = single(ax, "state", figure_size(moving.drawer, wide=False))
     artist = SceneArtist(on.axes, moving.drawer, length=chosen.of(LENGTH))
-    artist.frame([at])
-    artist.rest(moving.upright)
     artist.mark(moving.points)
+    artist.frame([at, moving.upright])
+    artist.rest(moving.upright)
     artist.draw(at)
     on.entitle(moving.words(place), title)
     return on.axes
@@ -174,8 +178,9 @@ class Moving:
     """A run as a scene that moves."""
 
     def __init__(
-        self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None
-    ) -> None:
+        self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None,
+        whole: xr.Dataset | None = None,  # of which the run is a part
+    ) -> None:  # fmt: skip
         self.function = function
         self.angle = (units or units_of(None, function)).of(ANGLE, "deg")
         number = above_zero(magnify, function, "magnify")
@@ -188,14 +193,15 @@ class Moving:
         if missing:
             msg = (
                 f"rf.plot.{function}: the run lacks {', '.join(map(repr, missing))}; a case of a "
-                "sweep has all where it is run alone, rf.case(runs, ...).simulate()"
+                "sweep has all histories if it is run alone, rf.case(runs, ...).simulate()"
             )
             raise SchemaError(msg)
+        self._breaks = _fractures(run if whole is None else whole)
         self._columns = {name: run[name].to_numpy() for name in _FOLLOWED if name in run}
 
     @property
     def geometry(self) -> Geometry:
-        """Of the scene."""
+        """Geometry of the scene."""
         return self.drawer.geometry
 
     @property
@@ -205,7 +211,7 @@ class Moving:
 
     @property
     def points(self) -> dict[str, tuple[float, ...]]:
-        """Points that the run was asked for, by their names [m]."""
+        """Points of the run's histories, by their names [m]."""
         if "point" not in self.run.dims:
             return {}
         names = self.run["point"].to_numpy()
@@ -218,7 +224,12 @@ class Moving:
         bodies = None
         if self.geometry.lower:
             bodies = np.column_stack([self.run[name].to_numpy()[:, place] for name in _OF_BODIES])
-        return Placement(self.geometry, values, self.system.restraint, bodies)
+        now = self.time[place]
+        broken = frozenset(number for number, when in self._breaks.items() if when <= now)
+        if self.geometry.columns:  # in each column there are all tendons
+            all_broke = 0 < self.run.sizes.get("restrainer", 0) == len(broken)
+            broken = frozenset(range(len(self.geometry.ties)) if all_broke else ())
+        return Placement(self.geometry, values, self.system.restraint, bodies, broken)
 
     def nearest(self, time: object) -> int:
         """Find the sample nearest to a time, or that of the largest rotation."""
@@ -236,18 +247,29 @@ class Moving:
         return int(np.argmin(np.abs(self.time - when)))
 
     def words(self, place: int) -> str:
-        """Tell time and rotation of a sample."""
-        angle = float(self.angle.of(self._columns["rotation"][place]))
-        share = float(self.run["relative_rotation"][place])
-        turned = f"{angle:.2f}°" if self.angle.words == "°" else f"{angle:.3g} {self.angle.words}"
+        """Write the time and rotation of a sample."""
+        angle = float(self.angle.of(self._columns["rotation"][place])) + 0.0  # no negative zero
+        share = abs(float(self.run["relative_rotation"][place]))
+        turned = f"{angle:.3g}{'' if self.angle.words == '°' else ' '}{self.angle.words}"
         whose = " of body 1" if "body" in self.run.dims else ""
-        text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.0f} % of overturning{whose}"
+        text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.3g} % of overturning{whose}"
         factor = self.drawer.magnify
         return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
 
 
+def _fractures(run: xr.Dataset) -> dict[int, float]:
+    """Give when restrainers broke, by their numbers from 0 [s]."""
+    if "event_restrainer" not in run:
+        return {}
+    kinds = dict(zip(str(run["event_kind"].attrs["flag_meanings"]).split(),
+                     run["event_kind"].attrs["flag_values"], strict=True))  # fmt: skip
+    broke = run["event_kind"].to_numpy() == kinds["restrainer_fracture"]
+    numbers, times = (run[f"event_{name}"].to_numpy()[broke] for name in ("restrainer", "time"))
+    return {int(number) - 1: float(when) for number, when in zip(numbers, times, strict=True)}
+
+
 def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:
-    """Give the size of a figure that a scene fits [in]."""
+    """Give the size of a figure for a scene [in]."""
     geometry = drawer.geometry
     tall = (geometry.level + geometry.height) / (2.0 * drawer.reach)
     return (5.6 if wide else 4.2), float(np.clip(3.6 * tall, 3.2, 5.6))

@@ -1,11 +1,20 @@
-"""Spectra of a set of motions beside the target that they are to fit."""
+"""Spectra of a set of motions and the target spectrum to which they are fitted."""
 
 from typing import Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import BLUE, GREY, VERMILLION, axis_label, grid, key, plain_ticks
+from rockframe.plot._axes import (
+    BLUE,
+    GREY,
+    VERMILLION,
+    axis_label,
+    grid,
+    key,
+    plain_names,
+    plain_ticks,
+)
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import AxesLike, Panels, sheet
 from rockframe.units.shown import UnitsLike
@@ -39,18 +48,19 @@ def selection(
 ) -> Panels:
     """Draw the scaled spectra of a set, their median and spread, and the target.
 
-    Left the accelerations; right the misfit of each motion, in the order of the set.
+    The left panel shows the accelerations, the right one the misfit of each motion, in the order
+    of the set.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :meth:`rockframe.MotionSuite.scaling_to` or :meth:`rockframe.MotionSuite.selection_for`.
+        Result of :meth:`rockframe.MotionSuite.scaling_to` or
+        :meth:`rockframe.MotionSuite.selection_for`.
 
     Returns
     -------
     Panels
-        Bands reach one standard deviation of the logarithm to both
-        sides.
+        Dashed lines are one standard deviation of the logarithm above and below.
 
     Examples
     --------
@@ -89,22 +99,15 @@ def selection(
     spectra.set(xscale="log", yscale="log", xlabel="period [s]")
     spectra.set_ylabel(axis_label("pseudo-spectral acceleration", unit))
     key(spectra)
-    labels = [str(label) for label in dataset["motion"].to_numpy()]
+    labels = plain_names(map(str, dataset["motion"].to_numpy()), _LETTERS)
     factors = dataset["scale_factor"].to_numpy()
     misfits.barh(range(count), dataset["spectral_misfit"], color=GREY, alpha=0.7)
     misfits.set(xlabel="misfit of the logarithm [-]", ylim=(count - 0.5, -0.5))
     if count <= _MOST_NAMED:
-        words = [
-            f"{_short(name)}, $\\times${f:.3g}" for name, f in zip(labels, factors, strict=True)
-        ]
+        words = [f"{name}, $\\times${f:.3g}" for name, f in zip(labels, factors, strict=True)]
         misfits.set_yticks(range(count), words, fontsize="x-small")
     for panel in on.panels:
         grid(panel)
     plain_ticks(spectra)
     on.entitle(f"{count} motions; {dataset.attrs['target']}", title)
     return on.panels
-
-
-def _short(name: str) -> str:
-    plain = name.replace("$", "\\$")
-    return plain if len(plain) <= _LETTERS else f"{plain[: _LETTERS - 3]}..."

@@ -35,7 +35,7 @@ from rockframe.suites.target import check_target
 from rockframe.units import ACCELERATION, VELOCITY, QuantityLike, RatioLike
 from rockframe.units.shown import UnitsLike
 
-_RESOLUTION: Final = "0.05 Hz"  # of short pulses; that of long records is finer
+_RESOLUTION: Final = "0.05 Hz"  # for short pulses; long records have a finer resolution
 _PREFIX: Final = {"horizontal": "", "vertical": "vertical_"}
 _PANELS: Final = ("history", "response", "fourier")
 
@@ -53,7 +53,7 @@ def spectra(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Panels:
-    """Draw a motion along time, its response spectra and its Fourier spectrum.
+    """Draw a motion over time, its response spectra and its Fourier spectrum.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def spectra(
     periods, damping_ratios : optional
         As for :func:`rockframe.measures.response_spectrum` [s], [1].
     component : {"horizontal", "vertical"}, optional
-        Which acceleration.
+        Component of the motion.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of the history that is drawn; spectra are those of the whole motion [s].
     acceleration : str, optional
@@ -71,8 +71,7 @@ def spectra(
     Returns
     -------
     Panels
-        History, response spectra and Fourier spectra. The response spectra are those of the
-        pseudo-spectral acceleration.
+        History, response spectra of the pseudo-spectral acceleration, and Fourier spectra.
 
     Raises
     ------
@@ -163,7 +162,7 @@ def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> N
 
 
 class Average(StrEnum):
-    """What stands for a set."""
+    """The average of a set."""
 
     MEDIAN = "median"
     MEAN = "mean"
@@ -199,25 +198,26 @@ def suite(
     periods : (sequence, unit), Quantity or sequence of str, optional
         Natural periods; 80 from 0.05 s to 5 s unless given [s].
     damping_ratio : float, optional
-        Of the oscillators [1].
+        Damping ratio of the oscillators [1].
     component : {"horizontal", "vertical"}, optional
-        Which acceleration.
+        Component of the motions.
     target : TargetSpectrum, optional
-        Drawn beside them, where it is known.
+        Target spectrum, drawn at the periods for which it is defined.
     compared : (str or Quantity or None, str or Quantity or None), optional
-        Shortest and longest period at which spectra and target are compared, set off [s].
+        Shortest and longest period of the comparison with the target, which are shaded [s].
     average : {"median", "mean"}, optional
-        Of the set: the median with its spread, or the mean, of which codes speak.
+        The median of the set with its spread; or the mean, which codes use.
     named : bool, optional
-        Whether motions are told apart, by colours and in the legend; up to six unless given.
+        Whether each motion has its colour and its label in the legend; by default up to six
+        motions.
     acceleration : str, optional
-        Unit; g unless given.
+        Unit of accelerations; g unless given.
 
     Returns
     -------
     matplotlib.axes.Axes
         Pseudo-spectral accelerations on logarithmic axes. Median and spread are those of the
-        logarithms; the band reaches one standard deviation to both sides.
+        logarithms; the band reaches one standard deviation above and below.
 
     Raises
     ------

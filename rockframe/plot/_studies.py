@@ -1,4 +1,4 @@
-"""Results of studies along one axis or two: sweeps, critical scales, sequences, fitted tests."""
+"""Results of studies over one or two axes: sweeps, critical scales, sequences, fitted tests."""
 
 from typing import Any, Final, cast
 
@@ -17,6 +17,7 @@ from rockframe.plot._axes import (
     key,
     label_of,
     label_of_value,
+    plain_names,
     style_of,
     units_of,
     zero_line,
@@ -30,8 +31,10 @@ from rockframe.units import ANGLE
 from rockframe.units.shown import UnitsLike, reader_units
 
 _MOST_AXES: Final = 2
-"""Dimensions that a figure of a sweep has."""
+"""Largest number of dimensions in a figure of a sweep."""
 _MOST_LINES: Final = 12
+_MOST_LETTERS: Final = 28
+"""Of a name below an axis."""
 _PANELS: Final = ("histories", "residual")
 
 
@@ -53,12 +56,12 @@ def critical_scale(
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.critical_scale`.
+        Result of :func:`rockframe.critical_scale`.
 
     Returns
     -------
     matplotlib.axes.Axes
-        Shaded, the scales that overturn; a line at the least of them.
+        Scales that overturn are shaded; a line marks the least of them.
 
     Examples
     --------
@@ -109,27 +112,28 @@ def sweep(
 ) -> Axes:
     """Draw a scalar of many runs over one or two of their axes.
 
-    Over one axis, a line; over an axis and motions or a second axis that is short, a line for each;
-    over two longer axes, a map of colours.
+    Over one axis it is a line. Over two axes, one of which has 12 values at most, it is a line for
+    each value of the second axis or for each motion; over two longer axes it is a map of colours.
 
     Parameters
     ----------
     runs : xarray.Dataset
-        Of :func:`rockframe.sweep`, :func:`rockframe.concat` or
-        :func:`rockframe.earthquake_sequences`, with two dimensions at most; choose from more, for
-        example with ``runs.isel(motion=0)``.
+        Result of :func:`rockframe.sweep`, :func:`rockframe.concat` or
+        :func:`rockframe.earthquake_sequences`, with two dimensions at most; of more dimensions
+        choose two, for example with ``runs.isel(motion=0)``.
     variable : str, optional
-        What is drawn, such as ``"peak_rotation"`` or ``"overturned"``.
+        Name of the scalar, such as ``"peak_rotation"`` or ``"overturned"``.
 
     Returns
     -------
     matplotlib.axes.Axes
-        Crosses stand where runs overturned, whatever is drawn.
+        Crosses mark the runs that overturned, whichever scalar is drawn. Motions are points without
+        a line.
 
     Raises
     ------
     SchemaError
-        No dataset, no such variable, or more than two dimensions.
+        Not a dataset, no such variable, or more than two dimensions.
 
     Examples
     --------
@@ -156,8 +160,9 @@ def sweep(
         others = [dim for dim in dims if dim != along]
         _draw_lines(on.axes, given, values, fell, along, others)
     else:
-        _draw_map(on.axes, given, values.transpose(*dims), dims)
-    on.entitle(str(given.attrs.get("title", "")), title)
+        _draw_map(on.axes, given, values.transpose(*dims), fell, dims)
+    told = reader_units(units, owner="rf.plot.sweep").of_sentence(cases_verdict(runs))
+    on.entitle(told or str(given.attrs.get("title", "")), title)
     return on.axes
 
 
@@ -176,24 +181,24 @@ def free_decay(
     ax: AxesLike = None,
     title: str | None = None,
 ) -> Panels:
-    """Draw a test of free decay beside the system that was fitted to it, and what is left.
+    """Draw a test of free decay, the system that was fitted to it, and the residual.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.fit_free_decay`.
+        Result of :func:`rockframe.fit_free_decay`.
     rotation : str, optional
         Unit of rotations; degrees unless given.
 
     Returns
     -------
     Panels
-        Of tests that give peaks alone, these are drawn.
+        Histories and residual; only peaks are drawn if the test has no histories.
 
     Raises
     ------
     SchemaError
-        The dataset is no such fit.
+        The dataset is not such a fit.
     UnitsError
         A unit of another kind.
 
@@ -244,7 +249,7 @@ def free_decay(
 
 
 def _without_single_values(given: xr.Dataset, variable: object) -> xr.Dataset:
-    """Leave out what has one value, such as the one motion, where there are too many axes."""
+    """Leave out axes of one value, such as a single motion, if there are too many axes."""
     if not isinstance(variable, str) or variable not in given.data_vars:
         return given
     sizes = given[variable].sizes
@@ -278,12 +283,12 @@ def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
 
 
 def _is_axis(given: xr.Dataset, dim: str) -> bool:
-    """Whether a dimension has numbers along it."""
+    """Whether the coordinate of a dimension has numbers."""
     return dim in given.coords and given[dim].dtype.kind in "fiu"
 
 
 def _along(given: xr.Dataset, dim: str) -> tuple[Any, str]:
-    """Give places along a dimension, and what it is called."""
+    """Give the places along a dimension, and its label."""
     if _is_axis(given, dim):
         return given[dim].to_numpy(), label_of(given[dim])
     return np.arange(given.sizes[dim]), dim.replace("_", " ")
@@ -294,7 +299,7 @@ def _draw_lines(
     others: list[str],
 ) -> None:  # fmt: skip
     places, words = _along(given, along)
-    across = others[0] if others else ""
+    across, crosses = others[0] if others else "", list[tuple[Any, Any]]()
     for number in range(values.sizes.get(across, 1)):
         one = {across: number} if others else {}
         line = values.isel(one).to_numpy().astype(np.float64)
@@ -302,29 +307,37 @@ def _draw_lines(
         if others:
             known = across in given.coords
             text = label_of_value(given[across][number]) if known else str(number)
-            label = text if across == "motion" else f"{across.replace('_', ' ')} {text}"
+            named = across == "motion" or text.startswith(across)
+            label = text if named else f"{across.replace('_', ' ')} {text}"
         axes.plot(
-            places, line, marker="o", markersize=3.0, color=colour_of(number),
-            linestyle=style_of(number // 6), linewidth=1.0, label=label,
+            places, line, marker="o", markersize=3.0, color=colour_of(number), linewidth=1.0,
+            linestyle=style_of(number // 6) if _is_axis(given, along) else "none", label=label,
         )  # fmt: skip
-        if fell is not None:
-            down = fell.isel(one).to_numpy().astype(bool)
-            axes.plot(places[down], line[down], "x", color=ink(), markersize=6.0)
+        down = np.zeros(line.shape, bool) if fell is None else fell.isel(one).to_numpy()
+        crosses.append((places[down], line[down]))
+    if any(across.size for across, _ in crosses):
+        both = np.concatenate(crosses, axis=1)
+        axes.plot(*both, "x", color=ink(), markersize=6.0, label="overturned")
     if not _is_axis(given, along) and along in given.coords:
-        names = [str(name) for name in given[along].to_numpy()]
+        names = plain_names(map(str, given[along].to_numpy()), _MOST_LETTERS)
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
-    elif places.dtype.kind in "iu":  # no half of an earthquake or a body
+    elif places.dtype.kind in "iu":  # earthquakes and bodies are counted in integers
         axes.locator_params(axis="x", integer=True)
     axes.set(xlabel=words, ylabel=label_of(values))
     grid(axes)
-    if others:
-        key(axes)
+    key(axes)
 
 
-def _draw_map(axes: Axes, given: xr.Dataset, values: xr.DataArray, dims: list[str]) -> None:
+def _draw_map(
+    axes: Axes, given: xr.Dataset, values: xr.DataArray, fell: Any, dims: list[str]
+) -> None:
     (up, up_words), (across, across_words) = (_along(given, dim) for dim in dims)
     mesh = axes.pcolormesh(
         across, up, values.to_numpy().astype(np.float64), cmap="viridis", shading="nearest"
     )
+    if fell is not None and fell.any():
+        rows, columns = np.nonzero(fell.transpose(*dims).to_numpy())
+        axes.plot(across[columns], up[rows], "x", color=VERMILLION, ms=3.0, label="overturned")
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize="small", frameon=False)
     axes.set(xlabel=across_words, ylabel=up_words)
     axes.figure.colorbar(mesh, ax=axes, label=label_of(values))

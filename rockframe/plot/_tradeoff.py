@@ -1,11 +1,11 @@
-"""Time against error: the work-precision diagram and the comparison of models."""
+"""Time and error: the work-precision diagram and the comparison of models."""
 
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import GREY, grid, ink
+from rockframe.plot._axes import GREY, grid, ink, plain_names
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.units.shown import UnitsLike
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 _LEAST: Final = 1e-14
-"""Errors of the integration below are drawn here: they are rounding."""
+"""Smaller errors of the integration are rounding, and drawn at this value."""
 _TOLD_APART: Final = 1e-6
-"""Errors of model and integration below are drawn in one band: no model is that good."""
+"""Smaller errors of model and integration are drawn in one band: no model is that accurate."""
 _BELOW: Final = 0.1 * _TOLD_APART
 _SPREAD: Final = 0.4
-"""Height over which the accuracies of a model are spread, where 1 is that of a model."""
+"""Height over which the accuracies of a model are spread, over the distance between models."""
 _MARKERS: Final = "osD^vP*h"
 _SMALL: Final = "small rotations"
 _ERROR: Final = "largest error of the rotation{}over its peak [-]"
@@ -43,15 +43,15 @@ def tradeoff(
 ) -> Panels:
     """Draw a comparison of models and accuracies.
 
-    Left, the error of the integration against the time of a run, a line for each model; right,
-    the error of model and integration together, all below 1e-6 in one band. Each accuracy has
-    its marker, hollow for small rotations; a cross marks a rung whose verdict is not that of
-    the scene itself.
+    The left panel shows the error of the integration over the time of a run, with a line for each
+    model. The right one shows the error of model and integration together; errors below 1e-6 are
+    in one band. Each accuracy has its marker, hollow for small rotations. A cross marks a verdict
+    that differs from that of the scene itself.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Of :func:`rockframe.tradeoff`.
+        Result of :func:`rockframe.tradeoff`.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def tradeoff(
     axes[0].xaxis.set_minor_locator(NullLocator())
     axes[1].set(
         yticks=range(len(models)),
-        yticklabels=models,
+        yticklabels=plain_names(models),
         ylim=(-0.7, len(models) - 0.3),
         xlabel=_ERROR.format("\n"),
         title="with that of the model: left is better",
@@ -122,7 +122,7 @@ def _line(axes: Axes, x: Any, y: Any, row: xr.Dataset, colour: Any) -> None:
 
 
 def _mark_below(axes: Axes, errors: Any) -> None:
-    """Set the ends of the axis of errors, and mark the band of those that are not told apart."""
+    """Set the ends of the axis of errors, and mark the band of the smallest ones."""
     from matplotlib.ticker import LogLocator, NullLocator
 
     drawn = errors[np.isfinite(errors)]
@@ -136,13 +136,13 @@ def _mark_below(axes: Axes, errors: Any) -> None:
         return
     axes.axvspan(left, _TOLD_APART, color=GREY, alpha=0.12, zorder=0)
     ticks = [tick for tick in axes.get_xticks() if _TOLD_APART <= tick <= right]
-    ticks = ticks[::2]  # all would run into one another
+    ticks = ticks[::2]  # the labels of all would overlap
     names = [f"$10^{{{round(np.log10(tick))}}}$" for tick in ticks]
     axes.set_xticks([_BELOW, *ticks], ["below", *names])
 
 
 def _keys(dataset: xr.Dataset, models: list[str]) -> "list[Line2D]":
-    """Give the legend: the accuracies, and what hollow markers and crosses mean."""
+    """Give the legend: the accuracies, hollow markers and crosses."""
     from matplotlib.lines import Line2D
 
     keys = [

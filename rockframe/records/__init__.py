@@ -1,6 +1,6 @@
-r"""Files of ground motions, read: what stands in them, before it is a motion.
+r"""Reading of ground-motion files into records, from which motions are made.
 
-This is the door of the package: what it offers is imported from here, and nothing behind it.
+All public names of the package are imported from here.
 
 >>> from io import BytesIO
 >>> text = b"time (s),acceleration (g)\n0,0\n0.01,0.1\n0.02,-0.1\n"
@@ -8,9 +8,9 @@ This is the door of the package: what it offers is imported from here, and nothi
 >>> reading.si.time_step, reading.metadata["format"]
 (0.01, 'text')
 
-``read_record`` reads one component, ``read_components`` all of a file, ``files_of`` opens the
-files of a folder or an archive. What a reader of another format needs is here, too; see
-:func:`register`.
+``read_record`` reads one component, ``read_components`` all components of a file, and
+``files_of`` opens the files of a folder or an archive. Names for readers of other formats are
+here, too; see :func:`register`.
 """
 
 from rockframe.records.checks import USUAL_TIME_STEPS
@@ -85,4 +85,4 @@ __all__ = [
 ]
 
 Component = FileComponent
-"""The same, as readers of users' own have called it before."""
+"""Former name of :class:`FileComponent`, for readers that users have written."""

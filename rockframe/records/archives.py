@@ -1,9 +1,9 @@
-"""Zip and tar archives, file by file in memory: nothing is ever written to the disk.
+"""Zip and tar archives, unpacked file by file in memory; nothing is written to the disk.
 
-An archive may be made to harm whoever unpacks it. So it may expand to no more than a hundred
-times its size with all archives in it, a file in it to no more than a record file may have, and
-names that lead out of it, links, devices, and archives in those in it are told apart and not
-followed.
+An archive may be made to harm a program that unpacks it. So it may expand, with all archives in
+it, to at most a hundred times its size, and a file in it to at most the size of a record file.
+Names that lead out of it, links, devices, and archives within inner archives are reported and
+skipped.
 """
 
 import gzip
@@ -18,11 +18,11 @@ from typing import IO, Any, Final, cast
 from rockframe.errors import RecordError
 
 MAXIMUM_BYTES: Final = 40 * 2**20
-"""Largest file that is opened at all."""
+"""Largest file that is opened [byte]."""
 MOST_MEMBERS: Final = 10_000
-"""Most files of an archive."""
+"""Most files in an archive."""
 MOST_EXPANSION: Final = 100
-"""Most bytes that a byte of an archive may become, beside one file of the largest size."""
+"""Largest ratio of unpacked to packed size, in addition to one file of the largest size [1]."""
 
 _ZIP: Final = (b"PK\x03\x04", b"PK\x05\x06")
 _GZIP: Final = b"\x1f\x8b"
@@ -50,25 +50,25 @@ _DRIVE: Final = re.compile(r"[A-Za-z]:")
 class ArchiveMember:
     """A file in an archive."""
 
-    name: str  # its path in the archive
-    data: bytes | None  # none where it was not unpacked
-    reason: str = ""  # why it was not
+    name: str  # path in the archive
+    data: bytes | None  # None if it was not unpacked
+    reason: str = ""  # reason why it was not
 
     @property
     def hidden(self) -> bool:
-        """Whether it is one of the files that systems add for themselves."""
+        """Whether it is a hidden file, or one that macOS adds."""
         parts = self.name.replace("\\", "/").split("/")
         return "__MACOSX" in parts or parts[-1].startswith(".")
 
 
 def is_archive(start: bytes) -> bool:
-    """Tell whether a file begins as zip and tar archives do."""
+    """Tell whether a file begins like a zip or tar archive."""
     place, mark = _TAR
     return start.startswith(_ZIP) or start[place : place + len(mark)] == mark
 
 
 def is_gzip(start: bytes) -> bool:
-    """Tell whether a file begins as those of gzip do."""
+    """Tell whether a file begins like a gzip file."""
     return start.startswith(_GZIP)
 
 
@@ -80,14 +80,14 @@ def packs_tar(file: IO[bytes]) -> bool:
         return False
     try:
         unpacked = gzip.GzipFile(fileobj=file).read(_START)
-    except Exception:  # damaged: whoever unpacks it says so
+    except Exception:  # damaged: unpacking raises the error
         unpacked = b""
     file.seek(0)
     return is_archive(unpacked)
 
 
 def check_unpackable(name: str, start: bytes) -> None:
-    """Refuse what is packed in another way."""
+    """Refuse a file that is packed by another program."""
     for mark, words in _OTHERS.items():
         if start.startswith(mark):
             raise RecordError(name, found=words, expected=_EXPECTED)
@@ -104,14 +104,14 @@ def members(file: IO[bytes], name: str, size: int) -> Iterator[ArchiveMember]:
         try:
             for one in _unpacked(io.BytesIO(inner), f"{name}/{member.name}", budget):
                 yield _single(replace(one, name=f"{member.name}/{one.name}"))
-        except RecordError as problem:  # the others may be sound
+        except RecordError as problem:  # other files may be readable
             if budget.spent:
                 raise
             yield ArchiveMember(member.name, None, problem.found)
 
 
 def _single(member: ArchiveMember) -> ArchiveMember:
-    """Refuse what is packed once more."""
+    """Refuse a file that is itself packed."""
     if member.data is not None and (is_archive(member.data) or is_gzip(member.data)):
         return ArchiveMember(member.name, None, _PACKED)
     return member
@@ -127,14 +127,14 @@ def _unpacked(file: IO[bytes], name: str, budget: "_Budget") -> Iterator[Archive
             yield member
     except RecordError:
         raise
-    except Exception as problem:  # the libraries do not document all that damaged files raise
+    except Exception as problem:  # damaged files raise exceptions that are not documented
         found = f"an archive that cannot be unpacked ({type(problem).__name__})"
         raise RecordError(name, found=found, expected=_EXPECTED) from problem
 
 
 @dataclass
 class _Budget:
-    """What an archive may still expand to, and how many files it may hold."""
+    """Remaining number of bytes and files to which an archive may expand."""
 
     name: str
     left: int
@@ -170,7 +170,7 @@ def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMemb
             try:
                 with archive.open(info) as stream:
                     data = stream.read(MAXIMUM_BYTES + 1)
-            except Exception as problem:  # as above; the others may be sound
+            except Exception as problem:  # as above; other files may be readable
                 reason = f"a file that cannot be unpacked ({type(problem).__name__})"
                 yield ArchiveMember(info.filename, None, reason)
                 continue
@@ -179,19 +179,19 @@ def _of_zip(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMemb
 
 
 def _check_directory(file: IO[bytes], name: str) -> None:
-    """Refuse a list of contents that takes long to read, before it is read."""
+    """Refuse a directory that takes long to read, before it is read."""
     file.seek(0, 2)
     end = file.tell()
     file.seek(max(0, end - 2**16 - 100))
     tail = file.read()
     file.seek(0)
-    place = len(tail) - _END_LENGTH  # without a comment, as the library looks first
+    place = len(tail) - _END_LENGTH  # without a comment, where the library searches first
     if not (place >= 0 and tail.startswith(_DIRECTORY_END, place) and tail.endswith(b"\x00\x00")):
         place = tail.rfind(_DIRECTORY_END)
     if place < 0:
-        return  # the library says what is wrong
+        return  # the library raises the error
     size = tail[place + 12 : place + 16]
-    if tail[place - 20 : place - 16] == _LOCATOR:  # the long form, which stands before
+    if tail[place - 20 : place - 16] == _LOCATOR:  # the zip64 form, which precedes
         size = tail[place - 36 : place - 28]
     if int.from_bytes(size, "little") > _LONGEST_DIRECTORY:
         raise _too_many(name)
@@ -221,12 +221,12 @@ def _of_tar(file: IO[bytes], name: str, budget: _Budget) -> Iterator[ArchiveMemb
                 continue
             inner = archive.extractfile(info)
             data = b"" if inner is None else inner.read(MAXIMUM_BYTES + 1)
-            cast("Any", archive).members.clear()  # it would keep them all
+            cast("Any", archive).members.clear()  # else it keeps all members in memory
             yield _member(info.name, data)
 
 
 class _Bounded:
-    """A file that gives no more than an archive may expand to, and never much at once."""
+    """A file that stops reading beyond the budget of an archive, and limits each read."""
 
     def __init__(self, file: IO[bytes], budget: _Budget) -> None:
         self._file = file
@@ -242,7 +242,7 @@ class _Bounded:
         return data
 
     def seek(self, place: int, whence: int = 0) -> int:
-        if whence == 0:  # what is passed over has to be unpacked too
+        if whence == 0:  # skipped bytes are unpacked, too
             self._reach(place)
         return self._file.seek(place, whence)
 
@@ -269,7 +269,7 @@ def _member(name: str, data: bytes) -> ArchiveMember:
 
 
 def _misnamed(name: str) -> str:
-    """Say what is wrong with the name of a file in an archive."""
+    """Give the fault of the name of a file in an archive, if any."""
     plain = name.replace("\\", "/")
     if plain.startswith("/") or _DRIVE.match(plain) or ".." in plain.split("/"):
         return "a name that leads out of the archive"

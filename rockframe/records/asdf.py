@@ -2,11 +2,11 @@
 
 Under ``Waveforms/NET.STA`` each piece of a channel is an array called
 ``NET.STA.LOC.CHA__start__end__tag`` with its sampling rate and its start in nanoseconds since
-1970; the tag ends in the label of the processing, or in ``unprocessed``. The format has
-no word for a unit: gmprocess states it in ``AuxiliaryData/StreamSupplementalStats``. Counts
-are made accelerations by the StationXML of the file itself, or one that is given.
+1970. The tag ends in the label of the processing, or in ``unprocessed``. The format has no field
+for a unit; gmprocess states it in ``AuxiliaryData/StreamSupplementalStats``. Counts are converted
+to accelerations by the StationXML in the file, or by a given one.
 
-The arrays are read through netCDF4, which is there in any case.
+The arrays are read through netCDF4, which is installed in any case.
 
 Reference: L. Krischer et al., "An Adaptable Seismic Data Format", Geophysical Journal
 International 207(2), 2016; U.S. Geological Survey, gmprocess, "Workspace".
@@ -16,6 +16,7 @@ import json
 import math
 import re
 import warnings
+from collections import Counter
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -51,7 +52,7 @@ from rockframe.signals.arrays import Array
 
 _MAGIC: Final = b"\x89HDF\r\n\x1a\n"
 _MARKS: Final = (b"Waveforms", b"file_format")
-_NODES: Final = {b"SNOD": 4, b"OHDR": 1}  # what lists the objects, and how many each, about
+_NODES: Final = {b"SNOD": 4, b"OHDR": 1}  # marks of nodes, and the approximate objects in each
 _MOST_OBJECTS: Final = 5_500
 _WAVEFORM: Final = re.compile(
     r"(\w{1,8}\.\w{1,8}\.[\w-]{0,8}\.\w{1,8})__([\dT:.Z-]{10,40})__([\dT:.Z-]{10,40})__(\S{1,80})"
@@ -65,7 +66,7 @@ _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC).replace(tzinfo=None)
 
 @dataclass(frozen=True)
 class _Waveform:
-    """One array of the file: its codes, its tag, and where it stands."""
+    """One array of the file: its name, codes, tag and group."""
 
     name: str
     codes: str
@@ -94,7 +95,7 @@ def _read(source: Source, request: Request) -> Record:
     import netCDF4
 
     with _sound(source):
-        # left open for the components, which are read one by one, until the last of them is gone
+        # the file stays open, as components are read one by one
         file = netCDF4.Dataset("asdf", memory=source.data)
         file.set_auto_maskandscale(False)
         components = _components(source, request, file)
@@ -103,7 +104,7 @@ def _read(source: Source, request: Request) -> Record:
 
 @contextmanager
 def _sound(source: Source) -> Generator[None]:
-    """Say of a file that the library cannot read that it is damaged."""
+    """Convert exceptions of the library to the error of a damaged file."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -111,7 +112,7 @@ def _sound(source: Source) -> Generator[None]:
     except RecordError:
         raise
     except Exception as problem:
-        # the libraries fail on damaged files in ways that they do not document
+        # damaged files raise exceptions that are not documented
         found = f"an HDF5 file that cannot be read ({type(problem).__name__})"
         raise source.refuse(found=found, expected=_EXPECTED) from problem
 
@@ -128,10 +129,16 @@ def _components(source: Source, request: Request, file: Any) -> list[FileCompone
     stations = {one.group for one in held}
     tags = {one.tag for one in held}
 
+    pieces = Counter((one.codes, one.tag) for one in held)
+
     def component(one: _Waveform) -> FileComponent:
         short = one.channel if len(stations) == 1 else one.codes
 
         def samples() -> Record:
+            count = pieces[one.codes, one.tag]
+            if request.every and count > 1:  # asked for by its whole name a piece is read
+                found = f"{count} pieces of {one.codes} {one.tag}"
+                raise source.refuse(found=found, expected="a channel without gaps")
             with _sound(source):
                 return _samples(source, request, file, one)
 
@@ -150,7 +157,7 @@ def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Rec
     values = _values(source, one, variable)
     rate = float(variable.getncattr("sampling_rate"))
     if not (math.isfinite(rate) and rate > 0.0):
-        found = f"a sampling rate of {rate!r} Hz of {one.name}"
+        found = f"a sampling rate of {rate!r} Hz for {one.name}"
         raise source.refuse(found=found, expected="one above zero")
     time_step = float(f"{1.0 / rate:.12g}")
     settle_time_step(source, request, time_step, None)
@@ -181,20 +188,20 @@ def _values(source: Source, one: _Waveform, variable: Any) -> Array:
         expected = f"2 to {MAXIMUM_SAMPLES} samples in a row"
         raise source.refuse(found=f"{one.name} of the shape {variable.shape}", expected=expected)
     if not isinstance(kind, np.dtype) or cast("np.dtype[Any]", kind).kind not in "fiu":
-        raise source.refuse(found=f"{one.name} of no numbers", expected="whole or real numbers")
+        raise source.refuse(found=f"{one.name} without numbers", expected="whole or real numbers")
     values = np.asarray(variable[:], dtype=np.float64)
     check_finite(source, values)
     return values
 
 
 def _stated_unit(file: Any, one: _Waveform) -> str | None:
-    """Find the unit that gmprocess states for the streams of a station, if it is one."""
+    """Find the unit that gmprocess states for a stream; None if there is none."""
     groups = file.groups.get("AuxiliaryData")
     for name in (_STATISTICS, one.group):
         groups = None if groups is None else groups.groups.get(name)
     if groups is None:
         return None
-    # the channels of a stream share a name without the last letter, and a tag
+    # the channels of a stream have the same tag, and codes that differ in the last letter
     start = f"{one.codes[:-1]}_{one.tag}"
     text = _text_in(groups, start)
     if text is None:
@@ -218,7 +225,7 @@ def _response(
 
 
 def _text_in(group: Any, name: str) -> bytes | None:
-    """Give a text that is kept as an array of bytes; None if there is none, or it is too long."""
+    """Give a text that is stored as an array of bytes; None if it is missing or too long."""
     variable = group.variables.get(name)
     if variable is None or math.prod(map(int, variable.shape)) > _LARGEST_TEXT:
         return None

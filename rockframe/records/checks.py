@@ -1,7 +1,7 @@
-"""What looks wrong in any file, and what a file states, held against its data.
+"""Checks of plausibility, and comparison of the statements of a header with the samples.
 
-What headers state of peak, length and end does not decide how a file is read. What disagrees is
-warned about: the unit, the time step or the samples may be another record's than the header's.
+Peak, length and end in a header do not affect the reading of a file. A disagreement causes a
+warning: unit, time step or samples may not belong to the header.
 """
 
 import math
@@ -18,30 +18,37 @@ from rockframe.records.unit_names import RecordUnit, acceleration_unit
 from rockframe.signals.arrays import Array
 
 TIME_STEP_LIMITS: Final = (1e-6, 10.0)
-"""Time steps outside are refused [s]."""
+"""Range of time steps; others are refused [s]."""
 USUAL_TIME_STEPS: Final = (1e-4, 0.1)
-"""Time steps outside are warned about [s]."""
+"""Usual range of time steps; others cause a warning [s]."""
 USUAL_PEAKS: Final = (1e-4, 1.5)
-"""Peaks outside are warned about [g].
+"""Usual range of peaks; others cause a warning [g].
 
-Few records exceed 1.5 g, and a file in m/s^2 that passes for one in g does from 0.15 g on.
+Few records exceed 1.5 g. A file in m/s^2 that is read in g exceeds it from 0.15 g on.
 """
 USUAL_OFFSET: Final = 1e-3
-"""Offsets below are not looked at [g]."""
+"""Offset up to which there is no warning [g]."""
 OFFSET_SHARE: Final = 0.15
-"""Offsets above are warned about, as a share of the largest distance from them."""
+"""Offset over the largest distance from it, up to which there is no warning [1]."""
 
-MISSING: Final = (999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38)
-"""What agencies write, with either sign, where a sample is missing."""
+MISSING: Final = (
+    *(999.0, 9999.0, 99999.0, 999999.0, 12345.0, 32768.0, 1.7e38),
+    *(
+        float(f"{nines}.{tail}")
+        for nines in ("999", "9999", "99999")
+        for tail in ("9", "99", "999")
+    ),
+)
+"""Values, of either sign, by which agencies mark missing samples."""
 
 PEAK_SHARE: Final = 0.015
-"""Stated peaks differ from the samples' by 1.1 % at most in 275 channels as published."""
+"""Tolerance of stated peaks [1]; in 275 published channels they differ by at most 1.1 %."""
 LENGTH_SHARE: Final = 0.01
-"""Stated lengths are those of the samples to this share, or to two time steps."""
+"""Tolerance of stated lengths [1]; two time steps are admitted in any case."""
 
 _NUMBERS_ONLY: Final = re.compile(r"[-+.\dEeDd\s]*\d[-+.\dEeDd\s]*", re.ASCII)
 _LONGEST: Final = 30
-_MOST_LINES: Final = 200
+_MOST_ROWS: Final = 200
 _FEWEST_SHARE: Final = 0.9
 _FEWEST_MISSING: Final = 5
 _ROUNDING: Final = 1e-6
@@ -71,13 +78,13 @@ def check_asked_time_step(
 
 
 def settle_time_step(source: Source, request: Request, time_step: float, line: int | None) -> None:
-    """Refuse a time step that no record has, or that is not the one asked for."""
+    """Refuse a time step that no record has, or that contradicts the argument ``time_step``."""
     check_time_step(source, time_step, line)
     check_asked_time_step(source, request, time_step, line)
 
 
 def check_no_marks(source: Source, samples: Array) -> None:
-    """Refuse marks of missing samples that stand among the samples."""
+    """Refuse samples with marks of missing ones among them."""
     size = np.abs(samples)
     marked = np.isin(size, MISSING)
     if not marked.any():
@@ -101,7 +108,7 @@ def check_no_marks(source: Source, samples: Array) -> None:
 
 
 def plausibility(source: Source, time_step: float, samples: Array, unit: RecordUnit) -> list[str]:
-    """Say what looks like a wrong unit or a wrong time step."""
+    """Give warnings of a peak, an offset or a time step that is not plausible."""
     warnings: list[str] = []
     low, high = USUAL_PEAKS
     with np.errstate(over="ignore"):
@@ -128,8 +135,8 @@ def plausibility(source: Source, time_step: float, samples: Array, unit: RecordU
 
 
 def _offset(samples: Array) -> float:
-    # the ground comes to rest: the mean of its acceleration is next to nothing, and so is that
-    # of what stands before and after the strong motion
+    # the ground comes to rest, so the mean acceleration is nearly zero, and so are the means
+    # before and after the strong motion
     if samples.size < _FEWEST_FOR_OFFSET:
         return 0.0
     part = max(samples.size // _ENDS, _FEWEST_FOR_OFFSET)
@@ -144,17 +151,17 @@ LENGTH: Final = "a length [s]"
 
 
 class Stated(NamedTuple):
-    """What a header prints of the peak or the length of its samples."""
+    """Peak or length of the samples that a header states."""
 
-    text: str
-    unit: str  # of a peak as record files spell it, or `LENGTH`
-    line: int  # from 1
+    text: str  # the number as printed
+    unit: str  # unit of a peak as record files spell it, or `LENGTH`
+    line: int  # line number from 1
 
 
 def doubts_of(
     source: Source, samples: Array, unit: RecordUnit, time_step: float, stated: Iterable[Stated]
 ) -> list[str]:
-    """Hold the peaks and lengths that a header states against the samples."""
+    """Compare the peaks and lengths that a header states with the samples."""
     return [
         words
         for one in stated
@@ -195,21 +202,38 @@ def _compare_length(source: Source, count: int, time_step: float, stated: Stated
     ]
 
 
-def surplus(source: Source, index: int, what: str) -> list[str]:
-    """Look for rows of numbers behind the last sample that a header announces."""
-    rows = 0
-    for line in source.lines[index : index + _MOST_LINES]:
+def surplus(source: Source, index: int, what: str, end: int | None = None) -> list[str]:
+    """Warn of rows of numbers after the last sample that a header announces.
+
+    The search ends at the first text, or at the line `end`, if nothing else is read before it.
+    """
+    rows, first = 0, index
+    for place, line in enumerate(source.lines[index:end], start=index):
+        if rows == _MOST_ROWS:
+            break
         if not line.strip():
             continue
-        if _NUMBERS_ONLY.fullmatch(line[:_LONGEST]) is None:
+        if _NUMBERS_ONLY.fullmatch(line[:_LONGEST]) is not None:
+            first = place if rows == 0 else first
+            rows += 1
+        elif end is None:
             break
-        rows += 1
     if not rows:
         return []
-    many = f"{rows} or more rows" if rows >= _MOST_LINES - 1 else f"{rows} row{'s' * (rows > 1)}"
+    many = f"{rows} or more rows" if rows == _MOST_ROWS else f"{rows} row{'s' * (rows > 1)}"
     return [
-        f"{source.path}, line {index + 1}: {many} of numbers behind the last sample that is "
-        f"announced in {what}; they are not read"
+        f"{source.path}, line {first + 1}: {many} of numbers after the last sample that "
+        f"{what} announces; they are not read"
+    ]
+
+
+def unfinished(source: Source, line: int, rows: int) -> list[str]:
+    """Say of a file that it ends among the rows below a line, so that others may be missing."""
+    if line + rows <= source.last_line:
+        return []
+    return [
+        f"{source.path}, line {source.last_line}: the file ends inside what line {line} announces; "
+        "components may be missing"
     ]
 
 
@@ -228,7 +252,7 @@ def _printed(text: str) -> tuple[float | None, float]:
 def settle_count(
     source: Source, *, declared: int, counted: int, what: str, line: int
 ) -> tuple[Metadata, list[str]]:
-    """Compare the announced number of samples with the data; the data count."""
+    """Compare the announced number of samples with the data, which take precedence."""
     missing = declared - counted
     if counted < 2 or missing > max(_FEWEST_MISSING, (1.0 - _FEWEST_SHARE) * declared):
         raise source.refuse(
@@ -257,11 +281,11 @@ def record_of(
     stated: Iterable[Stated] = (),
     behind: Iterable[str] = (),
 ) -> Record:
-    """Put a record together, with what its header states held against its samples.
+    """Make a record, after a comparison of the statements of its header with its samples.
 
-    `chosen` is what :func:`choose_unit` gives; `count` the number of samples that is announced,
-    what announces it and in which line; `said` and `behind` are warnings before and behind those
-    about what is `stated`.
+    `chosen` is the result of :func:`choose_unit`; `count` is the announced number of samples, the
+    name of the field that announces it, and its line; `said` and `behind` are warnings before and
+    after those of `stated` peaks and lengths.
     """
     unit, as_read, warnings = chosen
     counts: Metadata = {}

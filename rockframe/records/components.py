@@ -1,4 +1,4 @@
-"""Which component of a file is read, and which way it points: in one way for all formats."""
+"""Choice of the component of a file, and its direction; the same for all formats."""
 
 import math
 import re
@@ -28,18 +28,18 @@ _DOWNWARDS: Final = frozenset(("d", "down", "dwn", "dn"))
 _VERTICAL: Final = frozenset(("v", "vert", "ver", "vertical", "vrt"))
 _DEGREES: Final = re.compile(r"(\d{1,3}(?:\.\d{0,3})?)\s*(?:deg(?:rees?)?\.?)?", re.ASCII)
 _QUADRANT: Final = re.compile(r"([ns])\s*(\d{1,2})\s*([ew])", re.ASCII)
-# band code, N for an accelerometer (or L, G, H: a mass or a seismometer), orientation; some write
-# the code of the sensor's location behind them
+# band code, N for an accelerometer (or L, G, H: a mass or a seismometer), orientation; in some
+# files the code of the location of the sensor follows
 _SEED: Final = re.compile(r"[fgdceshbml][nlgh]([nez])(?:[. _-]?(?:\d0|0\d|--))?", re.ASCII)
 _NUMBERED: Final = re.compile(r"([a-z-]+?)[. _-]?\d{1,2}", re.ASCII)
 
 
 @dataclass(frozen=True)
 class Orientation:
-    """Direction in which a component is positive."""
+    """Positive direction of a component."""
 
-    azimuth: float | None = None  # of a horizontal component, clockwise from north [degree]
-    # ``"up"``, ``"down"`` or, if the file does not say which, ``"vertical"``
+    azimuth: float | None = None  # azimuth of a horizontal component, clockwise from north [degree]
+    # ``"up"``, ``"down"`` or, if the file does not state which, ``"vertical"``
     vertical: Literal["up", "down", "vertical"] | None = None
 
     def matches(self, other: "Orientation") -> bool:
@@ -52,7 +52,7 @@ class Orientation:
         return min(turn, _FULL_CIRCLE - turn) < 1e-6
 
     def reversed(self) -> "Orientation":
-        """Give the opposite direction, for a sign before a name; downwards if it is vertical."""
+        """Give the opposite direction, for a minus before a name; downwards if it is vertical."""
         if self.vertical is not None:
             return Orientation(vertical=DOWNWARDS)
         return self if self.azimuth is None else azimuth_of((self.azimuth + 180.0) % _FULL_CIRCLE)
@@ -77,7 +77,7 @@ def orientation_of(name: str) -> Orientation:
     Returns
     -------
     Orientation
-        Without azimuth and vertical if the name tells neither.
+        Without azimuth and vertical if the name has no direction.
 
     Notes
     -----
@@ -113,21 +113,21 @@ def orientation_of(name: str) -> Orientation:
     numbered = _NUMBERED.fullmatch(text)
     base = text.lstrip("-").strip() if numbered is None else numbered.group(1)
     if base in _UPWARDS | _VERTICAL and base != text:
-        # a stroke before the name parts it from another one, or turns it over
+        # a hyphen before the name separates it from another name, or reverses the direction
         upwards = base in _UPWARDS and not text.startswith("-")
         return Orientation(vertical=UPWARDS if upwards else VERTICAL)
     return UNKNOWN
 
 
 def azimuth_of(degrees: float) -> Orientation:
-    """Give a horizontal direction; unknown if the angle is none from 0 to 360."""
+    """Give a horizontal direction; unknown if the angle is not from 0 to 360 degrees."""
     if not (math.isfinite(degrees) and 0.0 <= degrees <= _FULL_CIRCLE):
         return UNKNOWN
     return Orientation(azimuth=degrees)
 
 
 SENSE: Final = "positive"
-"""Key of the metadata of a vertical component: which way it is positive."""
+"""Key of the metadata for the positive direction of a vertical component."""
 
 _CHANNEL: Final = re.compile(r"(?:channel|chan|ch)?\.?\s*#?(\d{1,4})", re.ASCII)
 _ROUNDING: Final = 1e-6
@@ -136,22 +136,22 @@ _LISTED: Final = 40
 
 @dataclass(frozen=True)
 class FileComponent:
-    """A component that a file holds, not read yet.
+    """A component of a file that is not read yet.
 
     Parameters
     ----------
     name : str or None
-        As the file calls it; None if it has no name.
+        Name in the file; None if it has no name.
     read : callable
-        Reads its samples.
+        Function that reads its samples.
     orientation : Orientation
-        Which way it is positive, as far as known.
+        Positive direction, as far as known.
     channel : int, optional
-        Its number in the file.
+        Channel number in the file.
     aliases : tuple of str
-        Other names that it answers to.
+        Other names of the component.
     line : int, optional
-        Where the file names it, from 1.
+        Line with its name, from 1.
 
     Examples
     --------
@@ -171,7 +171,7 @@ class FileComponent:
 
     @property
     def label(self) -> str:
-        """Name, and what else tells it from the others, for messages."""
+        """Name, channel and direction, for messages."""
         where = "" if self.channel is None else f"channel {self.channel}"
         direction = str(self.orientation)
         details = ", ".join(part for part in (where, direction) if part and part != self.name)
@@ -180,7 +180,7 @@ class FileComponent:
 
 
 class EveryComponentError(RecordError):
-    """All components of a file were asked for, not one of them."""
+    """All components of a file are requested, not one of them."""
 
     def __init__(self, path: str, components: Sequence[FileComponent]) -> None:
         self.components = tuple(components)
@@ -188,7 +188,7 @@ class EveryComponentError(RecordError):
 
 
 def component_names(given: object, *, owner: str) -> tuple[str | None, str | None]:
-    """Take the argument ``component`` apart."""
+    """Check the argument ``component``; give the horizontal and the vertical name."""
     if given is None:
         return None, None
     if isinstance(given, str) and given.strip():
@@ -207,16 +207,16 @@ def component_names(given: object, *, owner: str) -> tuple[str | None, str | Non
 def choose_component(
     source: Source, request: Request, components: Sequence[FileComponent]
 ) -> Record:
-    """Read the component that was asked for, or the only one that can be meant.
+    """Read the requested component, or the only possible one.
 
     Parameters
     ----------
     source : Source
         File.
     request : Request
-        What the caller asked for.
+        Arguments of the caller.
     components : sequence of FileComponent
-        What the file holds; at least one.
+        Components of the file; at least one.
 
     Returns
     -------
@@ -225,14 +225,14 @@ def choose_component(
     Raises
     ------
     RecordError
-        There is no such component, there are several, or one of a pair is not
-        what it should be; also whatever the component's own reader finds.
+        There is no such component, there are several, or one of a pair is not horizontal or
+        vertical as it must be; also errors of the reader of the component.
 
     Notes
     -----
-    A name is looked for in this order: among the names in the file, among the
-    directions, among the channel numbers. Without a name, the only component is
-    read, or the only one that is not vertical.
+    A name is searched among the names in the file, then among the directions, then among the
+    channel numbers. Without a name, the only component is read, or the only one that is not
+    vertical.
 
     Examples
     --------
@@ -275,7 +275,7 @@ def choose_component(
 
 
 def named(source: Source, component: FileComponent) -> Record:
-    """Read a component as it is, a vertical one upwards, with its name in the metadata."""
+    """Read a component, a vertical one positive upwards, with its name in the metadata."""
     record = _upwards(source, component.read(), component)
     return replace(record, metadata={**record.metadata, **_metadata_of(component)})
 
@@ -304,11 +304,11 @@ def _alone(
     if chosen.orientation.vertical is not None and requested is None:
         words = (
             f"{source.path}: the component {chosen.name} is vertical, and is read as if it "
-            f"were horizontal; say component={chosen.name!r} if that is meant, and "
-            "use with_vertical to set it beside a horizontal one"
+            f"were horizontal; give component={chosen.name!r} if that is meant, and "
+            "use with_vertical to combine it with a horizontal one"
         )
         record = replace(record, warnings=(*record.warnings, words))
-    # asked for as upwards, not by the name that the file gives it
+    # requested as upwards, not by its name in the file
     by_direction = requested is not None and not _has_name(requested, chosen)
     sense = chosen.orientation.vertical
     if by_direction and orientation_of(requested or "").vertical == UPWARDS:
@@ -363,7 +363,7 @@ def _pair(source: Source, across: FileComponent, upwards: FileComponent) -> Reco
 
 
 def _upwards(source: Source, record: Record, component: FileComponent) -> Record:
-    """Turn a vertical component over that is positive downwards, and say what was done."""
+    """Reverse a vertical component that is positive downwards, and add this to the history."""
     sense = component.orientation.vertical
     if sense == DOWNWARDS:
         sentence = f"component {component.name} turned over: positive upwards"
@@ -403,8 +403,8 @@ def _named(source: Source, requested: str, components: Sequence[FileComponent]) 
             return found[0]
         if found:
             raise source.refuse(
-                found=f"{len(found)} components that answer to {requested!r}: {_labels(found)}",
-                expected="one; ask for its channel number",
+                found=f"{len(found)} components that match {requested!r}: {_labels(found)}",
+                expected="one; give its channel number",
             )
     raise _missing(source, requested, components)
 
@@ -443,7 +443,7 @@ def _example(components: Sequence[FileComponent]) -> str:
     upwards = [entry for entry in components if entry.orientation.vertical is not None]
     names = [entry.name for entry in components]
     first = (level or list(components))[0]
-    # where names are not unique, only the channel number tells
+    # if names are not unique, only the channel number identifies a component
     unique = names.count(first.name) == 1
     requested = first.name if unique or first.channel is None else f"channel {first.channel}"
     text = f"the argument component, such as component={requested!r}"

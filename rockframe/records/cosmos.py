@@ -1,7 +1,7 @@
 """COSMOS strong-motion data files: text, integers, reals, comments, data; fixed width.
 
-A file is a row of such blocks, one per channel and quantity. Only accelerations
-are read. The time step is real header 62, in milliseconds.
+A file is a sequence of such blocks, one for each channel and quantity. Only accelerations are
+read. The time step is real header 62, in milliseconds.
 
 Reference: Consortium of Organizations for Strong-Motion Observation Systems,
 "COSMOS Strong Motion Data Format", version 1.20, August 15, 2001.
@@ -18,6 +18,7 @@ from rockframe.records.checks import (
     check_time_step,
     record_of,
     surplus,
+    unfinished,
 )
 from rockframe.records.components import (
     DOWNWARDS,
@@ -37,7 +38,7 @@ from rockframe.records.unit_names import acceleration_unit, choose_unit
 MILLISECOND: Final = 1e-3
 
 ACCELERATION: Final = 1
-"""Integer header 2 of an acceleration."""
+"""Integer header 2 for an acceleration."""
 
 QUANTITIES: Final = {
     2: "a velocity",
@@ -51,7 +52,7 @@ QUANTITIES: Final = {
     30: "a strain",
     31: "a strain",
 }
-"""Integer header 2: what else a series can be."""
+"""Integer header 2 for other quantities."""
 
 UNITS: Final = {
     2: "g",
@@ -67,14 +68,14 @@ UNITS: Final = {
     50: "counts",
     51: "volts",
 }
-"""Integer header 3, and the number behind ``units=``."""
+"""Units by integer header 3, which is also the number after ``units=``."""
 
 ORIENTATIONS: Final = {
     400: Orientation(vertical=UPWARDS),
     401: Orientation(vertical=DOWNWARDS),
     402: Orientation(vertical=VERTICAL),
 }
-"""Integer header 54, where it is no azimuth from 1 to 360 degrees."""
+"""Directions by integer header 54, unless it is an azimuth from 1 to 360 degrees."""
 
 _INTEGERS: Final = re.compile(
     r"(\d{1,4})\s+Integer-header values follow on\s+(\d{1,4})\s+lines?,?"
@@ -102,28 +103,29 @@ _MOST_COMMENTS: Final = 200
 class _Header:
     """Header of one channel and quantity."""
 
-    text: list[str]  # its first lines
+    text: list[str]  # first lines of text
     integers: Fields
     reals: Fields
     integer_count: int
     real_count: int
     comments: str  # comment lines
     data_at: int  # index of the line that announces the data
-    unknown: tuple[int, float]  # what stands for an integer and for a real that is not known
+    end: int  # index of the line after the block
+    unknown: tuple[int, float]  # marks of an unknown integer and an unknown real
 
     def line(self, place: int) -> str:
-        """Give a text line, from 1; empty if there is none."""
+        """Give a text line by its number from 1; empty if it is missing."""
         return self.text[place - 1] if place <= len(self.text) else ""
 
     def integer(self, place: int) -> int | None:
-        """Give an integer header value, from 1; None if it is unknown."""
+        """Give an integer header by its number from 1; None if it is unknown."""
         if place > self.integer_count or not self.integers.cell(place):
             return None
         value = self.integers.count(place, f"integer header {place}")
         return None if value == self.unknown[0] else value
 
     def real(self, place: int) -> float | None:
-        """Give a real header value, from 1; None if it is unknown."""
+        """Give a real header by its number from 1; None if it is unknown."""
         if place > self.real_count or not self.reals.cell(place):
             return None
         value = self.reals.number(place, f"real header {place}")
@@ -142,14 +144,16 @@ def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Head
         comments = "\n".join(source.top(min(data_at - first, _MOST_COMMENTS), first))
     text = source.top(min(text_lines, end - start), start)
     unknown = _unknown(source.top(text_lines, start))
-    return _Header(text, integers, reals, integer_count, real_count, comments, data_at, unknown)
+    return _Header(
+        text, integers, reals, integer_count, real_count, comments, data_at, end, unknown
+    )
 
 
 def _section(
     source: Source, at: int, end: int, announcement: re.Pattern[str], what: str, such_as: str
 ) -> tuple[Fields, int, int]:
-    """Give the fields of a section, how many there are, and the index of the line below them."""
-    # one line of slack: some files have a text line more than they announce
+    """Give the fields of a section, their number, and the index of the line below them."""
+    # one line of tolerance: some files have one more line of text than they announce
     for index in (at, at + 1, at - 1):
         if not 0 <= index < end:
             continue
@@ -200,7 +204,7 @@ _MOST_BLOCKS: Final = 1_500
 
 @dataclass(frozen=True)
 class _Block:
-    """One channel and quantity: where it starts, and its first line."""
+    """One channel and quantity: its range of lines, and the statements of its first line."""
 
     index: int
     end: int
@@ -225,14 +229,33 @@ def _read(source: Source, request: Request) -> Record:
         kinds = ", ".join(sorted({quoted_first_line(block.kind) for block in blocks})[:4])
         expected = "an acceleration"
         raise source.refuse(found=f"only {kinds}", expected=expected, line=blocks[0].index + 1)
-    components = [_component(source, request, block) for block in wanted]
+    cut = [] if blocks[-1] in wanted else _unfinished(source, blocks[-1])
+    components = [_component(source, request, block, cut) for block in wanted]
     return choose_component(source, request, components)
+
+
+def _unfinished(source: Source, block: _Block) -> list[str]:
+    """Say of a file that it ends inside a block, whatever that holds."""
+    for line, text in enumerate(source.lines[block.index : block.end], start=block.index + 1):
+        match = _DATA_LINE.match(text) if "pts" in text else None
+        if match is not None:
+            layout = FixedWidth(int(match.group(5)), max(int(match.group(4) or 1), 1))
+            return unfinished(source, line, layout.rows(int(match.group(1))))
+    return unfinished(source, block.index + 1, len(source.lines))
 
 
 def _blocks(source: Source) -> list[_Block]:
     starts: list[tuple[int, re.Match[str]]] = []
+    data_lines = 0
     for index, line in enumerate(source.lines):
-        if "(format v" in line[:_FIRST_LINE_WIDTH].casefold():
+        top = line[:_FIRST_LINE_WIDTH].casefold()
+        data_lines += "pts" in top and _DATA_LINE.match(line) is not None
+        if data_lines > len(starts) > 0:
+            # else it would be skipped like other lines after the samples
+            found = f"{quoted_first_line(line)}, the second in this block"
+            expected = "a first line with '(Format v01.20 with ... text lines)' above each"
+            raise source.refuse(found=found, expected=expected, line=index + 1)
+        if "(format v" in top:
             match = _FIRST_LINE.search(line)
             if match is not None:
                 starts.append((index, match))
@@ -246,7 +269,7 @@ def _blocks(source: Source) -> list[_Block]:
     ]
 
 
-def _component(source: Source, request: Request, block: _Block) -> FileComponent:
+def _component(source: Source, request: Request, block: _Block, cut: list[str]) -> FileComponent:
     header = _read_header(source, block.index, block.end, block.text_lines)
     channel, direction = _channel(header)
     code = _SCNL.search(header.comments)
@@ -256,7 +279,7 @@ def _component(source: Source, request: Request, block: _Block) -> FileComponent
         aliases.append(".".join((code.group(3), code.group(1), code.group(4), code.group(2))))
     return FileComponent(
         name,
-        lambda: _samples(source, request, header),
+        lambda: _samples(source, request, header, cut),
         _orientation(header, direction, code.group(2) if code else ""),
         channel=channel,
         aliases=tuple(aliases),
@@ -274,7 +297,7 @@ def _channel(header: _Header) -> tuple[int | None, str]:
 
 def _orientation(header: _Header, direction: str, code: str) -> Orientation:
     seed = orientation_of(code)
-    if seed.vertical is not None:  # files that give a vertical channel an azimuth exist
+    if seed.vertical is not None:  # some files state an azimuth for a vertical channel
         return seed
     azimuth = header.integer(54)
     if azimuth in ORIENTATIONS:
@@ -285,7 +308,7 @@ def _orientation(header: _Header, direction: str, code: str) -> Orientation:
     return said if said != Orientation() else seed
 
 
-def _samples(source: Source, request: Request, header: _Header) -> Record:
+def _samples(source: Source, request: Request, header: _Header, cut: list[str]) -> Record:
     line, match = _data_line(source, header)
     quantity = header.integer(2)
     if quantity is not None and quantity != ACCELERATION and quantity in QUANTITIES:
@@ -303,7 +326,7 @@ def _samples(source: Source, request: Request, header: _Header) -> Record:
     if peak is not None and quantity == ACCELERATION:
         peak_unit = chosen[1] if request.unit is None else name
         stated.append(Stated(f"{peak:.12g}", peak_unit, header.reals.line(64)))
-    behind = surplus(source, line + layout.rows(count), f"line {line}")
+    behind = [*surplus(source, line + layout.rows(count), f"line {line}", header.end), *cut]
     metadata = _description(header)
     return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
 
@@ -336,12 +359,12 @@ def _time_step(source: Source, header: _Header, count: int) -> float:
     if milliseconds is None:
         found = "no sample interval (real header 62)"
         raise source.refuse(found=found, expected="the interval in milliseconds", line=line)
-    # 15 digits: 5 ms is the float 0.005, without the rounding of 5 * 1e-3
+    # 15 digits, so that 5 ms are exactly the float 0.005, without the rounding error of 5 * 1e-3
     time_step = float(f"{milliseconds * MILLISECOND:.15g}")
     check_time_step(source, time_step, line)
     length = header.real(63)
     if length is not None and length > 0.0:
-        # by the specification the length is count dt; (count - 1) dt occurs too
+        # by the specification the length is count dt; (count - 1) dt occurs, too
         misfit = min(abs(length - count * time_step), abs(length - (count - 1) * time_step))
         if misfit > max(2.0 * time_step, _LENGTH_SHARE * length):
             raise source.refuse(
@@ -355,7 +378,7 @@ def _time_step(source: Source, header: _Header, count: int) -> float:
 def _description(header: _Header) -> Metadata:
     metadata: Metadata = {"description": header.line(1).split("(")[0].strip()}
     event = re.sub(r"^(?:Record|Rcrd) of\s+", "", header.line(2).strip(), flags=re.IGNORECASE)
-    if _DAY.match(event):  # no event was found yet: the day of the record stands in its place
+    if _DAY.match(event):  # before an event is known, the field has the day of the record
         metadata["event_time"] = event
     elif event:
         metadata["event"] = event

@@ -1,25 +1,25 @@
 """CSMIP volume files (V1, V2): text, integers, reals, then data in fixed width.
 
-A file is a row of such blocks, one per channel, each closed by a line ``/&``. A
-block of volume 2 holds acceleration, velocity and displacement; only the
-acceleration is read. Each announces itself in one of these ways::
+A file is a sequence of such blocks, one for each channel, each closed by a line ``/&``. A block of
+volume 2 has acceleration, velocity and displacement; only the acceleration is read. It is
+announced by a line in one of these forms::
 
     1138 POINTS OF ACCEL DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC/SEC)
     7500 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.6)
     1887 POINTS OF ACC DATA EQUALLY SPACED AT   .020 SEC.  IN UNITS CM/SEC/SEC
    13200 Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)
 
-The third is that of the University of Southern California, which leaves the unit away
-at times: it is then the unit of the peak that the text states.
+The third is that of the University of Southern California, which sometimes omits the unit; it is
+then the unit of the peak in the text.
 
-Volume 1 as it was first written, also by that university and by RENADIC, Chile, holds pairs of
-time and acceleration instead, five in a line, below 100 integers and 50 reals; the text says how
-many there are, and in which units::
+The original form of volume 1, also of that university and of RENADIC, Chile, has pairs of time and
+acceleration instead, five in a line, below 100 integers and 50 reals. The text states their number
+and units::
 
     NO. OF POINTS =   3500  RECORD LENGTH = 35.000 SEC
     UNITS OF UNCOR ACCEL ARE SEC AND G/10.     MAX  = -0.051 G, AT   3.910 SEC
 
-Many were digitised by hand, at uneven times. Those are refused.
+Many were digitised by hand, at uneven times. Such files are refused.
 
 Reference: A. F. Shakal and M. J. Huang, "Standard Tape Format for CSMIP
 Strong-Motion Data Tapes", Report OSMS 85-03, California Division of Mines and
@@ -31,6 +31,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 from typing import Final
 
 from rockframe.errors import RecordError
@@ -42,6 +43,7 @@ from rockframe.records.checks import (
     record_of,
     settle_time_step,
     surplus,
+    unfinished,
 )
 from rockframe.records.components import (
     FileComponent,
@@ -58,7 +60,7 @@ from rockframe.signals.arrays import Array
 FIRST_LINE: Final = re.compile(
     r"^\s*(?:FILE\s+\d{0,6}\s+OF\s+)?(?:UN)?CORRECTED ACCELEROGRAM", re.IGNORECASE
 )
-"""Of a file, and of each channel; of a corrected one the second line, too."""
+"""First line of a file, and of each channel; in corrected files also the second line."""
 
 _CORRECTED: Final = re.compile(r"^\s*CORRECTED ACCELEROGRAM", re.IGNORECASE)
 _CHANNEL: Final = re.compile(
@@ -122,7 +124,7 @@ def _peak_in_header(header: list[str], first: int) -> Stated | None:
 
 
 def _stated(header: list[str], first: int) -> list[Stated]:
-    """Give peak and length of a record, where its header states them."""
+    """Give peak and length of a record, if its header states them."""
     peak, length = _peak_in_header(header, first), first_match(_LENGTH, header, first + 1)
     stated = [] if peak is None else [peak]
     return stated if length is None else [*stated, Stated(length[0][1], LENGTH, length[1])]
@@ -134,7 +136,7 @@ def is_corrected(header: list[str]) -> bool:
 
 
 def description(header: list[str]) -> Metadata:
-    """Give what goes into the metadata."""
+    """Give the metadata in a header."""
     lines = [text.strip() for text in header]
     metadata: Metadata = {}
     place = next((k for k, text in enumerate(lines) if FIRST_LINE.match(text)), 0)
@@ -158,8 +160,8 @@ def description(header: list[str]) -> Metadata:
 
 
 def _event(lines: list[str], place: int) -> Metadata:
-    # The two lines hold a name and a time, or, before an event is known, words about the
-    # processing. What is neither a name nor a time is not passed off as one.
+    # The two lines have a name and a time, or, before an event is known, words about the
+    # processing, which must not be taken for a name or a time.
     name, time = "", ""
     for text in lines[place : place + 2]:
         entry = _RECORD_OF.sub("", _WIDE_GAP.split(text.split("(")[0].strip())[0])
@@ -191,22 +193,22 @@ _LONGEST_PAIR_HEADER: Final = 80
 
 @dataclass(frozen=True)
 class Pairs:
-    """Where the pairs of one channel stand."""
+    """Number, unit and place of the pairs of one channel."""
 
-    count: int  # how many
-    unit: str  # of the accelerations, as the text names it
-    unit_line: int  # where it does, from 1
-    data_at: int  # index of their first line, from 0
+    count: int  # number of pairs
+    unit: str  # unit of the accelerations, as in the text
+    unit_line: int  # line with the unit, from 1
+    data_at: int  # index of the first line of pairs, from 0
 
     @property
     def behind(self) -> int:
-        """Index of the first line behind them, from 0."""
+        """Index of the first line after them, from 0."""
         return self.data_at + -(-2 * self.count // _FULL)
 
 
-def find_pairs(source: Source, first: int) -> Pairs | None:
-    """Look for pairs below a channel's first line."""
-    top = [line.rstrip() for line in source.top(_LONGEST_PAIR_HEADER, first)]
+def find_pairs(source: Source, first: int, end: int) -> Pairs | None:
+    """Find pairs between the first line of a channel and that of the next one."""
+    top = [line.rstrip() for line in source.top(min(_LONGEST_PAIR_HEADER, end - first), first)]
     points, units = first_match(_POINTS, top), first_match(_UNITS, top, 0)
     if points is None or units is None:
         return None
@@ -247,7 +249,7 @@ def read_pairs(source: Source, pairs: Pairs) -> tuple[float, Array]:
     time_step, misfit = uniform_step(values[:, 0], printed)
     if misfit is not None:
         found = f"the time {printed[misfit]} after {printed[misfit - 1]}, unevenly sampled"
-        expected = "even times; the corrected record of the set, or from_times, has them"
+        expected = "even times, as in the corrected record of the set, or after from_times"
         place = pairs.data_at + 2 * misfit // _FULL + 1
         raise source.refuse(found=found, expected=expected, line=place)
     return time_step, values[:, 1].copy()
@@ -260,6 +262,8 @@ _DATA_LINE: Final = re.compile(
     r"([\d.]{1,12})\s+SEC|ACCELEROGRAM POINTS AT\s+([\d.]{1,12})\s+(?:PTS|POINTS|SAMPLES)/SEC)",
     re.IGNORECASE,
 )
+_OTHER_SERIES: Final = re.compile(r"^\s*(\d{1,12})\s+POINTS OF (?:VEL|DISP)", re.IGNORECASE)
+_LONGEST_DATA_LINE: Final = 200
 _UNIT: Final = re.compile(
     r"(?:\bUNITS?\s*(?:[:=]|\bOF\b)?\s*|,\s*IN\s+)\(?([^\s(),;:=]{1,20})", re.IGNORECASE
 )
@@ -267,6 +271,8 @@ _LAYOUT: Final = re.compile(r"\(\s*(\d{1,3})F(\d{1,3})\.\d{1,2}\s*\)", re.IGNORE
 _INTERVAL: Final = re.compile(r"EQUALLY-SPACED INTERVALS OF\s+([\d.]{1,12})\s+SEC", re.IGNORECASE)
 _LONGEST_HEADER: Final = 200
 _MOST_CHANNELS: Final = 500
+_SECOND_LINE: Final = 10  # lines in which a first line may be followed by a second of its kind
+_SUCH_AS: Final = "a line such as '1138 points of accel data equally spaced at .020 sec'"
 _PER_LINE: Final = 8
 _WIDTHS: Final = range(7, 16)
 
@@ -293,16 +299,68 @@ def _read(source: Source, request: Request) -> Record:
     if _SPECTRA.match(source.top(1)[0]):
         found = "response spectra (volume 3)"
         raise source.refuse(found=found, expected="an acceleration (volume 1 or 2)", line=1)
-    components = [
-        _named(block.header, block.first, partial(_samples, source, request, block))
-        for block in _blocks(source)
-    ]
-    components = components or _components_of_pairs(source, request)
+    components = _components(source, request)
     if not components:
         found = f"no evenly sampled accelerations below {quoted_first_line(source.start)}"
-        expected = "a line such as '1138 points of accel data equally spaced at .020 sec'"
-        raise source.refuse(found=found, expected=expected, line=1)
+        raise source.refuse(found=found, expected=_SUCH_AS, line=1)
     return choose_component(source, request, components)
+
+
+def _components(source: Source, request: Request) -> list[FileComponent]:
+    """Find the channels, also those without data, whose reading raises an error."""
+    blocks = _blocks(source)
+    cut = _unfinished(source)
+    components: list[FileComponent] = []
+    there = False
+    for first, end in pairwise(_starts(source, blocks)):
+        held = [block for block in blocks if first <= block.line < end]
+        pairs = None if blocks else find_pairs(source, first, end)
+        for block in held:
+            read = partial(_samples, source, request, block, cut)
+            components.append(_named(block.header, block.first, read))
+        if pairs is not None:
+            components.append(_component_of_pairs(source, request, first, pairs))
+        elif not held:
+            components.append(_without_data(source, first, end))
+        there = there or bool(held) or pairs is not None
+        if len(components) > _MOST_CHANNELS:
+            raise _too_many(source, first + 1)
+    return components if there else []
+
+
+def _unfinished(source: Source) -> list[str]:
+    """Say of a file that it ends inside velocities or displacements, which are not read."""
+    for line in range(len(source.lines), 0, -1):
+        text = source.lines[line - 1][:_LONGEST_DATA_LINE]
+        match = _OTHER_SERIES.match(text) if "points" in text.casefold() else None
+        if match is not None:
+            said = _LAYOUT.search(text)
+            per_line = _PER_LINE if said is None else max(int(said.group(1)), 1)
+            return unfinished(source, line, FixedWidth(1, per_line).rows(int(match.group(1))))
+    return []
+
+
+def _starts(source: Source, blocks: list[_Block]) -> list[int]:
+    """Give the indices of the first lines of channels, and that of the line after the file."""
+    named = [
+        index
+        for index, line in enumerate(source.lines)
+        if "accelerogram" in line[:60].casefold() and FIRST_LINE.match(line[:200])
+    ]
+    if blocks and not (named and named[0] < blocks[0].line):
+        named.insert(0, blocks[0].first)
+    apart = [b for a, b in pairwise((-_SECOND_LINE - 1, *named)) if b > a + _SECOND_LINE]
+    return [*apart, len(source.lines)]
+
+
+def _without_data(source: Source, first: int, end: int) -> FileComponent:
+    """Give a channel that has only a header."""
+
+    def samples() -> Record:
+        found = f"no evenly sampled accelerations below {quoted_first_line(source.lines[first])}"
+        raise source.refuse(found=found, expected=_SUCH_AS, line=first + 1)
+
+    return _named(source.top(min(end - first, _LONGEST_HEADER), first), first, samples)
 
 
 def _blocks(source: Source) -> list[_Block]:
@@ -313,8 +371,8 @@ def _blocks(source: Source) -> list[_Block]:
             first = index + 1
             continue
         if "points" not in line[:40].casefold():
-            continue  # most lines hold numbers: see at once that this one does
-        match = _DATA_LINE.match(line[:200])
+            continue  # fast: most lines have only numbers
+        match = _DATA_LINE.match(line[:_LONGEST_DATA_LINE])
         if match is not None:
             start = max(first, index - _LONGEST_HEADER)
             header = source.top(index - start, start)
@@ -342,7 +400,7 @@ def _named(header: list[str], first: int, samples: Callable[[], Record]) -> File
     )
 
 
-def _samples(source: Source, request: Request, block: _Block) -> Record:
+def _samples(source: Source, request: Request, block: _Block, cut: list[str]) -> Record:
     text = source.top(1, block.line)[0]
     said = _UNIT.search(text)
     name, line = said.group(1).rstrip(".") if said else None, block.line + 1
@@ -362,23 +420,8 @@ def _samples(source: Source, request: Request, block: _Block) -> Record:
         chosen,
         description(block.header),
         stated=_stated(block.header, block.first),
-        behind=surplus(source, line + layout.rows(block.count), f"line {line}"),
+        behind=[*surplus(source, line + layout.rows(block.count), f"line {line}"), *cut],
     )
-
-
-def _components_of_pairs(source: Source, request: Request) -> list[FileComponent]:
-    components: list[FileComponent] = []
-    last = -2
-    for index, line in enumerate(source.lines):
-        if "accelerogram" not in line[:60].casefold() or FIRST_LINE.match(line[:200]) is None:
-            continue
-        pairs = None if index == last + 1 else find_pairs(source, index)
-        last = index
-        if pairs is not None:
-            components.append(_component_of_pairs(source, request, index, pairs))
-        if len(components) > _MOST_CHANNELS:
-            raise _too_many(source, index + 1)
-    return components
 
 
 def _component_of_pairs(
@@ -432,8 +475,8 @@ def _layout(source: Source, block: _Block, text: str) -> FixedWidth:
     said = _LAYOUT.search(text)
     if said is not None:
         return FixedWidth(int(said.group(2)), int(said.group(1)))
-    # not said in the older files: eight in a line, 9 characters each in volume 1,
-    # 10 in volume 2; a full line tells
+    # older files do not state it: eight in a line, 9 characters each in volume 1, 10 in volume 2;
+    # it follows from the length of a full line
     per_line = min(_PER_LINE, max(block.count, 1))
     first = source.lines[block.line + 1].rstrip() if block.line + 1 < len(source.lines) else ""
     width, rest = divmod(len(first), per_line)

@@ -1,7 +1,7 @@
-"""Files of Taiwan's Central Weather Administration (once Bureau): columns in fixed width.
+"""Files of Taiwan's Central Weather Administration (formerly Bureau): columns in fixed width.
 
-Header lines begin with ``#`` and name the columns, their signs, their width and the
-unit. Times are local (UTC + 8 h). Example::
+Header lines begin with ``#`` and state the columns with their signs, their width and the unit.
+Times are local (UTC + 8 h). Example::
 
     # StationCode: XYZ
     # StartTime(GMT+08): 2018/02/06-23:50:29.000
@@ -110,7 +110,7 @@ def _table(source: Source, header: Keys, first: int, columns: int, rate: float) 
 
 
 def _announced(source: Source, header: Keys, rate: float) -> tuple[int, str, int] | None:
-    """Give the number of samples by the length of the record, if that is stated."""
+    """Give the number of samples that follows from the length of the record, if it is stated."""
     if "recordlength" not in header:
         return None
     text, line = header["recordlength"]

@@ -1,4 +1,4 @@
-"""Where the bytes of records come from: a path, a folder, an archive, memory or an open file."""
+"""Bytes of record files: from a path, a folder, an archive, memory or an open file."""
 
 import gzip
 import io
@@ -21,15 +21,15 @@ from rockframe.records.reader import Source, base_name, check_size, source_of
 
 PathLike: TypeAlias = str | os.PathLike[str]
 RecordLike: TypeAlias = PathLike | bytes | IO[bytes] | IO[str]
-"""A file by its path, its bytes, or an open file."""
+"""The path of a file, its bytes, or an open file."""
 
 IN_MEMORY: Final = "bytes"
-"""What bytes without a file are called in messages."""
+"""Name of bytes without a file, in messages."""
 _OPEN: Final = "open file"
 
 
 def read_source(given: RecordLike) -> Source:
-    """Read the bytes of one record file, unpacked where they are packed, or refuse it."""
+    """Read the bytes of one record file, and unpack them if needed."""
     name, data = as_given(given)
     check_unpackable(name, data)
     if is_archive(data) or packs_tar(io.BytesIO(data)):
@@ -42,7 +42,7 @@ def read_source(given: RecordLike) -> Source:
 
 
 def as_given(given: object) -> tuple[str, bytes]:
-    """Give name and bytes of what was given, packed or not."""
+    """Give name and bytes of an argument, without unpacking."""
     if isinstance(given, bytes | bytearray | memoryview):
         data = bytes(given)
         check_size(IN_MEMORY, len(data), MAXIMUM_BYTES)
@@ -62,11 +62,11 @@ def path_of(given: object) -> Path:
 
 
 def unzipped(name: str, data: bytes) -> bytes:
-    """Unpack what gzip packed."""
+    """Unpack a gzip file."""
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
             unpacked = file.read(MAXIMUM_BYTES + 1)
-    except Exception as problem:  # the libraries do not document all that damaged files raise
+    except Exception as problem:  # damaged files raise exceptions that are not documented
         found = f"a gzip file that cannot be unpacked ({type(problem).__name__})"
         raise RecordError(name, found=found, expected="a record file") from problem
     check_size(name, len(unpacked), MAXIMUM_BYTES)
@@ -140,7 +140,7 @@ def _no_name(given: object) -> RecordError:
 
 
 MOST_FILES: Final = 20_000
-"""Most files of a folder."""
+"""Most files in a folder."""
 
 _START: Final = 512
 
@@ -149,18 +149,18 @@ _START: Final = 512
 class Unread:
     """A file that was not read."""
 
-    path: str  # where it is; in an archive, with its path inside
-    reason: str  # what was found, and what was expected
+    path: str  # path; for a file in an archive, with its path inside
+    reason: str  # found and expected contents
 
     @classmethod
     def of(cls, path: str, problem: RecordError) -> "Unread":
-        """Say of a file why it was not read."""
+        """Give the reason from an error."""
         where = "" if problem.line is None else f"line {problem.line}: "
         return cls(path, f"{where}found {problem.found}; expected {problem.expected}")
 
 
 def files_of(given: object) -> Iterator[Source | Unread]:
-    """Open all files of what a suite is read from."""
+    """Open all files from which a suite is read: a folder, an archive, a file, or several."""
     if isinstance(given, bytes | bytearray | memoryview):
         yield from _of_open(io.BytesIO(bytes(given)), IN_MEMORY)
     elif hasattr(given, "read"):

@@ -1,4 +1,4 @@
-"""Headers in text: lines that a pattern finds, and keys with values, one per line."""
+"""Text headers: lines that match a pattern, and keys with values, one per line."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -9,22 +9,22 @@ from rockframe.records.numbers import one_number, whole
 from rockframe.records.reader import Metadata, Request, Source, quoted_first_line
 
 Keys: TypeAlias = dict[str, tuple[str, int]]
-"""Value and line, from 1, of each key."""
+"""Value and line number, from 1, of each key."""
 
 NOTHING: Final = ("", 0)
-"""Of a key that is not there."""
+"""Value and line of a missing key."""
 
 
 def first_match(
     pattern: re.Pattern[str], lines: Iterable[str], first: int = 1
 ) -> tuple[re.Match[str], int] | None:
-    """Find the first line in which a pattern is found, and its number, counted from `first`."""
+    """Find the first line that contains a pattern, and its number, counted from `first`."""
     matches = ((pattern.search(text), line) for line, text in enumerate(lines, start=first))
     return next(((match, line) for match, line in matches if match is not None), None)
 
 
 def read_keys(lines: Iterable[str], first: int = 1) -> Keys:
-    """Read lines ``KEY   : value``; of a key that comes twice the first counts."""
+    """Read lines ``KEY   : value``; the first one counts if a key is repeated."""
     keys: Keys = {}
     for line, text in enumerate(lines, start=first):
         key, colon, value = text.partition(":")
@@ -34,7 +34,7 @@ def read_keys(lines: Iterable[str], first: int = 1) -> Keys:
 
 
 def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
-    """Give a number of samples that must be there and above zero, and its line."""
+    """Give a required number of samples, above zero, and its line."""
     text, line = needed(source, keys, key)
     count = whole(text)
     if count is None or count < 1:
@@ -44,7 +44,7 @@ def needed_count(source: Source, keys: Keys, key: str) -> tuple[int, int]:
 
 
 def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
-    """Give the value of a key that must be there."""
+    """Give the value of a required key, and its line."""
     value, line = keys.get(key, ("", 1))
     if not value:
         expected = f"a header line {key!r} with a value"
@@ -53,7 +53,7 @@ def needed(source: Source, keys: Keys, key: str) -> tuple[str, int]:
 
 
 def needed_rate(source: Source, request: Request, keys: Keys, key: str) -> float:
-    """Give a sampling rate that must be there and above zero, and fit what is asked for [Hz]."""
+    """Give a required sampling rate, above zero and consistent with the request [Hz]."""
     text, line = needed(source, keys, key)
     rate = one_number(text.casefold().removesuffix("hz").strip(), source, line)
     if not rate > 0.0:
@@ -64,7 +64,7 @@ def needed_rate(source: Source, request: Request, keys: Keys, key: str) -> float
 
 
 def needed_step(source: Source, request: Request, keys: Keys, key: str) -> float:
-    """Give a time step that must be there, and be that which the caller asked for [s]."""
+    """Give a required time step, consistent with the request [s]."""
     text, line = needed(source, keys, key)
     time_step = one_number(text, source, line)
     settle_time_step(source, request, time_step, line)
@@ -77,14 +77,14 @@ def text_of(keys: Keys, key: str) -> str:
 
 
 def without_blanks(described: Mapping[str, str]) -> Metadata:
-    """Leave out what is empty."""
+    """Leave out empty texts."""
     return {name: text for name, text in described.items() if text}
 
 
 def needed_match(
     source: Source, pattern: re.Pattern[str], lines: list[str], such_as: str, first: int = 1
 ) -> tuple[re.Match[str], int]:
-    """Find the first line in which a pattern is found, which must be there, and its number."""
+    """Find the first line that contains a required pattern, and its number."""
     found = first_match(pattern, lines, first)
     if found is None:
         words = f"no such line below {quoted_first_line(chr(10).join(lines))}"
@@ -93,5 +93,5 @@ def needed_match(
 
 
 def renamed(keys: Keys, names: Mapping[str, str]) -> Metadata:
-    """Give those values that go into the metadata, under their new names."""
+    """Give values of a header for the metadata, under their new names."""
     return without_blanks({name: text_of(keys, key) for key, name in names.items()})

@@ -1,6 +1,6 @@
-"""From the counts of a digitiser to accelerations, by the sensitivity of the instrument.
+"""Conversion of counts of a digitiser to accelerations, by the sensitivity of the instrument.
 
-The sensitivity stands in StationXML, given or found beside a record.
+The sensitivity is read from StationXML, which is given or found in the folder of a record.
 
 Reference: Federation of Digital Seismograph Networks, "FDSN StationXML": the element
 ``InstrumentSensitivity`` of a channel's response; azimuth clockwise from north, dip
@@ -44,21 +44,20 @@ _MISSING: Final = (
 
 @dataclass(frozen=True)
 class InstrumentResponse:
-    """What turns the counts of one channel into accelerations."""
+    """Sensitivity of one channel, to convert counts to accelerations."""
 
     sensitivity: float  # counts per `unit`
-    unit: RecordUnit  # of the acceleration
-    orientation: Orientation  # of the channel
-    file: str  # where it was found
-    sha256: str
+    unit: RecordUnit  # unit of the acceleration
+    orientation: Orientation  # direction of the channel
+    file: str  # name of the StationXML file
+    sha256: str  # its digest
 
 
 class InstrumentResponses:
-    """The responses that go with one record; each file is read once.
+    """The responses of the instruments of one record; each file is read once.
 
-    Without a file that was given, StationXML is looked for beside the record: in
-    its folder, with the extension ``.xml``, and with the same stem or with
-    ``NET.STA`` in its name.
+    Unless a file is given, StationXML is searched in the folder of the record, in files with the
+    extension ``.xml`` and with the same stem or with ``NET.STA`` in the name.
     """
 
     def __init__(self, source: Source, request: Request) -> None:
@@ -86,7 +85,7 @@ class InstrumentResponses:
                     beside.setdefault(found.sha256, found)
         if len(beside) > 1:
             files = ", ".join(entry.file for entry in beside.values())
-            expected = "one; say which as the argument response"
+            expected = "one; name it by the argument response"
             found = f"several files with the response: {files}"
             raise self._source.refuse(found=found, expected=expected)
         return next(iter(beside.values()), None)
@@ -112,7 +111,7 @@ class InstrumentResponses:
 
 @dataclass(frozen=True)
 class _Inventory:
-    """A StationXML file, and its channels by their names."""
+    """A StationXML file, and its channels by name."""
 
     file: Source
     channels: Mapping[str, list[Any]]
@@ -124,37 +123,37 @@ class _Inventory:
 
 
 def codes_of(name: str) -> tuple[str, str, str, str]:
-    """Take ``NET.STA.LOC.CHA`` apart; what is missing is empty, and so is a location ``--``."""
+    """Split ``NET.STA.LOC.CHA``; missing codes are empty, and so is a location ``--``."""
     network, station, location, channel = (*name.split("."), "", "", "", "")[:4]
     return network, station, location_code(location), channel
 
 
 def location_code(given: str) -> str:
-    """Give the code of a sensor's location; two hyphens or blanks stand for none."""
+    """Give the code of the location of a sensor; two hyphens or blanks mean none."""
     return given.strip(" -")
 
 
 def about_codes(name: str) -> Metadata:
-    """Give what the codes of a channel say, for the metadata."""
+    """Give the codes of a channel for the metadata."""
     keys = ("network", "station", "sensor_location")
     return {key: code for key, code in zip(keys, codes_of(name), strict=False) if code}
 
 
 def check_unit_or_response(source: Source, request: Request) -> None:
-    """Refuse a unit that is asked for beside the response of the instrument."""
+    """Refuse the argument unit together with the response of the instrument."""
     if request.unit is not None and request.response is not None:
         found = "the arguments unit and response"
         raise source.refuse(found=found, expected="one of them: accelerations, or counts")
 
 
 def check_finite(source: Source, samples: Array) -> None:
-    """Refuse samples of a binary file that are no numbers."""
+    """Refuse samples of a binary file that are not finite."""
     if not np.isfinite(samples).all():
         raise source.refuse(found="samples that are not finite", expected="finite samples")
 
 
 def response_in(file: Source, name: str, time: datetime) -> InstrumentResponse | None:
-    """Find the response of a channel in one StationXML, as :meth:`Responses.of` does."""
+    """Find the response of a channel in one StationXML file; None if it has none."""
     inventory = _inventory(file) if len(file.data) <= _LARGEST else None
     return None if inventory is None else inventory.response(name, time)
 
@@ -178,7 +177,7 @@ def _inventory(file: Source) -> _Inventory | None:
         found = "StationXML, and no lxml in this Python"
         expected = "lxml to read it; install it with: pip install 'rockframe[records]'"
         raise file.refuse(found=found, expected=expected) from problem
-    # entities stay as they are: nothing is fetched, and nothing grows
+    # entities are not resolved: no download, and no expansion in memory
     parser = etree.XMLParser(resolve_entities=False, no_network=True)
     try:
         root = etree.fromstring(file.data, parser)
@@ -209,8 +208,8 @@ def _response(file: Source, channel: Any, name: str) -> InstrumentResponse | Non
         raise file.refuse(found=found, expected=expected, line=line)
     output = _text(sensitivity, "{*}OutputUnits/{*}Name").casefold()
     value = _number(sensitivity, "{*}Value")
-    # some archives leave the unit of the output away, or write None: an overall sensitivity
-    # is that of the digital output all the same
+    # some archives omit the unit of the output, or write None; an overall sensitivity is that of
+    # the digital output
     counts = "count" in output or output in _UNSAID
     if not counts or value is None or math.isclose(value, 0.0):
         found = f"{name} with a sensitivity of {_text(sensitivity, '{*}Value')} {output}"
@@ -263,11 +262,11 @@ def record_of_counts(
     response: InstrumentResponse | None,
     missing: tuple[str, str] = _MISSING,
 ) -> Record:
-    """Build the record of one channel of a file that states no unit.
+    """Make the record of one channel of a file that states no unit.
 
-    The counts less their mean are divided by the sensitivity: the response is taken as
-    flat, which that of an accelerometer is from zero to near its corner. `missing` says what was
-    found and expected where there is neither a response nor a unit that was asked for.
+    The counts less their mean are divided by the sensitivity. The response is assumed to be flat,
+    as that of an accelerometer is from zero to near its corner frequency. `missing` has the words
+    found and expected of the error if there is neither a response nor the argument unit.
     """
     if request.unit is not None and request.unit_name is not None:
         described: Metadata = {**metadata, "unit_as_read": request.unit_name}

@@ -1,7 +1,9 @@
-"""Text below a header of words, one component or a table: ESM and ITACA, RESORCE, AFAD, CSMNC.
+"""Files with a header of keys and values above one component or a table.
+
+These are the formats of ESM and ITACA, RESORCE, AFAD and CSMNC.
 
 References: Engineering Strong-Motion Database (ESM) and Italian Accelerometric Archive (ITACA),
-ASCII format ``HEADER_FORMAT: DYNA 1.2``; of the others the headers of the files themselves.
+ASCII format ``HEADER_FORMAT: DYNA 1.2``; for the others, the headers of the files themselves.
 """
 
 import re
@@ -38,16 +40,15 @@ from rockframe.signals.arrays import Array
 _LONGEST_HEADER: Final = 40
 
 # ESM and ITACA: lines ``KEY: value``, then one number per line. The header of DYNA 1.0 to 1.2 has
-# 64 lines or fewer. That of ITACA 1.1, which came before, calls the component ``COMPONENT``
-# instead of ``STREAM``, its version ``DATA_VERSION``, and its data ``UNPROCESSED`` or ``PROCESSED
-# ACCELERATION``.
+# at most 64 lines. The earlier header of ITACA 1.1 has ``COMPONENT`` instead of ``STREAM``,
+# ``DATA_VERSION`` for the version, and ``UNPROCESSED`` or ``PROCESSED ACCELERATION`` for the data.
 
 _ESM_KEY: Final = re.compile(r"^([A-Z][A-Z0-9_/^ ]{2,60}?)\s*:\s*(.*?)\s*$")
 _ESM_MARKS: Final = frozenset(
     ("SAMPLING_INTERVAL_S", "NDATA", "STREAM", "DATABASE_VERSION", "DATA_VERSION")
 )
 _ESM_LONGEST_HEADER: Final = 120
-_ESM_PEAK_UNIT: Final = "cm/s^2"  # as its key says, whatever the samples are in
+_ESM_PEAK_UNIT: Final = "cm/s^2"  # by its key, whatever the unit of the samples
 _ESM_KEPT: Final = {
     "EVENT_NAME": "event",
     "EVENT_ID": "event_id",
@@ -117,8 +118,8 @@ ESM: Final = Format(
 )
 
 
-# RESORCE and SIGMA: lines ``KEY : value``, then five numbers in a line, which fill their width, so
-# that they run together where they are negative (the spelling of "acceleration" is theirs):
+# RESORCE and SIGMA: lines ``KEY : value``, then five numbers in a line. Negative numbers fill their
+# whole width, so that there is no blank before them. The files misspell "acceleration":
 #
 #     Time Increment (s)            : 0.005
 #     Number of Data                : 12400
@@ -167,7 +168,8 @@ def _read_resorce(source: Source, request: Request) -> Record:
 
     def samples() -> Record:
         values = _RESORCE_LAYOUT.read(source, line, count)
-        said = surplus(source, line + _RESORCE_LAYOUT.rows(count), _RESORCE_COUNT)
+        behind = line + _RESORCE_LAYOUT.rows(count)
+        said = surplus(source, behind, _RESORCE_COUNT, len(source.lines))
         return record_of(source, values, time_step, chosen, metadata, said=said, stated=stated)
 
     component = FileComponent(name or None, samples, orientation_of(name), line=name_line or None)
@@ -186,8 +188,8 @@ RESORCE: Final = Format(
 
 
 # Turkey's Disaster and Emergency Management Presidency (AFAD), until 2018: lines ``KEY : value``,
-# then the names of three columns, then the columns, in the unit of the peaks. Later files are
-# those of ESM.
+# then the names of three columns, then the columns, in the unit of the peaks. Later files have the
+# format of ESM.
 #
 #     NUMBER OF DATA          : 13494
 #     SAMPLING INTERVAL (sec) : 0.01

@@ -1,10 +1,10 @@
 """K-NET and KiK-net ASCII files: 17 header lines, then counts, eight in a line.
 
-An acceleration is a count times the scale factor, ``3920(gal)/6182761``, less an
-offset that the instrument adds; the mean of the whole record is subtracted, as NIED
-does for the peak in line 15. Times are Japan Standard Time, and the record time in
-line 10 is 15 s late: the delay of the trigger. A KiK-net direction is a number, 1 to
-3 for the sensor in the borehole and 4 to 6 for the one at the surface (NS, EW, UD).
+An acceleration is a count times the scale factor, ``3920(gal)/6182761``, less the offset of the
+instrument. The mean of the whole record is subtracted, as NIED does for the peak in line 15. Times
+are Japan Standard Time. The record time in line 10 is 15 s late, by the delay of the trigger. A
+KiK-net direction is a number: 1 to 3 for the sensor in the borehole, 4 to 6 for that at the surface
+(NS, EW, UD).
 
 Reference: National Research Institute for Earth Science and Disaster Resilience
 (NIED), "About K-NET ASCII format" and "KiK-net data format".
@@ -78,7 +78,7 @@ def _read(source: Source, request: Request) -> Record:
         offset = math.fsum(counts) / counts.size
         values = (counts - offset) * scale
         words = _compare_peak(source, header, values)
-        described: Metadata = {**metadata, **held, "scale_factor": scale, "offset_removed": offset}
+        described: Metadata = {**metadata, **held, "gal_per_count": scale, "offset_removed": offset}
         history = (
             f"counts times the scale factor {header['Scale Factor'][0]}, "
             f"less their mean of {offset:.9g} counts ({offset * scale:.6g} gal)",
@@ -140,7 +140,7 @@ def _counts(
     )
     fields = last_fields(source, first)
     open_end = bool(source.lines[-1]) and not source.lines[-1][-1].isspace()
-    # of whole numbers nothing but their length shows that the last one was cut
+    # a truncated whole number can only be recognised by its length
     if (
         open_end
         and counts.size <= declared

@@ -1,4 +1,4 @@
-"""The list of formats, and how to add one to it."""
+"""The list of formats, and functions to add formats."""
 
 import inspect
 import re
@@ -26,7 +26,7 @@ _NAME: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 _SUFFIX: Final = re.compile(r"\.[a-z0-9]+")
 _OWNER: Final = "rockframe.motion.register"
 
-# asked in this order; text takes every column of numbers, so it comes last
+# tried in this order; text accepts any column of numbers, so it is last
 _OWN: Final = tuple(
     replace(one, own=True)
     for one in (
@@ -37,18 +37,18 @@ _OWN: Final = tuple(
 )
 _LAST: Final = replace(TEXT, own=True)
 WITH_RESPONSE: Final = (MINISEED.name, SAC.name, ASDF.name)
-"""Formats that may hold counts, which the response of the instrument makes accelerations."""
+"""Formats that may have counts, which the response of the instrument converts to accelerations."""
 _registered: list[Format] = []
 
 
 def formats() -> tuple[Format, ...]:
-    """List the formats that records can be read from.
+    """List the formats of records that can be read.
 
     Returns
     -------
     tuple of Format
-        Each with its ``name``, as the argument ``format`` takes it, its
-        ``title`` and its ``suffixes``, in the order in which they are tried.
+        Formats in the order in which they are tried, each with its ``name`` for the argument
+        ``format``, its ``title`` and its ``suffixes``.
 
     Examples
     --------
@@ -61,9 +61,8 @@ def formats() -> tuple[Format, ...]:
 def register(reader: Reader) -> None:
     """Add a format, so that ``GroundMotion.read`` can read it.
 
-    It is tried after the formats of this package and before plain text. If its
-    ``read`` fails with anything but an error of this package, or returns what
-    is no record, a `RecordError` says so.
+    It is tried after the formats of this package and before plain text. If its ``read`` raises an
+    exception that is not of this package, or does not return a record, a `RecordError` is raised.
 
     Parameters
     ----------
@@ -75,8 +74,7 @@ def register(reader: Reader) -> None:
     Raises
     ------
     ComponentError
-        One of these is missing or is not what it should be (all that is wrong
-        is listed), or the name is taken.
+        One of these is missing or wrong (the message lists all faults), or the name is in use.
 
     Examples
     --------
@@ -105,9 +103,7 @@ def register(reader: Reader) -> None:
         msg = f"{_OWNER}: {'; '.join(faults)}"
         raise ComponentError(msg)
     if reader.NAME in {entry.name for entry in formats()}:
-        msg = (
-            f"{_OWNER}: the format {reader.NAME!r} is there already; unregister it or rename yours"
-        )
+        msg = f"{_OWNER}: the format {reader.NAME!r} exists already; unregister it or rename yours"
         raise ComponentError(msg)
     binary = bool(getattr(reader, "BINARY", False))
     suffixes = tuple(reader.SUFFIXES)
@@ -117,12 +113,12 @@ def register(reader: Reader) -> None:
 
 
 def unregister(name: str) -> None:
-    """Take a format away that was added with :func:`register`.
+    """Remove a format that was added with :func:`register`.
 
     Parameters
     ----------
     name : str
-        Its name.
+        Name of the format.
 
     Raises
     ------
@@ -154,7 +150,7 @@ def unregister(name: str) -> None:
 
 
 def by_name(name: str) -> Format:
-    """Find a format by its name, or say which there are."""
+    """Find a format by its name; the error lists all names."""
     wanted = name.casefold().replace("_", "-") if isinstance(cast("Any", name), str) else ""
     for entry in formats():
         if entry.name == wanted:
@@ -171,7 +167,7 @@ def recognised(source: Source) -> Format:
     for entry in known:
         if entry.binary and _looks_like(source, entry):
             return entry
-    top = quoted_first_line(source.start)  # refuses what is no text either
+    top = quoted_first_line(source.start)  # raises an error if the file is not text
     for entry in known:
         if not entry.binary and _looks_like(source, entry):
             return entry
@@ -191,8 +187,8 @@ def _looks_like(source: Source, entry: Format) -> bool:
 
 
 def added_failed(source: Source, entry: Format, problem: Exception) -> RecordError:
-    """Build the error for an added reader that failed in a way of its own."""
-    found = f"what the added reader {entry.name!r} fails at ({type(problem).__name__}: {problem})"
+    """Build the error for an exception in an added reader."""
+    found = f"a failure of the added reader {entry.name!r} ({type(problem).__name__}: {problem})"
     return source.refuse(found=found, expected=entry.title)
 
 
@@ -218,7 +214,7 @@ def _faults(reader: object) -> list[str]:
             inspect.signature(call).bind(*arguments)
         except TypeError:
             faults.append(f"{wanted}, got the arguments {inspect.signature(call)}")
-        except ValueError:  # built-in without a signature: found out when it is called
+        except ValueError:  # a built-in without a signature; the call will show
             continue
     if not isinstance(getattr(reader, "BINARY", False), bool):
         faults.append("BINARY must be True or False")

@@ -1,9 +1,9 @@
-"""miniSEED, through ObsPy, and traces in memory: counts, made accelerations by the response.
+"""miniSEED files, through ObsPy, and traces in memory.
 
-The counts are divided by the overall sensitivity of an accelerometer (StationXML,
-``InstrumentSensitivity``, input unit M/S**2), after their mean is subtracted: the
-response is taken as flat, which it is from zero to near the corner of the instrument.
-A seismometer, whose sensitivity is to velocity, is refused.
+The mean of the counts is subtracted, and they are divided by the overall sensitivity of an
+accelerometer (StationXML, ``InstrumentSensitivity``, input unit M/S**2). The response is assumed
+to be flat, as it is from zero to near the corner frequency of the instrument. A seismometer, whose
+sensitivity is to velocity, is refused.
 
 References: Federation of Digital Seismograph Networks, "SEED Reference Manual",
 version 2.4, and "FDSN StationXML". ObsPy is imported only here, when such a file is
@@ -19,8 +19,9 @@ import sys
 import warnings
 from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
-from typing import Any, Final, cast
+from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
@@ -52,12 +53,12 @@ from rockframe.records.reader import (
 from rockframe.records.unit_names import choose_unit
 from rockframe.signals.arrays import Array
 
-# sequence number, kind, then the codes of station, location (some write --), channel and network
+# sequence number, kind, then the codes of station, location (or --), channel and network
 _RECORD: Final = re.compile(rb"[0-9 ]{6}[DRQM][ \x00]([A-Z0-9 ]{5}(?:[A-Z0-9 ]{2}|--)[A-Z0-9 ]{5})")
 _SHORTEST_RECORD: Final = 128
 _HEADER: Final = 48
 _FIELDS: Final = "HHBBBxHHhh"  # start, number of samples, factor and multiplier of the rate
-_APART: Final = 2.0  # samples; the start may be rounded, and corrected in another field
+_APART: Final = 2.0  # samples; the start may be rounded, with a correction in another field
 _VERSION_3: Final = b"MS\x03"
 _INSTALL: Final = "ObsPy to read miniSEED; install it with: pip install 'rockframe[records]'"
 _EXPECTED: Final = "miniSEED records that are complete"
@@ -75,23 +76,23 @@ def _read(source: Source, request: Request) -> Record:
     if not _recognises(source):
         raise begins_otherwise(source, _EXPECTED)
     check_unit_or_response(source, request)
-    channels = _channels(source)
+    channels, damage = _channels(source)
     responses = None if request.unit is not None else InstrumentResponses(source, request)
     components = [
-        _component(source, request, name, label, channels[name], responses)
+        _component(source, request, name, label, channels[name], responses, damage)
         for name, label in _labels(channels).items()
     ]
     return choose_component(source, request, components)
 
 
 def _labels(channels: Iterable[str]) -> dict[str, str]:
-    """Call channels by all their codes, or by their own alone where there is one station."""
+    """Label channels by all codes, or by the channel code alone for a single station."""
     several = len({name.rsplit(".", 2)[0] for name in channels}) > 1
     return {name: name if several else codes_of(name)[3] for name in channels}
 
 
 def _obspy(source: Source) -> Any:
-    """Import ObsPy, or say how to get it."""
+    """Import ObsPy; the error states how to install it."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -102,7 +103,7 @@ def _obspy(source: Source) -> Any:
 
 
 def _check_pieces(source: Source) -> None:
-    """Refuse more channels or pieces than ObsPy joins in a second, from the headers alone."""
+    """Refuse more channels or pieces than ObsPy joins in a second; only headers are read."""
     ends: dict[bytes, float] = {}
     pieces = 0
     data = source.data
@@ -119,7 +120,7 @@ def _check_pieces(source: Source) -> None:
         start = ((year * 366.0 + day) * 24.0 + hour) * 3600.0 + minute * 60.0 + second
         start += 1e-4 * tenths
         rate = _rate(factor, multiplier)
-        # a day that begins a year differs by more than a piece is long; it is one more piece
+        # the first day of a year is counted as a new piece
         pieces += name not in ends or abs(start - ends[name]) * rate > _APART
         ends[name] = start + (count / rate if rate else 0.0)
         if len(ends) > _MOST_CHANNELS:
@@ -131,7 +132,7 @@ def _check_pieces(source: Source) -> None:
 
 
 def _rate(factor: int, multiplier: int) -> float:
-    """Give samples per second; negative numbers stand for periods and divisors."""
+    """Give the samples per second; negative numbers mean periods and divisors."""
     over = float(factor) if factor >= 0 else -1.0 / factor
     if multiplier < 0:
         return -over / multiplier
@@ -139,25 +140,49 @@ def _rate(factor: int, multiplier: int) -> float:
 
 
 @contextmanager
-def _quietly() -> Generator[None]:
-    """Keep what ObsPy says of damaged files from the terminal."""
+def _quietly() -> Generator[list[warnings.WarningMessage]]:
+    """Collect the warnings of ObsPy about damaged files instead of printing them."""
     # it raises errors in callbacks of the C library under it, which Python cannot pass on and
     # prints; what is wrong shows in what comes back
     hook = sys.unraisablehook
     sys.unraisablehook = lambda _: None
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            yield said
     finally:
         sys.unraisablehook = hook
 
 
-def _channels(source: Source) -> dict[str, list[Any]]:
+_MISFIT: Final = re.compile(r"(\S{1,40})_[DRQM]: .{0,20}integrity check for (\w{1,12}) failed")
+_SKIPPED: Final = re.compile(r"Will skip bytes (\d{1,12}) to (\d{1,12})")
+
+
+class _Damage(NamedTuple):
+    """Damage that the library under ObsPy reports without an error."""
+
+    # encoding by channel, for channels with a record whose last sample is not the stated one:
+    # compressed samples are differences, so that a wrong one shifts all later samples
+    misfits: dict[str, str]
+    skipped: int  # number of bytes between and after records
+
+    @classmethod
+    def of(cls, said: Iterable[warnings.WarningMessage]) -> "_Damage":
+        """Read the warnings of ObsPy."""
+        texts = [str(one.message) for one in said]
+        misfits = [match for text in texts if (match := _MISFIT.search(text)) is not None]
+        skipped = [match for text in texts if (match := _SKIPPED.search(text)) is not None]
+        return cls(
+            {".".join(codes_of(match[1].replace("_", "."))): match[2] for match in misfits},
+            sum(int(match[2]) - int(match[1]) + 1 for match in skipped),
+        )
+
+
+def _channels(source: Source) -> tuple[dict[str, list[Any]], _Damage]:
     obspy = _obspy(source)
     _check_pieces(source)
     try:
-        with _quietly():
+        with _quietly() as said:
             # the headers first: they may announce more than fits in memory
             announced = obspy.read(io.BytesIO(source.data), format="MSEED", headonly=True)
             total = sum(int(trace.stats.npts) for trace in announced)
@@ -165,6 +190,7 @@ def _channels(source: Source) -> dict[str, list[Any]]:
                 expected = f"at most {_MOST_SAMPLES_IN_ALL} in {_MOST_TRACES} pieces"
                 found = f"{total} samples in {len(announced)} pieces"
                 raise source.refuse(found=found, expected=expected)
+            said.clear()  # the second reading gives the same warnings
             stream = obspy.read(io.BytesIO(source.data), format="MSEED")
     except RecordError:
         raise
@@ -175,7 +201,7 @@ def _channels(source: Source) -> dict[str, list[Any]]:
     channels = by_channel(stream)
     if not channels:
         raise source.refuse(found="no data records", expected=_EXPECTED)
-    return channels
+    return channels, _Damage.of(said)
 
 
 def _component(
@@ -185,6 +211,7 @@ def _component(
     label: str,
     traces: list[Any],
     responses: InstrumentResponses | None,
+    damage: _Damage,
 ) -> FileComponent:
     channel = codes_of(name)[3]
     first = min(traces, key=lambda trace: trace.stats.starttime)
@@ -201,16 +228,24 @@ def _component(
     def samples() -> Record:
         if problem is not None:
             raise problem
+        if name in damage.misfits:
+            samples = f"{damage.misfits[name]} samples of {name}"
+            found = f"{samples} that end at another value than their record states"
+            raise source.refuse(found=found, expected="miniSEED records that are not damaged")
         counts, time_step, start = joined_traces(source, traces)
         settle_time_step(source, request, time_step, None)
         metadata: Metadata = {**about_codes(name), "record_time": start}
-        return record_of_counts(source, request, counts, time_step, metadata, response)
+        record = record_of_counts(source, request, counts, time_step, metadata, response)
+        if not damage.skipped:
+            return record
+        words = f"{source.path}: {damage.skipped} bytes that are no miniSEED record are not read"
+        return replace(record, warnings=(*record.warnings, words))
 
     return FileComponent(label, samples, direction, aliases=(name, channel))
 
 
 def by_channel(traces: Iterable[Any]) -> dict[str, list[Any]]:
-    """Sort traces by their channel."""
+    """Group traces by channel."""
     channels: dict[str, list[Any]] = {}
     for trace in traces:
         channels.setdefault(".".join(codes_of(str(trace.id))), []).append(trace)
@@ -253,7 +288,7 @@ def joined_traces(source: Source, traces: list[Any]) -> tuple[Array, float, str]
 def components_of_traces(
     source: Source, request: Request, traces: list[Any]
 ) -> list[FileComponent]:
-    """Tell the channels of traces that are in memory."""
+    """Give the channels of traces in memory as components."""
     channels = by_channel(traces)
 
     def samples(name: str) -> Record:
@@ -274,7 +309,7 @@ def components_of_traces(
 
 
 def _stated_unit(stats: Mapping[str, Any]) -> str | None:
-    """Give the unit that gmprocess keeps with a trace."""
+    """Give the unit that gmprocess stores with a trace."""
     standard = stats.get("standard")
     unit = cast("Mapping[str, Any]", standard).get("units") if hasattr(standard, "get") else None
     return unit if isinstance(unit, str) and unit else None

@@ -1,8 +1,7 @@
-"""Motions that this package wrote itself: ``to_dataset().to_netcdf(path)``.
+"""Motions that this package has stored by ``to_dataset().to_netcdf(path)``.
 
-The motion comes back as it was, to the last bit, with its own name, metadata and
-history. Nothing of the file is added to them: the metadata still name the file and
-the digest that the motion was first read from.
+The motion is read without loss, with its name, metadata and history. Nothing is added: the
+metadata still have the name and digest of the file from which the motion was first read.
 """
 
 import json
@@ -51,7 +50,7 @@ _OF_A_RESULT: Final = (
 
 
 class NoMotionError(SchemaError):
-    """A dataset that holds no motion."""
+    """A dataset does not contain a motion."""
 
     def __init__(self, found: str, expected: str = _A_MOTION) -> None:
         self.found = found
@@ -63,14 +62,14 @@ class NoMotionError(SchemaError):
 
 
 def check_no_result(attributes: Container[str]) -> None:
-    """Refuse the result of a system, by the attributes of its dataset."""
+    """Refuse a dataset that is the result of a system, by its attributes."""
     if _RESULT_ATTRIBUTE in attributes:
         found = "the result of a system"
         raise NoMotionError(found, _OF_A_RESULT)
 
 
 def is_netcdf(source: Source) -> bool:
-    """Tell whether the file begins as netCDF or HDF5 files do."""
+    """Tell whether the file begins like a netCDF or HDF5 file."""
     return source.data.startswith(_MAGIC)
 
 
@@ -88,15 +87,15 @@ def _stored(source: Source) -> StoredMotion:
 
     try:
         with warnings.catch_warnings():
-            # nothing that a damaged file makes the libraries say is of use
+            # warnings of the libraries about damaged files are of no use
             warnings.simplefilter("ignore")
-            # before xarray, which loads the axes at once: a file may declare more than it holds
+            # checked before xarray loads the axes: a file may declare more than it contains
             with netCDF4.Dataset("in memory", memory=source.data) as file:
                 check_no_result(file.ncattrs())
                 if _OF_SUITES in file.variables:
                     raise NoMotionError(_A_SUITE, _ONE_MOTION)
                 _check_declared(source, file.variables)
-                # undecoded: the numbers as they were written
+                # not decoded: the numbers as they were written
                 dataset = xr.open_dataset(NetCDF4DataStore(file), decode_cf=False)
                 held = [name for name in _VARIABLES if name in file.variables]
                 stored = stored_motion(dataset[held].load())
@@ -105,7 +104,7 @@ def _stored(source: Source) -> StoredMotion:
     except NoMotionError as problem:
         raise source.refuse(found=problem.found, expected=problem.expected) from problem
     except Exception as problem:
-        # the libraries fail on damaged files in ways that they do not document
+        # damaged files raise exceptions that are not documented
         found = f"a netCDF file that cannot be read ({type(problem).__name__})"
         raise source.refuse(found=found, expected=_EXPECTED) from problem
     for key, value in cast("dict[str, Any]", stored.metadata).items():
@@ -120,7 +119,7 @@ def _check_declared(source: Source, variables: Mapping[str, Any]) -> None:
     if len(variables) > _MOST_VARIABLES:
         found = f"{len(variables)} variables"
         raise source.refuse(found=found, expected=_EXPECTED)
-    # of all variables: those that are not read are axes of those that are, or nothing of ours
+    # of all variables: others are axes of those that are read, or not of this package
     total = sum(math.prod(map(int, variable.shape)) for variable in variables.values())
     if total > _MOST_NUMBERS:
         expected = f"a motion of at most {_MOST_NUMBERS} numbers in all"
@@ -128,7 +127,7 @@ def _check_declared(source: Source, variables: Mapping[str, Any]) -> None:
     for name in _VARIABLES:
         kind = variables[name].datatype if name in variables else np.dtype(np.float64)
         if not isinstance(kind, np.dtype) or kind.kind not in "fiu":
-            found = f"a variable {name!r} that holds no numbers"
+            found = f"a variable {name!r} without numbers"
             raise source.refuse(found=found, expected=_EXPECTED)
 
 
@@ -136,7 +135,7 @@ def _compare(source: Source, request: Request, stored: StoredMotion) -> None:
     check_asked_time_step(source, request, stored.si.time_step, None)
     if request.unit is not None and not math.isclose(request.unit.factor, 1.0):
         found = "a stored motion in m/s^2"
-        expected = f"accelerations in the unit {request.unit_name!r} that was asked for"
+        expected = f"accelerations in the unit {request.unit_name!r} of the argument unit"
         raise source.refuse(found=found, expected=expected)
     if request.component is None:
         return
@@ -151,7 +150,7 @@ def _compare(source: Source, request: Request, stored: StoredMotion) -> None:
 
 
 def stored_motion(dataset: xr.Dataset) -> StoredMotion:
-    """Read what :func:`to_dataset` wrote, part by part."""
+    """Read the parts of a motion from the result of :func:`to_dataset`."""
     check_no_result(dataset.attrs)
     for name in ("acceleration", "time"):
         if name not in dataset.variables:
@@ -167,8 +166,8 @@ def stored_motion(dataset: xr.Dataset) -> StoredMotion:
         raise NoMotionError(found) from problem
     written = attributes.get("motion_sha256")
     if written is not None and written != si.digest:
-        found = "samples that differ from those the attribute 'motion_sha256' was written for"
-        expected = "the same; delete the attribute if they were changed on purpose"
+        found = "samples that differ from those of the digest 'motion_sha256'"
+        expected = "the same; delete this attribute if they were changed on purpose"
         raise NoMotionError(found, expected)
     history = str(attributes.get("history", ""))
     return StoredMotion(
@@ -176,7 +175,7 @@ def stored_motion(dataset: xr.Dataset) -> StoredMotion:
         str(attributes["motion_name"]) if "motion_name" in attributes else None,
         _mapping(attributes, "metadata") or {},
         tuple(history.split("\n")) if history else (),
-        # without the digest nothing says that the recipe still gives these samples
+        # without the digest the recipe may no longer give these samples
         None if written is None else _mapping(attributes, "recipe"),
     )
 

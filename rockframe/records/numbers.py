@@ -1,6 +1,6 @@
-"""From text to numbers: in free format, in fixed width, and times to one time step.
+"""Conversion of text to numbers, in free format or fixed width, and of times to one time step.
 
-A fast way, and a careful one that names the line at fault.
+The conversion is fast; only if it fails, a slower one finds the line of the fault.
 """
 
 import math
@@ -16,7 +16,7 @@ from rockframe.errors import RecordError
 from rockframe.records.reader import MAXIMUM_SAMPLES, Source, quoted_first_line
 from rockframe.signals.arrays import Array
 
-# written so that no digit can be matched in two ways: a failed match stays linear
+# no digit can be matched in two ways, so that a failed match takes linear time
 NUMBER: Final = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
 ONE_NUMBER: Final = re.compile(NUMBER, re.ASCII)
 _SHAPE: Final = re.compile(r"[-+]?\d*(\.\d*)?(?:[EeDd][-+]?(\d+))?", re.ASCII)
@@ -28,7 +28,7 @@ _WHOLE: Final = re.compile(r"[-+]?\d+", re.ASCII)
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _SAME: Final = 0.1 * (1.0 + 1e-6)
-"""Time steps that samples of one time may be apart: clocks of digitisers round to 0.1 ms."""
+"""Difference of starts, in time steps, up to which they count as equal: clocks round to 0.1 ms."""
 
 _JITTER: Final = 1e-6
 _FLOAT_ULPS: Final = 8.0
@@ -55,7 +55,7 @@ def free_format(source: Source, first: int, end: int | None = None) -> Array:
 
 
 def all_numbers(source: Source, first: int, end: int | None = None, *, of: object = None) -> Array:
-    """Read all numbers from a line on, of as many as are announced, and refuse a file cut short."""
+    """Read all numbers from a line on, `of` if stated; refuse a file that is cut off inside one."""
     values = free_format(source, first, end)
     if end is None:
         announced = "" if of is None else f" of {of}"
@@ -64,7 +64,7 @@ def all_numbers(source: Source, first: int, end: int | None = None, *, of: objec
 
 
 def check_end(source: Source, fields: Sequence[str], held: str, line: int | None = None) -> None:
-    """Refuse a file that stops in the middle of its last number."""
+    """Refuse a file that is cut off inside its last number."""
     last_line = source.lines[-1]
     if not last_line or last_line[-1].isspace():
         return
@@ -79,7 +79,7 @@ def check_end(source: Source, fields: Sequence[str], held: str, line: int | None
 
 
 def cut_short(source: Source, held: str, line: int | None = None) -> RecordError:
-    """Build the error for a file that stops in the middle of a number."""
+    """Build the error for a file that is cut off inside a number."""
     found, line = f"the end of the file inside a number ({held})", line or source.last_line
     return source.refuse(found=found, expected="a complete file", line=line)
 
@@ -91,7 +91,7 @@ def too_many(source: Source, count: int, line: int | None = None) -> RecordError
 
 
 def floats(fields: Sequence[str]) -> Array | None:
-    """Convert fields at once; None if one of them is not a plain finite number."""
+    """Convert all fields together; None if one of them is not a finite number."""
     for attempt in (fields, map(with_e, fields)):
         try:
             values = np.fromiter(map(float, attempt), dtype=np.float64, count=len(fields))
@@ -102,17 +102,17 @@ def floats(fields: Sequence[str]) -> Array | None:
 
 
 def number_or_none(text: str) -> float | None:
-    """Read a number; None if it is none."""
+    """Read a number; None for other text."""
     return None if ONE_NUMBER.fullmatch(text) is None else float(with_e(text))
 
 
 def is_plain(text: str) -> bool:
-    """Tell whether text is free of what Python takes for a number and files do not."""
+    """Tell whether text has no characters that only Python accepts in numbers."""
     return text.isascii() and "_" not in text
 
 
 def one_number(text: str, source: Source, line: int) -> float:
-    """Read one field that must be one finite number."""
+    """Read a field that must be a finite number."""
     if ONE_NUMBER.fullmatch(text) is None:
         raise source.refuse(found=quoted_first_line(text), expected="a number", line=line)
     value = float(with_e(text))
@@ -136,7 +136,7 @@ def last_fields(source: Source, first: int, count: int = _SAME_SHAPE + 1) -> lis
 
 
 def _chunks(source: Source, first: int, last: int) -> Iterator[tuple[int, int]]:
-    # in pieces, so that the fields of a long file are never all in memory
+    # in pieces, so that not all fields of a long file are in memory at once
     start, size = first, 0
     for index in range(first, last):
         size += len(source.lines[index]) + 1
@@ -167,12 +167,12 @@ def _fields(source: Source, first: int, end: int) -> Array:
 
 
 def with_e(field: str) -> str:
-    """Write the exponent of a number as Python does: Fortran's double has a D."""
+    """Replace the exponent letter D, of Fortran's double precision, by E."""
     return field.replace("D", "E").replace("d", "e")
 
 
 def shape_of(field: str) -> tuple[int, int] | None:
-    """Count the digits of the exponent and behind the point; None if it is no number."""
+    """Count the digits of the exponent and after the point; None if it is not a number."""
     match = _SHAPE.fullmatch(field)
     if match is None:
         return None
@@ -181,9 +181,9 @@ def shape_of(field: str) -> tuple[int, int] | None:
 
 
 def _careful(field: str, source: Source, line: int) -> list[float]:
-    # Fortran writes fixed-width numbers without a blank between them when they
-    # fill their width. A sign then shows where the next one starts; without a
-    # sign, or without a decimal point, that place is a guess.
+    # Fortran writes fixed-width numbers without a blank between them if they fill their width.
+    # A sign then marks the start of the next one; without a sign or a decimal point the start
+    # is ambiguous.
     pieces: list[str] = []
     position = 0
     for match in ONE_NUMBER.finditer(field):
@@ -206,14 +206,14 @@ def _careful(field: str, source: Source, line: int) -> list[float]:
 
 @dataclass(frozen=True)
 class FixedWidth:
-    """Numbers of one width that stand side by side, as Fortran writes them: not split at blanks."""
+    """Layout of numbers in columns of fixed width, as Fortran writes them, also without blanks."""
 
     width: int
     per_line: int
     indent: int = 0
 
     def rows(self, count: int) -> int:
-        """Give how many lines so many numbers take."""
+        """Give the number of lines for some numbers."""
         return -(-count // self.per_line)
 
     def read(self, source: Source, first: int, count: int) -> Array:
@@ -256,7 +256,7 @@ class FixedWidth:
 
 @dataclass(frozen=True)
 class Fields:
-    """Numbers of a header, each by its place, from 1."""
+    """Numbers of a header, by their place from 1."""
 
     source: Source
     layout: FixedWidth
@@ -267,7 +267,7 @@ class Fields:
         return self.first + (place - 1) // self.layout.per_line + 1
 
     def cell(self, place: int) -> str:
-        """Give a field without blanks around it; empty if the file ends before it."""
+        """Give a field without surrounding blanks; empty if the file ends before it."""
         row, column = divmod(place - 1, self.layout.per_line)
         if self.first + row >= len(self.source.lines):
             return ""
@@ -292,7 +292,7 @@ class Fields:
 
 
 def rows_below(source: Source, first: int) -> int:
-    """Count the rows from a line to the end of the file, of which there must be two."""
+    """Count the rows from a line to the end of the file; there must be at least two."""
     rows = source.last_line - first
     if rows < 2:
         found = f"{max(rows, 0)} rows of numbers"
@@ -301,7 +301,7 @@ def rows_below(source: Source, first: int) -> int:
 
 
 def whole(text: str) -> int | None:
-    """Read a whole number; None if it is none, or too long to be one."""
+    """Read a whole number; None for other text, or too many digits."""
     text = text.strip()
     if len(text) > _LONGEST_COUNT or _WHOLE.fullmatch(text) is None:
         return None
@@ -309,7 +309,7 @@ def whole(text: str) -> int | None:
 
 
 def same_start(one: object, other: object, time_step: float) -> bool:
-    """Tell whether two samples were taken at the same time."""
+    """Tell whether two starts agree to a tenth of a time step, or one of them is unknown."""
     if one is None or other is None or one == other:
         return True
     first, second = epoch_seconds(one), epoch_seconds(other)
@@ -317,7 +317,7 @@ def same_start(one: object, other: object, time_step: float) -> bool:
 
 
 def epoch_seconds(time: object) -> float | None:
-    """Give the seconds from 1970 to a time in ISO 8601, or None for another one."""
+    """Give the seconds from 1970 to a time in ISO 8601; None for other text."""
     try:
         moment = datetime.fromisoformat(str(time).strip())
     except ValueError:
@@ -327,7 +327,7 @@ def epoch_seconds(time: object) -> float | None:
 
 
 def time_after(time: object, seconds: float) -> str | None:
-    """Give the time so many seconds after one in ISO 8601; None of another one."""
+    """Give the time some seconds after a time in ISO 8601; None for other text."""
     text = str(time).strip()
     try:
         moved = datetime.fromisoformat(text) + timedelta(seconds=seconds)
@@ -337,13 +337,12 @@ def time_after(time: object, seconds: float) -> str | None:
 
 
 def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:
-    """Find the time step that a column of times was printed from.
+    """Find the time step from which a column of times was printed.
 
-    Times t_0 + k dt, each rounded to its last printed digit q, lie within q/2
-    of a straight line through the first, or, if that one was rounded too,
-    within q of one another. What rounding does not explain must stay below
-    1e-6 dt. A missing sample or one wrong last digit is not taken for rounding:
-    a last digit of more than dt/2 allows none.
+    Times t_0 + k dt, each rounded to its last printed digit q, lie within q/2 of a straight line
+    through the first, or, if the first was rounded, too, within q of one another. Further
+    deviations must be below 1e-6 dt. If q exceeds dt/2, no rounding is admitted, so that a missing
+    sample or a wrong last digit is found.
     """
     with np.errstate(over="ignore"):
         rises = np.diff(times)
@@ -354,7 +353,7 @@ def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None
     if typical <= 0.0 or np.any(rises <= 0.0):
         return typical, _first_misfit(rises, typical)
     if not _SMALLEST < typical < _LARGEST:
-        return typical, None  # of no record, in whatever unit: the caller refuses it
+        return typical, None  # the step of no record in any unit; the caller refuses it
     digit = _last_digits(times, fields)
     digit = np.where(digit > _COARSEST_DIGIT * typical, 0.0, digit)
     noise = _JITTER * typical + _FLOAT_ULPS * np.finfo(float).eps * float(np.max(np.abs(times)))
@@ -379,7 +378,7 @@ def _first_misfit(rises: Array, typical: float) -> int:
     misfit = np.abs(rises - typical)
     beyond = np.flatnonzero((misfit > 0.5 * abs(typical)) | (rises <= 0.0))
     if not beyond.size:
-        # one wrong time makes two wrong steps of almost the same size
+        # one wrong time causes two wrong steps of almost the same size
         beyond = np.flatnonzero(misfit >= 0.99 * np.max(misfit))
     return int(beyond[0]) + 1
 
@@ -397,13 +396,13 @@ def _plain_numbers(lower: float, upper: float) -> Iterator[float]:
 
 
 def _last_digits(times: Array, fields: Sequence[str]) -> Array:
-    # Printed with a fixed number of decimals, all times share the last digit;
-    # printed with a fixed number of significant digits, it grows with the time.
+    # With a fixed number of decimals all times have the same last digit; with a fixed number of
+    # significant digits it grows with the time.
     decimals, significant = -400, 1
     if any("e" in field or "E" in field or "d" in field or "D" in field for field in fields):
         for field in fields:
             mantissa, _, exponent = field.upper().replace("D", "E").partition("E")
-            # a longer exponent is that of a zero, whose digits tell nothing
+            # a longer exponent is that of a zero, whose digits have no meaning
             power = int(exponent) if 0 < len(exponent) <= _LONGEST_EXPONENT else 0
             decimals = max(decimals, len(mantissa.partition(".")[2]) - power)
             significant = max(significant, len(mantissa.replace(".", "").lstrip("+-0")))

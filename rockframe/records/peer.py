@@ -1,14 +1,14 @@
-"""Files of PEER: accelerations (AT2), and the table that comes with a download.
+"""Files of PEER: accelerations (AT2), and the table of a download.
 
-An AT2 file has four header lines, then numbers in free format. The line with the number of
-points comes in several dialects::
+An AT2 file has four header lines, then numbers in free format. The line with the number of points
+has several forms::
 
     4096    0.0100    NPTS, DT                  NGA-West1
     NPTS=  18000, DT= .00500 SEC                strong-motion database
     NPTS=   7999, DT=   .0050 SEC,              NGA-West2
     NPTS=3930,DT=.005                           no blanks, also dt= in lower case
 
-Some files set marks around header and data: ``*** Begin data ***`` above that line, and
+Some files have marks around header and data: ``*** Begin data ***`` above that line, and
 ``*** End Data ***`` below the last number.
 """
 
@@ -76,7 +76,7 @@ def _read(source: Source, request: Request) -> Record:
 
 
 def _by_file_name(source: Source) -> Orientation:
-    """Tell a vertical component by the end of the file's name, where the header does not."""
+    """Recognise a vertical component by the end of the file name, if not by the header."""
     end = _UPRIGHT.search(PurePath(source.path).stem)
     return UNKNOWN if end is None else orientation_of(end.group(1))
 
@@ -168,7 +168,7 @@ _START: Final = 4096
 _FIRST: Final = "Result ID"
 _KILOMETRE: Final = 1000.0
 _NUMBERS: Final = {
-    # head of the column without its unit, name in the metadata, factor to SI units
+    # title of the column without its unit: name in the metadata, factor to SI units
     "record sequence number": ("record_sequence_number", 1.0),
     "year": ("year", 1.0),
     "magnitude": ("magnitude", 1.0),
@@ -195,7 +195,7 @@ _HEAD_UNIT: Final = re.compile(r"\s*\([^)]*\)\s*$")
 
 
 def peer_table(source: Source) -> dict[str, Known] | None:
-    """Read what the table of a download tells of each file; None if a file is no such table."""
+    """Read the table of a download, by file names; None if a file is not such a table."""
     if _MARK not in source.data[:_START]:
         return None
     lines = source.lines
@@ -219,7 +219,8 @@ def peer_table(source: Source) -> dict[str, Known] | None:
         raise source.refuse(found=found, expected=expected, line=first + 1)
     known: dict[str, Known] = {}
     for place, row in enumerate(rows[1:], start=first + 2):
-        if len(row) < len(heads):
+        # a comma inside a name would shift all that stands behind it
+        if len(row) < len(heads) or any(field.strip() for field in row[len(heads) :]):
             found = f"{len(row)} fields"
             raise source.refuse(found=found, expected=f"{len(heads)}", line=place)
         fields = dict(zip(heads, (field.strip() for field in row), strict=False))
@@ -238,14 +239,14 @@ def _known_from(fields: dict[str, str], source: Source, line: int) -> Known:
         if not text:
             continue
         value = _number(text, source, line, head) * factor
-        if value == -999.0 * factor:  # what the databases write for unknown
+        if value == -999.0 * factor:  # mark of an unknown value in the databases
             continue
         metadata[name] = int(value) if name in _WHOLE else value
     return metadata
 
 
 def _filled(text: str) -> str:
-    """Give a field, empty where it holds only strokes."""
+    """Give a field, empty if it has only hyphens."""
     return text if text.strip("- ") else ""
 
 

@@ -1,4 +1,4 @@
-"""From a file to a record in SI units: format, reader, checks, provenance."""
+"""Reading of a file to a record in SI units: format, reader, checks, provenance."""
 
 import math
 from collections.abc import Mapping
@@ -41,13 +41,13 @@ class Reading:
     """A record that was read, converted and checked."""
 
     si: Motion  # in SI units
-    metadata: Metadata  # what the file says about itself, and which file it was
-    history: tuple[str, ...]  # one sentence, or more if something was done
-    warnings: tuple[str, ...] = ()  # to be issued by the caller
-    name: str | None = None  # of a motion that was stored with its name
-    recipe: Mapping[str, Any] | None = None  # of an analytic motion that was stored
+    metadata: Metadata  # contents of the header, and name and digest of the file
+    history: tuple[str, ...]  # sentences about the reading and processing
+    warnings: tuple[str, ...] = ()  # the caller issues them
+    name: str | None = None  # name of a stored motion
+    recipe: Mapping[str, Any] | None = None  # recipe of a stored analytic motion
     file: str = ""  # name of the file, without its folder
-    vertical: bool = False  # whether it is a vertical component, read for itself
+    vertical: bool = False  # whether it is a vertical component, read alone
 
 
 def request_of(
@@ -58,7 +58,7 @@ def request_of(
     component: str | tuple[str, str] | None = None,
     response: PathLike | None = None,
 ) -> Request:
-    """Check what a caller asks of a reader; `owner` is the function that messages name."""
+    """Check the arguments of a caller for a reader; messages begin with `owner`."""
     horizontal, vertical = component_names(component, owner=owner)
     return Request(
         unit=None if unit is None else argument_unit(unit, owner=owner),
@@ -75,7 +75,7 @@ def request_of(
 def read_record(
     given: RecordLike, format_name: str | None = None, request: Request = _ANYTHING
 ) -> Reading:
-    """Read a record file: one component, or one with the vertical one beside it."""
+    """Read one component of a record file, or a horizontal one with the vertical one."""
     chosen = None if format_name is None else by_name(str(format_name))
     source = read_source(given)
     entry = chosen or recognised(source)
@@ -103,7 +103,7 @@ def read_components(
 
 
 def read_traces(traces: list[Any], request: Request, *, owner: str) -> Reading:
-    """Read traces that are in memory, as ObsPy's are: with ``id``, ``data`` and ``stats``."""
+    """Read traces in memory, such as those of ObsPy, with ``id``, ``data`` and ``stats``."""
     source = Source(owner, b"", "")
     record = choose_component(source, request, components_of_traces(source, request, traces))
     si, doubts = to_motion(source, record)
@@ -112,7 +112,7 @@ def read_traces(traces: list[Any], request: Request, *, owner: str) -> Reading:
 
 
 def _one_of(entry: Format, source: Source, component: FileComponent) -> Reading | RecordError:
-    """Read a component, or say why not."""
+    """Read a component, or give the error."""
     try:
         reading = _reading(entry, source, named(source, component))
     except RecordError as problem:
@@ -164,7 +164,7 @@ def _read(entry: Format, source: Source, request: Request) -> Record | StoredMot
     except RockframeError:
         raise
     except Exception as problem:
-        # code of others: whatever it does not foresee is a file that it cannot read
+        # a reader that a user added: any exception means a file that it cannot read
         raise added_failed(source, entry, problem) from problem
 
 

@@ -1,4 +1,4 @@
-"""What readers get and give: a file as bytes and lines, what is asked of it, the record."""
+"""Interface of readers: a file as bytes and lines, the request of the caller, the record."""
 
 import hashlib
 from collections.abc import Callable, Mapping
@@ -14,8 +14,8 @@ from rockframe.signals.arrays import Array
 
 Metadata: TypeAlias = dict[str, str | float | int]
 
-# What bounds time and memory beside MAXIMUM_BYTES: no file may cost more than about a second
-# or 200 MB, whatever stands in it.
+# These limits and MAXIMUM_BYTES bound time and memory: no file takes more than about a second
+# or 200 MB, whatever its contents.
 MAXIMUM_TEXT: Final = 16 * 2**20
 """Largest file that is read as text [byte]."""
 MAXIMUM_LINES: Final = 350_000
@@ -25,7 +25,7 @@ MAXIMUM_LINE: Final = 2**20
 MAXIMUM_SAMPLES: Final = 300_000
 """Most samples of one component."""
 HEADER_WIDTH: Final = 400
-"""What stands behind in a header line is not looked at [character]."""
+"""Number of characters of a header line that are searched."""
 
 _SHOWN: Final = 60
 _RECORD: Final = "a ground-motion record as text"
@@ -43,11 +43,11 @@ class Source:
     Parameters
     ----------
     path : str
-        As given, for messages; of a file that was packed, with its name inside.
+        Path as given, for messages; for a packed file, with its name inside.
     data : bytes
         All bytes of the file, unpacked.
     sha256 : str
-        Of the bytes.
+        Digest of the bytes.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class Source:
 
     @cached_property
     def lines(self) -> tuple[str, ...]:
-        """Lines without their ends; the last one is empty if the file ends with a line end.
+        """Lines without line ends; the last one is empty if the file ends with a line end.
 
         Raises
         ------
@@ -77,14 +77,14 @@ class Source:
         return _lines(self)
 
     def top(self, count: int, first: int = 0) -> list[str]:
-        """Give lines of a header, cut to a width that no header needs.
+        """Give lines of a header, cut to `HEADER_WIDTH` characters.
 
         Parameters
         ----------
         count : int
-            How many.
+            Number of lines.
         first : int, optional
-            Index of the first, from 0.
+            Index of the first line, from 0.
 
         Returns
         -------
@@ -111,23 +111,23 @@ class Source:
         return count
 
     def refuse(self, *, found: str, expected: str, line: int | None = None) -> RecordError:
-        """Build the error for something found in this file.
+        """Build the error for a fault in this file.
 
         Parameters
         ----------
         found, expected : str
-            What stands there, and what should.
+            Contents of the file at the fault, and the contents that were expected.
         line : int, optional
-            Counted from 1; the last one of the file if it has not so many.
+            Line number from 1; at most that of the last line.
 
         Returns
         -------
         RecordError
-            To be raised.
+            The caller raises it.
         """
-        lines = self.__dict__.get("lines")  # there once they were looked at
+        lines = self.__dict__.get("lines")  # present after their first use
         if line is not None and lines is not None:
-            # a header may announce what would stand behind the end of the file
+            # a header may announce lines beyond the end of the file
             line = min(max(line, 1), len(lines))
         found = found if len(found) <= _LONGEST else f"{found[:_LONGEST]}..."
         return RecordError(self.path, found=found, expected=expected, line=line)
@@ -135,24 +135,24 @@ class Source:
 
 @dataclass(frozen=True)
 class Request:
-    """What the caller asked of a reader, already checked.
+    """Arguments of the caller for a reader, already checked.
 
     Parameters
     ----------
     unit : RecordUnit, optional
         Unit of the samples.
     unit_name : str, optional
-        As the caller spelt it.
+        Its name as the caller spelt it.
     time_step : float, optional
-        [s]
+        Time step [s].
     component : str, optional
         Component to read.
     vertical : str, optional
-        Component to read beside it, as the vertical one.
+        Component to read with it, as the vertical one.
     response : str, optional
         File with the response of the instrument.
     every : bool
-        Whether all components are asked for; they come in an `EveryComponentError`.
+        Whether all components are requested; an `EveryComponentError` returns them.
 
     Examples
     --------
@@ -171,22 +171,22 @@ class Request:
 
 @dataclass(frozen=True)
 class Record:
-    """A record as read: one component, perhaps with the vertical one.
+    """A record as read: one component, optionally with the vertical one.
 
     Parameters
     ----------
     time_step : float
-        [s]
+        Time step [s].
     samples : ndarray, shape (n,)
-        In `unit`.
+        Samples in `unit`.
     unit : RecordUnit
         Unit of the samples.
     metadata : dict
-        What the file says about itself.
+        Contents of the header.
     history : tuple of str
         Sentences about the reading.
     warnings : tuple of str
-        What disagrees, but not so that the file had to be refused.
+        Contradictions in the file that do not prevent its reading.
     vertical : ndarray, shape (n,), optional
         Vertical component, upwards, in `unit`.
 
@@ -210,24 +210,24 @@ class Record:
 
 @dataclass(frozen=True)
 class StoredMotion:
-    """A motion that was written by this package and comes back as it was."""
+    """A motion that this package has stored, read without loss."""
 
-    si: Motion  # in SI units
-    name: str | None  # of the motion
-    metadata: Metadata  # as written
+    si: Motion  # the motion in SI units
+    name: str | None  # name of the motion
+    metadata: Metadata  # metadata as written
     history: tuple[str, ...]
     recipe: Mapping[str, Any] | None  # constructor and arguments of an analytic motion
 
 
 class Reader(Protocol):
-    """What a reader must have: a module or any other object with these names.
+    """Interface of a reader: a module or any other object with these names.
 
     Attributes
     ----------
     NAME : str
-        What the argument ``format`` takes: small letters, digits and hyphens.
+        Value of the argument ``format``: small letters, digits and hyphens.
     TITLE : str
-        In words.
+        Description of the format in words.
     SUFFIXES : tuple of str
         Usual extensions, in small letters, with their dot.
 
@@ -257,32 +257,32 @@ class Reader(Protocol):
         ...
 
     def read(self, source: Source, request: Request, /) -> Record:
-        """Read the record, or raise what ``source.refuse`` builds."""
+        """Read the record, or raise the error that ``source.refuse`` builds."""
         ...
 
 
 @dataclass(frozen=True)
 class Format:
-    """A file format that records can be read from.
+    """A file format of records.
 
     Parameters
     ----------
     name : str
-        What the argument ``format`` takes.
+        Value of the argument ``format``.
     title : str
-        In words.
+        Description in words.
     suffixes : tuple of str
         Usual extensions.
     recognises : callable
-        Whether a file looks like this format.
+        Function that tells whether a file looks like this format.
     read : callable
-        The reader.
+        Function that reads a file.
     binary : bool
         Whether it reads bytes (``source.data``) instead of lines.
     own : bool
         Whether it is part of this package.
     holds, unit : str
-        In words: how many components a file has, and where the unit of its samples stands.
+        Number of components in a file, and source of the unit of its samples, in words.
 
     Examples
     --------
@@ -304,17 +304,17 @@ class Format:
 
 
 def source_of(name: str, data: bytes) -> Source:
-    """Give bytes their name and their digest."""
+    """Make a source from bytes, with their name and digest."""
     return Source(path=name, data=data, sha256=hashlib.sha256(data).hexdigest())
 
 
 def begins_otherwise(source: Source, expected: str) -> RecordError:
-    """Build the error for a binary file that begins in another way."""
+    """Build the error for a binary file with another beginning."""
     return source.refuse(found=f"a file that begins with {source.data[:8]!r}", expected=expected)
 
 
 def base_name(path: str) -> str:
-    """Give the file name of a path in either spelling."""
+    """Give the file name of a path with slashes or backslashes."""
     return path.replace("\\", "/").rstrip("/").rsplit("/", 1)[-1]
 
 

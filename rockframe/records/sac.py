@@ -1,11 +1,11 @@
 """SAC: a header of 632 bytes, then the samples as 32-bit floats, in either byte order.
 
-The header is 70 floats, 40 integers and 192 characters; -12345 is what is not known. It
-has no word for a unit: integer 17 (IDEP) says of an acceleration that it is one, by the
-manual in nm/s^2, which few files keep to. The argument ``unit`` says what the samples
-are, or StationXML what their counts mean.
+The header has 70 floats, 40 integers and 192 characters; -12345 marks an unknown value. It has no
+field for the unit. Integer 17 (IDEP) may state that the samples are accelerations, by the manual in
+nm/s^2, but few files follow this. The unit comes from the argument ``unit``, or, for counts, from
+StationXML.
 
-The header is small enough to be read here, so that no other package is needed.
+The header is simple enough to be read here, so that no other package is needed.
 
 Reference: Incorporated Research Institutions for Seismology, "SAC User's Manual", SAC
 Data File Format, header versions 6 and 7.
@@ -54,7 +54,7 @@ _TEXT: Final = 440
 _SAMPLE: Final = 4
 _UNKNOWN: Final = -12345
 _VERSIONS: Final = (6, 7)
-_FOOTER: Final = 176  # of version 7: 22 doubles
+_FOOTER: Final = 176  # footer of version 7: 22 doubles [byte]
 _LONGEST_STEP: Final = 1e4
 _TIME_SERIES: Final = 1
 _KINDS: Final = {6: "a displacement", 7: "a velocity", 50: "volts"}
@@ -88,7 +88,7 @@ class _Header:
         return None if not math.isfinite(value) or math.isclose(value, _UNKNOWN) else value
 
     def word(self, place: int, count: int = 1) -> str:
-        """Give a text of so many words, up to its first zero; empty if it is not known."""
+        """Give a text of some words of 8 characters, up to its first zero; empty if unknown."""
         data = self.text[8 * place : 8 * (place + count)].split(b"\x00")[0]
         text = "".join(c for c in data.decode("latin-1") if c.isprintable()).strip()
         return "" if set(text.split()) <= {str(_UNKNOWN)} else text
@@ -126,7 +126,7 @@ def _header(source: Source) -> _Header | None:
         integers = np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS)
         if integers[_VERSION] not in _VERSIONS or integers[_EVEN] not in (0, 1):
             continue
-        with np.errstate(invalid="ignore"):  # any bytes may stand there
+        with np.errstate(invalid="ignore"):  # the bytes may be arbitrary
             floats = np.frombuffer(data, f"{order}f4", _FLOATS).astype(np.float64)
         if integers[_POINTS] > 0 and 0.0 < floats[_DELTA] < _LONGEST_STEP:
             return _Header(order, floats, integers, data[_TEXT:_HEADER])
@@ -142,7 +142,7 @@ def _samples(source: Source, request: Request, header: _Header, name: str) -> Re
     if held < count:
         found = f"the end of the file after {held} samples"
         raise source.refuse(found=found, expected=f"{count} samples")
-    # a step printed with 7 digits is what the 32-bit float was made from
+    # 7 digits recover the decimal step from which the 32-bit float was made
     time_step = float(f"{header.floats[_DELTA]:.7g}")
     settle_time_step(source, request, time_step, None)
     with np.errstate(invalid="ignore"):
@@ -171,7 +171,7 @@ def _doubts(source: Source, header: _Header, values: Array, time_step: float) ->
             )
     behind = len(source.data) - _HEADER - _SAMPLE * values.size
     if behind not in (0, _FOOTER):
-        doubts.append(f"{source.path}: {behind} bytes behind the last sample are not read")
+        doubts.append(f"{source.path}: {behind} bytes after the last sample are not read")
     begin, end = header.known(_BEGIN), header.known(_END)
     if begin is not None and end is not None:
         length = (values.size - 1) * time_step

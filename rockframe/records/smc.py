@@ -1,9 +1,9 @@
 """USGS SMC files: 11 lines of text, 48 integers, 50 reals, comments, data; fixed width.
 
-Integers are eight in a line, 10 characters each, reals five of 15, data eight of 10.
-Integer 16 is the number of comment lines, integer 17 the number of samples, real 2
-the sampling rate; what is not known is -32768 or 1.7E38 (integer 1 and real 1 repeat
-these marks). Without a sampling rate the data are pairs of time and acceleration.
+There are eight integers of 10 characters in a line, five reals of 15 and eight samples of 10.
+Integer 16 is the number of comment lines, integer 17 the number of samples, real 2 the sampling
+rate. Unknown values are -32768 or 1.7E38 (integer 1 and real 1 repeat these marks). Without a
+sampling rate the data are pairs of time and acceleration.
 
 Reference: U.S. Geological Survey, National Strong-Motion Program, "SMC- and
 BBF-format Data Files" (smcfmt.txt), sections 3 and 4.
@@ -29,10 +29,10 @@ from rockframe.records.reader import Format, Metadata, Record, Request, Source, 
 from rockframe.records.unit_names import choose_unit
 
 UNIT: Final = "cm/sec/sec"
-"""Of the data, by the specification."""
+"""Unit of the data, by the specification."""
 
 UNKNOWN_KIND: Final = "UNKNOWN"
-"""Kind 0, of files whose maker did not say what they hold."""
+"""Kind 0, of files that do not state their quantity."""
 
 _KIND: Final = re.compile(
     r"^\s*([0-6])\s+((?:UN)?CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|"
@@ -92,7 +92,7 @@ def _component(source: Source, integers: Fields) -> tuple[str | None, Orientatio
     direction = orientation_of(name or "")
     if direction != UNKNOWN:
         return name, direction
-    # where the text does not tell: integer 13 is the angle from the vertical, 14 the azimuth
+    # if not in the text: integer 13 is the angle from the vertical, 14 the azimuth
     slope, azimuth = (whole(integers.cell(place)) for place in (13, 14))
     if slope == 0:
         return name or "UP", Orientation(vertical=UPWARDS)
@@ -121,9 +121,10 @@ def _samples(source: Source, request: Request, kind: str, integers: Fields) -> R
     time_step = _time_step(source, request, reals)
     chosen = choose_unit(source, request, UNIT, None)
     values = _DATA_LAYOUT.read(source, first, count)
-    said, behind = [], surplus(source, first + _DATA_LAYOUT.rows(count), "integer 17 (line 14)")
+    said, what = [], "integer 17 (line 14)"
+    behind = surplus(source, first + _DATA_LAYOUT.rows(count), what, len(source.lines))
     if kind.upper() == UNKNOWN_KIND:
-        words = f"{source.path}, line 1: the file does not say what it holds; an accelerogram "
+        words = f"{source.path}, line 1: the file does not state its quantity; an accelerogram "
         said = [f"{words}in {chosen[1]} is assumed"]
     if whole(integers.cell(18)) == 1:
         words = f"{source.path}, line 14: the file marks a problem (integer 18); see its comments"

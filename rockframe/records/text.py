@@ -1,4 +1,4 @@
-"""Plain text: columns of numbers, one of them or none the time."""
+"""Plain text: columns of numbers, optionally with a column of times."""
 
 import math
 import re
@@ -31,6 +31,7 @@ from rockframe.records.text_columns import (
     ROWS,
     FirstLines,
     Table,
+    breaks,
     check_last_row,
     find_first_lines,
     looks_like_step,
@@ -84,7 +85,7 @@ def _read(source: Source, request: Request) -> Record:
             return _row_by_row(source, request, table, metadata)
         unsaid = request.every or request.component is None
         if order is None and unsaid and not names and not timed:
-            found = f"{columns} columns without names, in which one record may go on row by row"
+            found = f"{columns} columns without names, which may be one record, row by row"
             expected = f"component={BY_ROWS!r}, or a column such as component={held[0].name!r}"
             raise source.refuse(found=found, expected=expected, line=table.lines[0])
     check_last_row(source, table)
@@ -102,6 +103,7 @@ def _read(source: Source, request: Request) -> Record:
     else:
         time_step = _step_without_times(source, request, table)
         first, warnings = _first_sample(source, request, table)
+        warnings += breaks(source, table)
 
     def samples(column: TextColumn) -> Record:
         values = table.values[first:, column.place].copy()
@@ -124,7 +126,7 @@ def _read(source: Source, request: Request) -> Record:
 
 
 def _row_by_row(source: Source, request: Request, table: Table, metadata: Metadata) -> Record:
-    """Read a record that is wrapped to several values a line."""
+    """Read a record that has several values in each line."""
     columns = table.values.shape[1]
     rest = [one_number(field, source, table.lines[-1]) for field in table.rest]
     values = np.append(table.values.ravel(), rest)
@@ -132,7 +134,7 @@ def _row_by_row(source: Source, request: Request, table: Table, metadata: Metada
         raise too_many(source, values.size, line=table.lines[-1])
     words = f"{values.size} samples, {columns} to a line"
     if request.component is not None and request.component.strip().casefold() != BY_ROWS:
-        found = f"one record of {words}, where numbers go on to the right"
+        found = f"one record of {words}, row by row"
         expected = f"component={BY_ROWS!r}, or no component"
         raise source.refuse(found=found, expected=expected, line=table.lines[0])
     check_end(source, last_fields(source, table.lines[0] - 1), f"{values.size} samples")
@@ -140,8 +142,8 @@ def _row_by_row(source: Source, request: Request, table: Table, metadata: Metada
     single = replace(table, values=values[:, np.newaxis], rest=[])
 
     def samples() -> Record:
-        only = TextColumn(0, "")
-        record = _record(source, request, single, only, time_step, values, metadata, [])
+        only, said = TextColumn(0, ""), breaks(source, table)
+        record = _record(source, request, single, only, time_step, values, metadata, said)
         return replace(record, history=(*record.history, f"{words}, read row by row"))
 
     return choose_component(source, request, [FileComponent(None, samples, aliases=(BY_ROWS,))])
@@ -205,7 +207,7 @@ def _step_without_times(source: Source, request: Request, table: Table) -> float
 
 
 def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, list[str]]:
-    """Tell whether the samples begin in the second row, below the time step, and say so."""
+    """Give the row of the first sample, which may be below a time step, and warnings."""
     requested = request.time_step
     if requested is None or table.values.shape[1] > 1 or stated_step(table.header) is not None:
         return 0, []
@@ -215,7 +217,7 @@ def _first_sample(source: Source, request: Request, table: Table) -> tuple[int, 
     if same and looks_like_step(table):
         return 1, [f"{where} the time step, as time_step says, and not read as a sample"]
     if same:
-        return 0, [f"{where} the time step that was asked for; it is read as a sample"]
+        return 0, [f"{where} the time step in time_step, but it is read as a sample"]
     if looks_like_step(table):
         raise source.refuse(
             found=f"{number} above the samples, which looks like a time step",
@@ -232,7 +234,7 @@ def _step(source: Source, table: Table, scale: float) -> float:
         found = f"the time {after} after {before}"
         expected = f"a uniform time step (here about {step:.6g}); resample the record first"
         raise source.refuse(found=found, expected=expected, line=table.lines[misfit])
-    # 15 digits: a step of 5.3 ms is the float 0.0053, without the rounding of 5.3 * 1e-3
+    # 15 digits, so that 5.3 ms are exactly the float 0.0053, without the error of 5.3 * 1e-3
     seconds = step if math.isclose(scale, 1.0) else float(f"{step * scale:.15g}")
     check_time_step(source, seconds, table.lines[1])
     return seconds

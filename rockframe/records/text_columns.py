@@ -1,12 +1,11 @@
-"""Columns of numbers in text, and what stands above them.
+"""Columns of numbers in text, and the lines above them.
 
-One record wrapped to several values a line and several records in columns look alike where
-columns have no names. They differ in what follows a number: in a wrapped record the number to its
-right, and behind the last of a line the first of the next, all in the same way; in columns the
-number below.
+If columns have no names, one record with several values in each line looks like several records in
+columns. The order of reading differs: in one record a number is followed by that to its right, and
+the last of a line by the first of the next; in columns it is followed by the number below.
 
-The first numbers may be no samples: how many there are, and the time step. Either both in a line
-of their own, in any order, or one under the other::
+The first numbers may be the number of samples and the time step instead of samples. Both are in
+one line, in any order, or one below the other::
 
     1559  0.02
     0.00630   0.00364   0.00099   0.00428   0.00758 ...
@@ -46,6 +45,8 @@ _ANY_NUMBER: Final = re.compile(rf"{NUMBER}|[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?", re
 _WHOLE_OR_COMMA: Final = r"[-+]?\d+(?:,\d+)?(?:[EeDd][-+]?\d+)?"
 _SPREAD: Final = re.compile(rf"{_WHOLE_OR_COMMA}(?:\s+{_WHOLE_OR_COMMA})+", re.ASCII)
 _GLUED_COMMA: Final = re.compile(r"\d,\d")
+# with a decimal point, which dates do not have
+_LIKE_NUMBERS: Final = re.compile(r"[-+\dEeDd*,;\s]*\.[-+.\dEeDd*,;\s]*", re.ASCII)
 _NOT_A_WORD: Final = re.compile(r"[-+.\d*]|(?:nan|inf|infinity)$", re.IGNORECASE)
 
 
@@ -56,10 +57,10 @@ class Table:
     values: Array  # the numbers
     first_fields: list[str]  # first column as printed, with decimal points
     last_fields: list[str]  # the last numbers of the last column, as printed
-    lines: Sequence[int]  # line of each row, from 1
-    header: list[tuple[int, str]]  # line and text of header lines and of comments above the numbers
+    lines: Sequence[int]  # line number of each row, from 1
+    header: list[tuple[int, str]]  # number and text of header lines and comments above the numbers
     separator: str | None  # ``";"``, ``","`` or None for blanks and tabs
-    rest: list[str]  # fields of a last row that has fewer than the others, which end above it
+    rest: list[str]  # fields of an incomplete last row, which is not in `values`
 
 
 def read_table(source: Source, most_columns: int) -> Table:
@@ -107,16 +108,31 @@ def read_table(source: Source, most_columns: int) -> Table:
 
 
 def check_last_row(source: Source, table: Table) -> None:
-    """Refuse columns of which the last row has fewer numbers."""
+    """Refuse columns with an incomplete last row."""
     if table.rest:
         raise _uneven(source, table.rest, table.values.shape[1], table.lines, -1)
+
+
+def breaks(source: Source, table: Table) -> list[str]:
+    """Warn of blank or comment lines among numbers without times, which may be two records."""
+    apart = np.diff(table.lines)
+    places = np.flatnonzero(apart != apart[:1])  # the lines of some files are all two apart
+    if not places.size:
+        return []
+    line = table.lines[int(places[0])] + 1
+    found = next((text for text in source.lines[line - 1 : line + 2] if text.strip()), "")
+    what = quoted_first_line(found) if found.lstrip().startswith(COMMENT_MARKS) else "a blank line"
+    return [
+        f"{source.path}, line {line}: {what} among the numbers, in {places.size} places; the "
+        "numbers before and after it are read as one record"
+    ]
 
 
 def split_header(text: str, separator: str | None) -> list[str]:
     """Split a header line into the names of columns."""
     names = text.lstrip("#% \t")
     if separator is None:
-        # names of columns have blanks inside, so look for wider gaps first
+        # names of columns may contain blanks, so wider gaps are tried first
         wide = [part for part in re.split(r"\t+|\s{2,}|[,;]", names.strip()) if part.strip()]
         return [part.strip() for part in wide] if len(wide) > 1 else names.split()
     return [part.strip().strip("\"'") for part in names.split(separator)]
@@ -200,7 +216,7 @@ def _fields(
 def _uneven(
     source: Source, parts: list[str], columns: int, lines: Sequence[int], place: int
 ) -> RecordError:
-    """Build the error for a row of another length."""
+    """Build the error for a row with another number of fields."""
     found = f"{len(parts)} fields ({quoted_first_line(' '.join(parts))})"
     expected = f"{columns} fields, as in line {lines[0]}"
     return source.refuse(found=found, expected=expected, line=lines[place])
@@ -215,7 +231,7 @@ def _split(text: str, separator: str | None) -> list[str]:
 def _check_header(
     source: Source, header: list[tuple[int, str]], separator: str | None, columns: int
 ) -> None:
-    # a damaged first row must not pass for a header line and be lost
+    # a damaged first row must not be taken for a header line
     for line, text in header:
         if text.startswith(COMMENT_MARKS):
             continue
@@ -227,24 +243,25 @@ def _check_header(
             raise source.refuse(
                 found=quoted_first_line(odd[0] if odd else text), expected="a number", line=line
             )
-        if len(parts) == columns and all(_NOT_A_WORD.match(part) for part in parts):
+        whole_row = len(parts) == columns and all(_NOT_A_WORD.match(part) for part in parts)
+        if whole_row or (len(parts) > 1 and _LIKE_NUMBERS.fullmatch(text)):
             raise source.refuse(found=quoted_first_line(text), expected="numbers", line=line)
 
 
 BY_ROWS: Final = "row by row"
-"""What the argument ``component`` takes for a record that is wrapped."""
+"""Value of the argument ``component`` for one record with several values in each line."""
 
 ROWS: Final = "rows"
 COLUMNS: Final = "columns"
 
 _PIECES: Final = 32
 _FEWEST_ROWS: Final = 64
-"""Pieces of a table of which means are compared; rows below which nothing is said."""
+"""Number of pieces of a table whose means are compared; fewest rows for a decision."""
 
-# Of 112 recorded components, each wrapped into 2 to 12 columns, these bounds know 93 %, and take
-# none for columns. Of 3170 tables of two to twelve components that were recorded together, some
-# on floors of one building, with each sample or each second to twentieth, which is like noise, they
-# take none for one record.
+# These bounds recognise 93 % of 112 recorded components, each written into 2 to 12 columns, and
+# take none of them for columns. They take none of 3170 tables of two to twelve simultaneous
+# components for one record. Some of these are from floors of one building, and some have only each
+# second to twentieth sample, so that they resemble noise.
 _SURE: Final = 5.0  # standard errors
 _SMOOTHER: Final = 0.2
 _ROUGHER: Final = 0.1
@@ -254,7 +271,7 @@ _EQUAL: Final = (0.5, 1.5)
 
 
 def reading_order(values: Array) -> Literal["rows", "columns"] | None:
-    """Tell whether a table is one record, row by row, or one in each column."""
+    """Tell whether a table is one record, row by row, or has one in each column."""
     rows, columns = values.shape
     if rows < _FEWEST_ROWS:
         return None
@@ -266,7 +283,7 @@ def reading_order(values: Array) -> Literal["rows", "columns"] | None:
     along = steps.sum(axis=1)
     if not along.any():
         return None
-    # each row counts as much as any other: the strong ones are few
+    # all rows have the same weight, as those of strong motion are few
     smoothness = _share(down - along, down + along)
     size = (before**2 + after**2).reshape(-1, columns)
     likeness = _share(2.0 * (before * after).reshape(-1, columns), size)
@@ -283,12 +300,12 @@ def reading_order(values: Array) -> Literal["rows", "columns"] | None:
 
 
 def _share(part: Array, whole: Array) -> Array:
-    """Divide, with zero where nothing moves."""
+    """Give the ratio of two arrays; zero where the denominator is zero."""
     return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
 
 
 def _mean(values: Array) -> tuple[Array, Array]:
-    """Give the means of columns, and how many of their standard errors they are from zero."""
+    """Give the means of columns, and their ratios to the standard errors."""
     pieces = np.array([piece.mean(axis=0) for piece in np.array_split(values, _PIECES)])
     mean = pieces.mean(axis=0)
     error = pieces.std(axis=0, ddof=1) / np.sqrt(_PIECES)
@@ -306,13 +323,13 @@ class FirstLines:
     """A number of samples and a time step above the samples."""
 
     count: int  # number of samples
-    time_step: float  # [s]
-    line: int  # where they stand, from 1
+    time_step: float  # time step [s]
+    line: int  # number of their first line, from 1
     data_at: int  # index of the first line of samples, from 0
 
 
 def find_first_lines(source: Source) -> FirstLines | None:
-    """Look for a number of samples and a time step above the samples."""
+    """Find a number of samples and a time step above the samples; None without them."""
     rows: list[tuple[int, list[str]]] = []
     for index, line in enumerate(source.top(3 * HEADER_LINES)):
         fields = line.split()

@@ -1,9 +1,9 @@
-"""What the lines above columns say: names, units, step, peak, and whether it is a spectrum."""
+"""Header lines above columns: names, units, time step, peak, and marks of a spectrum."""
 
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from rockframe.records.checks import Stated
@@ -13,7 +13,7 @@ from rockframe.records.reader import Source, quoted_first_line
 from rockframe.records.text_columns import Table, split_header
 from rockframe.records.unit_names import acceleration_unit, other_quantity
 
-# brackets inside brackets once, as in [1/(s^2)]; no blank can be matched in two ways
+# with one level of inner brackets, as in [1/(s^2)]; no blank can be matched in two ways
 _BRACKETED: Final = re.compile(r"[(\[{]([^()\[\]{}]*(?:\([^()]*\)[^()\[\]{}]*)?)[)\]}]")
 _STATED: Final = re.compile(
     r"\bunits?\s*(?:\bof\b|\bare\b|\bis\b|[:=])\s*[(\[]?\s*([^\s()\[\],;]+)", re.IGNORECASE
@@ -21,6 +21,8 @@ _STATED: Final = re.compile(
 _ACCELERATION_NAME: Final = re.compile(r"\W*(acc|a\b|ag\b)", re.IGNORECASE)
 _TIME_NAME: Final = re.compile(r"\W*(time|t)\b", re.IGNORECASE)
 _OTHER_KIND: Final = re.compile(r"(?<![a-z])(vel|disp)", re.IGNORECASE)
+_LIKE_UNIT: Final = re.compile(r"\S*[/^*²]\S*|m?v(?:olts?)?|counts?|cnts?|lsb", re.IGNORECASE)
+_BESIDE_A: Final = ("v", "d", "u")
 _PERIOD_NAME: Final = re.compile(r"\W*(period|freq|omega|t_?n\b)", re.IGNORECASE)
 _SPECTRAL_NAME: Final = re.compile(
     r"\W*(?:pseudo|p?s_?[adv](?![a-z])|f(?:ourier|as\b|ft\b))|.*spectr", re.IGNORECASE
@@ -40,16 +42,16 @@ _WORDS: Final = re.compile(r"[^\W_]+")
 class TextColumn:
     """A column of accelerations."""
 
-    place: int  # which column, from 0
-    name: str  # as the header has it, without a unit; ``column 2`` if there is none
-    orientation: Orientation = UNKNOWN  # which way it is positive, if its name tells
-    unit: str | None = None  # of this column alone
+    place: int  # index of the column, from 0
+    name: str  # name in the header, without a unit; ``column 2`` if there is none
+    orientation: Orientation = UNKNOWN  # positive direction, if it follows from the name
+    unit: str | None = None  # unit of this column alone
 
 
 def column_names(source: Source, table: Table) -> tuple[list[str], int]:
-    """Find the names of the columns, and refuse those of another quantity or of a spectrum."""
+    """Find the names of the columns; refuse another quantity or a spectrum."""
     columns = table.values.shape[1]
-    names, line = _names(table, columns)
+    names, line = _names(source, table, columns)
     _check_no_spectrum(source, table, names, line)
     if not names or columns > 2:
         return names, line
@@ -67,12 +69,18 @@ def column_names(source: Source, table: Table) -> tuple[list[str], int]:
     return names, line
 
 
-def _names(table: Table, columns: int) -> tuple[list[str], int]:
+def _names(source: Source, table: Table, columns: int) -> tuple[list[str], int]:
     for line, text in reversed(table.header):
         names = split_header(text, table.separator)
         if len(names) == columns and not all(map(_is_unit, names)):
             return names, line
-        if table.separator is None:  # single blanks, and units in brackets behind the names
+        if table.separator is not None and _names_times(names[0]):
+            count = len(split_header(text.rstrip(f" {table.separator}"), table.separator))
+            if 1 < count != columns:
+                found = f"{count} names ({quoted_first_line(text)})"
+                expected = f"{columns}, as there are columns"
+                raise source.refuse(found=found, expected=expected, line=line)
+        if table.separator is None:  # single blanks, and units in brackets after the names
             told = _BRACKETED.sub(lambda match: match.group().replace(" ", ""), text)
             parts = re.sub(r"\s+(?=[(\[])", "", told.lstrip("#% \t")).split()
             if len(parts) == columns > 1 and not all(map(_is_unit, parts)):
@@ -80,9 +88,17 @@ def _names(table: Table, columns: int) -> tuple[list[str], int]:
     return [], 1
 
 
+def _names_times(name: str) -> bool:
+    """Tell whether a name says nothing but that there are times below it."""
+    plain = _BRACKETED.sub("", name).strip().casefold()
+    return plain in ("t", "time") or any(
+        unit.casefold() in TIME_UNITS for unit in in_brackets(name)
+    )
+
+
 def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int) -> None:
     expected = "accelerations over time"
-    # beside a "time" a name such as SV04 is that of a station; beside a "T" it is a spectrum
+    # next to "time" a name such as SV04 is that of a station; next to "T" it is a spectrum
     spectral = _CERTAINLY_SPECTRAL if _IN_TIME.match(names[0] if names else "") else _SPECTRAL_NAME
     if len(names) > 1 and (_PERIOD_NAME.match(names[0]) or all(map(spectral.match, names[1:]))):
         found = f"a spectrum, the columns {names[0]!r}, {names[1]!r}"
@@ -97,7 +113,7 @@ def _check_no_spectrum(source: Source, table: Table, names: list[str], line: int
 
 
 def has_times(table: Table, names: list[str]) -> bool:
-    """Tell whether the first column holds times."""
+    """Tell whether the first column has times."""
     columns = table.values.shape[1]
     if columns == 1:
         return False
@@ -111,36 +127,50 @@ def has_times(table: Table, names: list[str]) -> bool:
 
 
 def is_rising(table: Table) -> bool:
-    """Tell whether the numbers of the first column rise all along."""
+    """Tell whether the numbers of the first column increase throughout."""
     return bool((table.values[1:, 0] > table.values[:-1, 0]).all())
 
 
 def is_direction(name: str) -> bool:
-    """Tell whether the name of a column tells where it points."""
+    """Tell whether the name of a column is a direction."""
     return _direction(name) != UNKNOWN
 
 
 def acceleration_columns(
     source: Source, table: Table, names: list[str], line: int, *, timed: bool
 ) -> list[TextColumn]:
-    """List the columns of accelerations; velocities and displacements beside them are left out."""
+    """List the columns of accelerations, without those of velocities and displacements."""
     columns = table.values.shape[1]
     places = range(1 if timed else 0, columns)
     if not names or len(places) == 1:
-        # of a single one the header as a whole tells the unit
+        # for a single column the unit is searched in the whole header
         return [TextColumn(place, f"column {place + 1}") for place in places]
     units = _unit_row(table, columns)
+    plain_names = [_BRACKETED.sub("", name).strip() or name for name in names]
+    # next to an "a" they are velocity and displacement, not directions
+    letters = _BESIDE_A if "a" in map(str.casefold, plain_names) else ()
     found: list[TextColumn] = []
+    stated: dict[int, str | None] = {}
     for place in places:
         own = [*in_brackets(names[place])[-1:], *units[place : place + 1]]
-        if _is_other(names[place]) or any(map(other_quantity, own)):
+        plain = plain_names[place]
+        if _IN_TIME.match(plain) or any(unit.casefold() in TIME_UNITS for unit in own):
+            if timed:
+                continue
+            found_name = f"the times {names[place]!r} after another column"
+            expected = "the times in the first column"
+            raise source.refuse(found=found_name, expected=expected, line=line)
+        if _is_other(names[place]) or any(map(other_quantity, own)) or plain.casefold() in letters:
             continue
         known = next((unit for unit in own if acceleration_unit(unit) is not None), None)
-        plain = _BRACKETED.sub("", names[place]).strip() or names[place]
         found.append(TextColumn(place, plain, _direction(plain), known))
+        stated[place] = known or next(iter(in_brackets(names[place])[-1:]), None)
     if not found:
         names_found = ", ".join(names[:6])
         raise source.refuse(found=f"the columns {names_found}", expected="accelerations", line=line)
+    if any(column.unit is not None for column in found):
+        # the unit of another column is not that of one whose own is unknown
+        return [replace(column, unit=stated[column.place]) for column in found]
     return found
 
 
@@ -185,6 +215,8 @@ def unit_of_header(
         elif certain and name.casefold() not in TIME_UNITS:
             if other_quantity(name) is not None:
                 other = other or (name, line)
+            elif not known and _LIKE_UNIT.fullmatch(name):
+                return name, line  # not that of a line farther from the numbers
             else:
                 unknown = unknown or (name, line)
     if known:
@@ -198,13 +230,13 @@ def unit_of_header(
 
 
 def in_brackets(text: str) -> list[str]:
-    """Give what stands in brackets."""
+    """Give the texts in brackets."""
     return [name.strip() for name in _BRACKETED.findall(text)]
 
 
 def _unit_candidates(table: Table) -> Iterator[tuple[int, str, bool]]:
-    # nearest the numbers first; in brackets, after the word "unit", or as a field
-    # of its own; "certain" is a name that must be a unit
+    # lines nearest to the numbers first; in brackets, after the word "unit", or as a separate
+    # field; the last value tells whether the name must be a unit
     columns = table.values.shape[1]
     for position, (line, text) in enumerate(reversed(table.header)):
         fields = split_header(text, table.separator)
@@ -247,12 +279,12 @@ _OTHER_TIME_UNITS: Final = ("us", "ns", "min", "minutes", "h", "hours", "hz")
 _STEP: Final = re.compile(
     rf"(?:\bd_?t|\bdelta[ _]?t|\btime[ _-]?(?:step|increment|interval)|"
     rf"\bsampl(?:ing|e)[ _-]?(?:interval|period))\s*(?:[(\[]\s*([a-z]{{1,7}})\.?\s*[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})\s*([a-z]{{0,7}})",
+    rf"\s*[:=]\s*({NUMBER})(?![\d.]*\s*/)\s*([a-z]{{0,7}})",  # 1/200 is not read as 1
     re.IGNORECASE | re.ASCII,
 )
 _RATE: Final = re.compile(
     rf"(?:\bsampl(?:ing|e)[ _-]?(?:rate|frequency))\s*(?:[(\[]\s*(?:hz|sps)\s*[)\]])?"
-    rf"\s*[:=]\s*({NUMBER})",
+    rf"\s*[:=]\s*({NUMBER})(?!\s*kHz)",
     re.IGNORECASE | re.ASCII,
 )
 _PEAK: Final = re.compile(
@@ -263,7 +295,7 @@ _PEAK: Final = re.compile(
 
 
 def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
-    """Find a time step, or a sampling rate, that the header states, and its line."""
+    """Find a time step or a sampling rate in the header; give the step [s] and its line."""
     for line, text in header:
         step, rate = _STEP.search(text), _RATE.search(text)
         if step is not None:
@@ -271,7 +303,7 @@ def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
             named = (before or behind or "s").casefold()
             if named in _OTHER_TIME_UNITS:
                 continue
-            scale = TIME_UNITS.get(named, 1.0)  # another word begins another statement
+            scale = TIME_UNITS.get(named, 1.0)  # any other word is not a unit of the step
             value = float(with_e(printed))
             return float(f"{value * scale:.15g}"), line
         if rate is not None:
@@ -282,7 +314,7 @@ def stated_step(header: list[tuple[int, str]]) -> tuple[float, int] | None:
 
 
 def stated_peak(header: list[tuple[int, str]]) -> Stated | None:
-    """Find a peak that the header states."""
+    """Find a peak in the header."""
     for line, text in header:
         match = _PEAK.search(text)
         if match is not None:

@@ -1,7 +1,7 @@
 """Mexico's standard acceleration file (archivo estandar de aceleracion, ASA).
 
-Spanish keys and values; a value that differs from channel to channel is a list behind
-slashes. The columns, one for each channel, follow below their names::
+The header has Spanish keys and values. Values of single channels are a list after slashes. The
+columns, one for each channel, follow below their names::
 
     ORIENTACION C1-C6 (rumbo;orientacion)  : /V/N90E/N00E
     INTERVALO DE MUESTREO, C1-C6 (s)       : /0.004/0.004/0.004
@@ -37,7 +37,7 @@ _DATA: Final = re.compile(r"^\s*DATOS DE ACELERACION", re.IGNORECASE)
 _UNITS: Final = "UNIDADES DE LOS DATOS"
 _LAYOUT_KEY: Final = "FORMATO DATOS (FORTRAN,10 campos/dato)"
 _LAYOUT: Final = re.compile(r"(\d{1,2})F(\d{1,2})\.\d", re.IGNORECASE)
-# keys of what the header says of each channel
+# keys of values for each channel
 _DIRECTIONS: Final = "ORIENTACION"
 _STEPS: Final = "INTERVALO DE MUESTREO"
 _COUNTS: Final = "NUM. TOTAL DE MUESTRAS"
@@ -115,7 +115,7 @@ def _samples(source: Source, request: Request, header: Keys, place: int, values:
 
 
 def _list(header: Keys, start: str) -> list[tuple[str, int]]:
-    """Give the entries of a list, which may go on in a second line for channels 7 to 12."""
+    """Give the entries of a list, which may continue in a second line for channels 7 to 12."""
     entries: list[tuple[str, int]] = []
     for key, (text, line) in header.items():
         if key.startswith(start) and "MUESTRA" not in key.removeprefix(start):

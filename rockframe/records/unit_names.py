@@ -1,9 +1,9 @@
 """Unit names as record files spell them.
 
-Record files write ``g`` for the acceleration of gravity and ``gal`` for cm/s^2,
-which elsewhere are the gram and the gallon. This table is for the units *of
-records* only; every other argument of rockframe goes through the general unit
-reader. What the file says and what the caller asks for is settled here, too.
+Record files write ``g`` for the acceleration of gravity and ``gal`` for cm/s^2, which are otherwise
+the gram and the gallon. This table is for units *of records* only; all other arguments of rockframe
+are read by :mod:`rockframe.units`. The choice between the unit of the file and the argument
+``unit`` is made here, too.
 """
 
 import math
@@ -23,7 +23,7 @@ if TYPE_CHECKING:  # which imports this module
 class RecordUnit:
     """An acceleration unit of a record."""
 
-    spelling: str  # in the spelling that the general unit reader knows
+    spelling: str  # spelling for `rockframe.units`
     factor: float  # value of one unit [m s^-2]
 
 
@@ -68,14 +68,14 @@ ACCELERATION_UNITS: Final[dict[str, RecordUnit]] = {
         for per_second_squared in _PER_SECOND_SQUARED
     },
 }
-"""Acceleration units by their name: lower case, no blanks, powers with ``^``."""
+"""Acceleration units by name: lower case, no blanks, powers with ``^``."""
 
 OTHER_QUANTITIES: Final[dict[str, str]] = {
     **{f"{length}/{s}": "a velocity" for length in _METRES for s in ("s", "sec")},
     **{f"{length}{s}-1": "a velocity" for length in _METRES for s in ("s", "s^")},
     **dict.fromkeys(_METRES.keys() - {"nm", "um"}, "a displacement"),  # NM is New Mexico, too
 }
-"""Units that name another quantity than an acceleration, spelt as above."""
+"""Units of other quantities than an acceleration, spelt as above."""
 
 
 def normalised(name: str) -> str:
@@ -89,30 +89,30 @@ def normalised(name: str) -> str:
 
 
 def acceleration_unit(name: str) -> RecordUnit | None:
-    """Look up an acceleration unit by the name a record gives it."""
+    """Look up an acceleration unit by its name in a record; None if it is unknown."""
     return ACCELERATION_UNITS.get(normalised(name))
 
 
 def other_quantity(name: str) -> str | None:
-    """Say which other quantity a unit name stands for, if it is known to."""
+    """Give the other quantity of a unit name; None if it is unknown."""
     return OTHER_QUANTITIES.get(normalised(name))
 
 
 def choose_unit(
     source: "Source", request: "Request", name: str | None, line: int | None
 ) -> tuple[RecordUnit, str, list[str]]:
-    """Settle the unit of the samples between the file and the ``unit=`` argument.
+    """Choose the unit of the samples from the file and the ``unit=`` argument.
 
     Parameters
     ----------
     source : Source
         File.
     request : Request
-        What the caller asked for.
+        Arguments of the caller.
     name : str or None
-        Unit that the file names, if any.
+        Unit in the file, if any.
     line : int or None
-        Where it does, from 1.
+        Its line number, from 1.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def choose_unit(
     Raises
     ------
     RecordError
-        The file's unit is unknown or not an acceleration, or there is none.
+        The unit of the file is unknown or not an acceleration, or there is none.
 
     Examples
     --------
@@ -158,7 +158,7 @@ def choose_unit(
 
 
 def argument_unit(unit: object, *, owner: str) -> RecordUnit:
-    """Read the ``unit=`` argument that goes with a record file."""
+    """Read the ``unit=`` argument for a record file."""
     text = str(unit)
     known = acceleration_unit(text)
     if known is not None:

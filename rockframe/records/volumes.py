@@ -1,13 +1,16 @@
-"""Components one after another: text, integers, reals, then data in fixed width. GeoNet and BHRC.
+"""Files of GeoNet and BHRC: components one after another, in fixed width.
+
+Each component has text, integers, reals, then data.
 
 References: W. J. Cousins, "GNS Accelerogram Data Files, Standard Format", GNS Science,
-22 January 2008; GeoNet, "Strong Motion File Formats"; Iran Strong Motion Network, the header of
-the files itself.
+22 January 2008; GeoNet, "Strong Motion File Formats"; Iran Strong Motion Network, the headers of
+the files themselves.
 """
 
 import math
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 from rockframe.records.checks import (
@@ -60,8 +63,8 @@ class _Block:
     """One component."""
 
     source: Source
-    index: int  # of its first line
-    corrected: bool
+    index: int  # index of its first line
+    corrected: bool  # whether the data are corrected
 
     @property
     def text(self) -> list[str]:
@@ -79,7 +82,7 @@ class _Block:
         return self.index + 26
 
     def quantity(self, place: int, what: str) -> int:
-        """Read a number of samples, none or more."""
+        """Read a number of samples, which may be zero."""
         count = self.integers.count(place, f"number of {what} (integer {place})")
         if count < 0:
             line = self.integers.line(place)
@@ -97,7 +100,7 @@ def _read_geonet(source: Source, request: Request) -> Record:
 
 
 def _geonet_blocks(source: Source) -> list[tuple[_Block, int]]:
-    """Find the components, and count their accelerations."""
+    """Find the components and the number of their accelerations."""
     blocks: list[tuple[_Block, int]] = []
     index = next((k for k, line in enumerate(source.top(4)) if _GEONET_FIRST.match(line)), 0)
     while index < len(source.lines):
@@ -119,6 +122,11 @@ def _geonet_blocks(source: Source) -> list[tuple[_Block, int]]:
         if block.corrected:
             counts += [block.quantity(35, "velocities"), block.quantity(36, "displacements")]
         index = block.data + sum(map(_GEONET_LAYOUT.rows, counts))
+        if index > source.last_line:
+            # if a line is missing, the next one takes its place, even one of velocities
+            found = f"the end of the file in component {len(blocks)}"
+            expected = f"{index} lines, with all of its numbers"
+            raise source.refuse(found=found, expected=expected, line=source.last_line)
     return blocks
 
 
@@ -127,7 +135,7 @@ def _geonet_count(block: _Block) -> int:
     said = _COUNT.search("\n".join(block.text))
     announced = None if said is None else int(said[1])
     if not block.corrected and count != announced:
-        # an uncorrected file holds what was digitised
+        # the samples of an uncorrected file are the digitised ones
         digitised = block.quantity(31, "digitised samples")
         if count == 0 or digitised == announced:
             count = digitised
@@ -209,9 +217,9 @@ GEONET: Final = Format(
 
 
 # Iran's Building and Housing Research Center (BHRC), volume 1: three components, each closed by a
-# line ``/&``. Each has thirteen lines of text, seven of integers, seven of reals, which may be
-# cut at column 70, then ten numbers of 13 characters in a line. Real 7, the first of the second
-# line, is the sampling rate.
+# line ``/&``. Each has thirteen lines of text, seven of integers and seven of reals, which may be
+# cut at column 70, then data, ten numbers of 13 characters in a line. Real 7, the first of the
+# second line, is the sampling rate.
 
 _BHRC_FIRST: Final = re.compile(r"^\* VOL(\d)\S{0,4}\s+FILE:\s*(\S{1,20})", re.IGNORECASE)
 _BHRC_NAME: Final = re.compile(r"^COMP\s+(\S{1,12})", re.IGNORECASE)
@@ -236,26 +244,36 @@ def _is_bhrc(source: Source) -> bool:
 
 def _read_bhrc(source: Source, request: Request) -> Record:
     starts: list[int] = []
+    named = 0
     for index, line in enumerate(source.lines):
         if line.startswith("* VOL") and _BHRC_FIRST.match(line[:80]):
             starts.append(index)
+        named += _BHRC_NAME.match(line[:80]) is not None
+        if named > len(starts) > 0:
+            # else it would be skipped like other lines after the samples
+            found = f"{quoted_first_line(line)}, the second below one first line"
+            expected = "a line such as '* VOL1DS FILE:  5526/01' above each component"
+            raise source.refuse(found=found, expected=expected, line=index + 1)
         if len(starts) > _MOST_COMPONENTS:
             expected = f"at most {_MOST_COMPONENTS} components"
             raise source.refuse(found="more", expected=expected, line=index + 1)
     if not starts:
         expected = "a first line such as '* VOL1DS FILE:  5526/01'"
         raise source.refuse(found=quoted_first_line(source.start), expected=expected, line=1)
-    components = [_bhrc_component(source, request, first) for first in starts]
+    components = [
+        _bhrc_component(source, request, first, end)
+        for first, end in pairwise((*starts, len(source.lines)))
+    ]
     return choose_component(source, request, components)
 
 
-def _bhrc_component(source: Source, request: Request, first: int) -> FileComponent:
+def _bhrc_component(source: Source, request: Request, first: int, end: int) -> FileComponent:
     text = source.top(_BHRC_TEXT, first)
     found, line = needed_match(source, _BHRC_NAME, text, "COMP L1", first + 1)
     name = found[1]
     return FileComponent(
         name,
-        lambda: _bhrc_samples(source, request, first, text),
+        lambda: _bhrc_samples(source, request, first, end, text),
         _bhrc_orientation(name, text),
         aliases=(name.rstrip("0123456789"),),
         line=line,
@@ -272,7 +290,9 @@ def _bhrc_orientation(name: str, text: list[str]) -> Orientation:
     return azimuth_of(float(said[0][1 if letter == "L" else 2]))
 
 
-def _bhrc_samples(source: Source, request: Request, first: int, text: list[str]) -> Record:
+def _bhrc_samples(
+    source: Source, request: Request, first: int, end: int, text: list[str]
+) -> Record:
     volume = _BHRC_FIRST.match(text[0])
     if volume is None or volume[1] != "1":
         expected = "uncorrected accelerations (volume 1)"
@@ -294,7 +314,7 @@ def _bhrc_samples(source: Source, request: Request, first: int, text: list[str])
         if station is not None:
             metadata["station_name"] = station[1]
     stated = [Stated(points[2], LENGTH, line)]
-    behind = surplus(source, data + _BHRC_LAYOUT.rows(count), f"line {line}")
+    behind = surplus(source, data + _BHRC_LAYOUT.rows(count), f"line {line}", end)
     return record_of(source, values, time_step, chosen, metadata, stated=stated, behind=behind)
 
 

@@ -1,3 +1,3 @@
-"""Reports on runs: one page that needs no other file."""
+"""Reports on runs and studies: one page that needs no other file."""
 
 from rockframe.reports.writing import report as report

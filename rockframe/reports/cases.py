@@ -1,4 +1,4 @@
-"""The cases of a study in tables: what became of each, and the largest forces on it."""
+"""Tables of the cases of a study: the verdict on each, and its largest forces."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits
 
 MOST_ROWS: Final = 300
-"""Of a table of cases; of more, those that are worst."""
+"""Largest number of rows of a table of cases; of more cases it has the worst ones."""
 _MOTION: Final = (
     "peak_rotation",
     "peak_relative_rotation",
@@ -49,12 +49,12 @@ _FORCES: Final = (
     "peak_point_vertical_acceleration",
 )
 COLUMNS: Final = (*_MOTION, *_FORCES)
-"""Variables of a study that its tables show where it holds them, in this order.
+"""Variables that the tables show if a study has them, in this order.
 
-Of histories, such as reactions, the largest absolute value at the times that were kept.
+Of histories, such as reactions, the largest absolute value at the samples is shown.
 """
 _MOST_COLUMNS: Final = 8
-"""Beside the labels of a case, of a table on a sheet of A4."""
+"""Largest number of columns besides the labels of a case, on a sheet of A4."""
 _OVER_CASES: Final = (("mean", np.nanmean), ("largest", np.nanmax))
 
 
@@ -68,7 +68,7 @@ class _Column:
 
 
 def case_tables(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
-    """Give a row for each case, worst first where there are too many, and what all have."""
+    """Give a row for each case, or for the worst ones if there are too many, and the extremes."""
     count = dataset["status"].size
     order = np.arange(count)
     if count > MOST_ROWS:
@@ -78,13 +78,13 @@ def case_tables(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
         yield _table(dataset, order, columns, units, with_verdict=True)
     forces = _sheets(_columns(dataset, _FORCES, units))
     if forces:
-        yield page.subtitle("Forces, and what was asked for at points")
+        yield page.subtitle("Forces, and motion of points")
     for columns in forces:
         yield _table(dataset, order, columns, units, with_verdict=False)
 
 
 def _sheets(columns: Iterable[_Column]) -> list[list[_Column]]:
-    """Divide columns among tables that fit on a sheet, evenly."""
+    """Divide columns evenly among tables that fit on a sheet."""
     several = list(columns)
     tables = -(-len(several) // _MOST_COLUMNS)
     size = -(-len(several) // max(1, tables))
@@ -92,7 +92,7 @@ def _sheets(columns: Iterable[_Column]) -> list[list[_Column]]:
 
 
 def _verdict(dataset: xr.Dataset, place: int) -> str:
-    """Tell whether the body of a case overturned; of a run that did not end, how it stopped."""
+    """Give the verdict on a case; of a run that was not completed its status."""
     status = dataset["status"]
     one = status.isel(dict.fromkeys(status.dims, 0)).copy()
     one.values = status.to_numpy().ravel()[place]
@@ -110,7 +110,7 @@ def _table(
     *,
     with_verdict: bool,
 ) -> str:
-    """Give a table with some columns, and rows with their mean and largest values below."""
+    """Give a table of columns, with their mean and largest values in the last rows."""
     status = dataset["status"]
     rows = list[list[str]]()
     for place in order.tolist():
@@ -129,7 +129,7 @@ def _table(
 
 
 def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> Iterator[_Column]:
-    """Give the columns of those variables that some case has; of several bodies one for each."""
+    """Give the columns of the variables that any case has; of several bodies one each."""
     status = dataset["status"]
     for name in names:
         if name not in dataset or not set(status.dims) & set(dataset[name].dims):
@@ -153,7 +153,7 @@ def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> I
 
 
 def from_worst(dataset: xr.Dataset) -> np.ndarray:
-    """Order cases with a result: those that overturn, the first before the later ones; the rest."""
+    """Order cases with a result: by time of overturning, then by decreasing peak rotation."""
     share = dataset["peak_relative_rotation"].to_numpy().ravel()
     when = np.nan_to_num(dataset["overturning_time"].to_numpy().ravel(), nan=np.inf)
     fallen = overturned_by(dataset["status"].to_numpy().ravel()) == 1.0

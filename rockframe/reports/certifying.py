@@ -17,24 +17,24 @@ _SAME: Final = 1e-3
 
 
 def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, str]:
-    """Give a result its certificate, by running it again with all runs beside it."""
+    """Add the certificate to a result, by running it again with all runs of a certificate."""
     if "certificate" in dataset.attrs or "proof" in dataset.attrs:
         return dataset, ""
     if system is None:
         return dataset, "the dataset does not describe its system."
     if system.motion is None and dataset.attrs.get("motion") != "none":
         return dataset, (
-            "the dataset does not hold its motion, sample by sample; hand it in, with motion= or "
-            "--motion, or simulate with certify=True, or with 'rockframe certify'."
+            "the dataset does not hold the samples of its motion; pass it by motion= or --motion, "
+            "or simulate with certify=True or with 'rockframe certify'."
         )
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
+            warnings.simplefilter("ignore", RockframeWarning)  # the dataset has them
             again = system.simulate(**arguments_of_run(dataset), outputs=None, certify=True)
     except RockframeError as problem:
         return dataset, f"{problem}."
     if verdict_of(again) != verdict_of(dataset) or not _alike(again, dataset):
-        return dataset, "run again, it ends otherwise; another version or machine made it."
+        return dataset, "a repeated run differs; another version or machine made the result."
     found = {
         name: value for name, value in again.attrs.items() if str(name).startswith("certificate")
     }
@@ -43,7 +43,7 @@ def certified(dataset: xr.Dataset, system: System | None) -> tuple[xr.Dataset, s
 
 
 def _alike(one: xr.Dataset, other: xr.Dataset) -> bool:
-    """Tell whether peaks and instants of overturning are those of one run, but for rounding."""
+    """Whether peaks and times of overturning are equal but for rounding."""
     return all(
         np.isclose(one[name], other[name], rtol=_SAME, atol=0.0, equal_nan=True)
         for name in ("peak_rotation", "overturning_time")

@@ -1,4 +1,4 @@
-"""What a check by a code gives: numbers with their formulas and clauses, verdicts, and its page."""
+"""Result of a check by a code: numbers with their formulas and clauses, verdicts, and its page."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -29,15 +29,15 @@ class CheckedLine:
     Parameters
     ----------
     symbol : str
-        What it is called in the clause.
+        Symbol in the clause.
     value : float
-        In the unit.
+        Value in the unit.
     unit : Unit
-        SI.
+        SI unit.
     words : str
-        What it is, and its formula.
+        Meaning and formula.
     source : str
-        Clause and number of the formula; or where else it is from.
+        Clause and number of the formula, or another source.
 
     Examples
     --------
@@ -58,14 +58,14 @@ class CheckedLine:
         Parameters
         ----------
         units : ReaderUnits, optional
-            Those of a report; SI unless given.
+            Units of a report; SI unless given.
 
         Returns
         -------
         str
         """
         chosen = None if units is None else units.chosen.get(str(self.unit))
-        if chosen is not None:  # with no other prefix
+        if chosen is not None:  # no other prefix of the unit
             return f"{self.value / chosen.size:.6g} {chosen.words}"
         return number_with_unit(self.value, "" if self.unit is Unit.ONE else str(self.unit))
 
@@ -73,12 +73,12 @@ class CheckedLine:
 @proposing
 @dataclass(frozen=True)
 class CheckedVerdict:
-    """What a check says.
+    """A verdict of a check.
 
     Parameters
     ----------
     title : str
-        What is checked.
+        Name of the check.
     passed : bool
         Whether it is satisfied.
     words : str
@@ -106,17 +106,17 @@ class CodeCheck:
     Parameters
     ----------
     title : str
-        Of its page.
+        Title of its page.
     code : str
         The code, with its year.
     lines : mapping of str to tuple of CheckedLine
         The numbers, by the sections of the check.
     verdicts : tuple of CheckedVerdict
-        What follows.
+        The verdicts.
     notes : tuple of str
-        What the check leaves out.
+        What the check neglects.
     scene : str
-        What was checked, in a line.
+        What was checked, in one line.
 
     Examples
     --------
@@ -157,7 +157,7 @@ class CodeCheck:
         Raises
         ------
         ComponentError
-            No number has that symbol.
+            No number has this symbol.
         """
         found = {one.symbol: one.value for several in self.lines.values() for one in several}
         return found[one_of_names(symbol, found, owner="CodeCheck.value", name="symbol")]
@@ -192,7 +192,7 @@ class CodeCheck:
         Parameters
         ----------
         units : ReaderUnits
-            Of the numbers.
+            Units of the numbers.
 
         Yields
         ------
@@ -205,12 +205,12 @@ class CodeCheck:
             yield page.banner(f"{one.title}: {said}", words, kind)
 
     def tables(self, units: ReaderUnits) -> Iterator[tuple[str, list[str]]]:
-        """Give titles and pieces of the numbers, and of what is left out, as pages show them.
+        """Give titles and tables of the numbers, and of what is neglected, as pages show them.
 
         Parameters
         ----------
         units : ReaderUnits
-            Of the numbers.
+            Units of the numbers.
 
         Yields
         ------
@@ -244,11 +244,11 @@ class CodeCheck:
         Parameters
         ----------
         path : str or path
-            Of the file; its name ends in ``.html``. A report that is there is replaced.
+            The file; its name ends in ``.html``. An existing report is replaced.
         units : mapping of str to str, optional
-            Units by what they are of, as for :func:`rockframe.report`.
+            Units by quantity, as for :func:`rockframe.report`.
         overwrite : bool, optional
-            Whether a file that is there is replaced though it is no report.
+            Whether to replace an existing file that is not a report.
 
         Returns
         -------
@@ -258,10 +258,10 @@ class CodeCheck:
         Raises
         ------
         FileError
-            The file cannot be written, its name has another ending, or it is there already and
-            no report.
+            The file cannot be written, its name has another ending, or it exists and is not a
+            report.
         ComponentError, UnitsError
-            Units that are none, or of another kind.
+            Units that cannot be read, or are of another kind.
         """
         chosen = reader_units(units, owner="CodeCheck.report")
         body = [f"<h1>{escape(self.title)}</h1>", page.paragraph(self.code, kind="soft")]
@@ -281,7 +281,7 @@ class CodeCheck:
         Parameters
         ----------
         units : ReaderUnits
-            Of the numbers.
+            Units of the numbers.
 
         Returns
         -------

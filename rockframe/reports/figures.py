@@ -1,4 +1,4 @@
-"""Figures of what functions of `rockframe.plot` return, and their end."""
+"""Figures of what functions of `rockframe.plot` return, and closing them."""
 
 import sys
 from typing import TYPE_CHECKING, Any, cast
@@ -15,7 +15,7 @@ def figure_of(drawn: Any) -> "Figure":
 
 
 def close(figure: "Figure") -> None:
-    """Let go of a figure, which pyplot would keep."""
+    """Close a figure, which pyplot would otherwise keep."""
     pyplot = sys.modules.get("matplotlib.pyplot")
     if pyplot is not None:
         pyplot.close(figure)

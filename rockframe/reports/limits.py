@@ -1,4 +1,4 @@
-"""What the models leave out, for a report; the page "Validity" of the manual tells more."""
+"""What the models neglect, for a report; the page "Validity" of the manual explains it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,11 +10,11 @@ from rockframe.system.parts import Parts
 
 @dataclass(frozen=True)
 class Limit:
-    """Something that models leave out."""
+    """A limit of the models."""
 
     title: str  # as on the page of the manual
-    words: str  # what it means for a result
-    # whether a scene with these parts is concerned
+    words: str  # its meaning for a result
+    # whether it concerns a scene with these parts
     concerns: Callable[[Parts], bool] = lambda _: True
 
 
@@ -27,8 +27,8 @@ FLIGHT: Final = "Flight on rigid ground"
 LIMITS: Final = (
     Limit(
         SLIDING,
-        "The base does not slide while it presses. The verdict holds only where the friction is "
-        "at least what it says is needed.",
+        "The base does not slide while it is in contact. The verdict holds only if the coefficient "
+        "of friction is at least the one that it states as needed.",
         lambda parts: not parts.own,
     ),
     Limit(
@@ -41,18 +41,18 @@ LIMITS: Final = (
     ),
     Limit(
         "Shape",
-        "The body touches with its base only; a corner beyond the base that would come down "
-        "earlier goes through the ground.",
+        "The body makes contact only with its base; a corner outside the base that would reach the "
+        "ground earlier passes through it.",
     ),
     Limit(
         FLIGHT,
-        "A block on rigid ground is not followed into the air; where it would leave the ground "
-        "the run warns.",
+        "Free flight of a block on rigid ground is not modelled; the run warns where the block "
+        "would leave the ground.",
         _on_rigid_ground,
     ),
     Limit(
         "Flight on pads",
-        "In flight the block falls freely at a constant rate of rotation.",
+        "In flight the block falls freely at a constant angular velocity.",
         lambda parts: parts.pads is not None,
     ),
     Limit(
@@ -62,18 +62,19 @@ LIMITS: Final = (
     ),
     Limit(
         "Soil",
-        "The springs of the bed are elastic and do not know of one another: no yielding, no "
+        "The springs of the bed are elastic and independent of one another: no yielding, no "
         "permanent settlement, no strength that limits the pressure, no influence of frequency.",
         lambda parts: parts.soil is not None,
     ),
     Limit(
         "Suction",
-        'Unless the option separation is "pressure", dashpots of the bed may pull at the base.',
+        'Unless the option separation is "pressure", dashpots of the bed may pull the base '
+        "downwards.",
         lambda parts: parts.soil is not None,
     ),
     Limit(
         "Cap",
-        "The cap is rigid and does not slide.",
+        "The cap is rigid, and slides only if the soil has a coefficient of friction.",
         lambda parts: parts.cap is not None,
     ),
     Limit(
@@ -83,8 +84,8 @@ LIMITS: Final = (
     ),
     Limit(
         "Walls",
-        "An impact on a stiff wall lasts no time, and leaves the share of the "
-        "speed that its law says.",
+        "An impact on a stiff wall is instantaneous, and leaves the share of the speed that its "
+        "law of restitution gives.",
         lambda parts: parts.wall is not None,
     ),
     Limit(
@@ -95,23 +96,25 @@ LIMITS: Final = (
     ),
     Limit(
         "Floors",
-        "A motion of a floor is that of an elastic building which does not feel the object.",
+        "The motion of a floor is that of an elastic building, without the effect of the object "
+        "on the building.",
     ),
 )
 """In the order of the page."""
 GENERAL: Final = (
-    "Overturning is the rotation at which the weight no longer brings the body back, the angle "
-    "of unstable equilibrium, not a fall to the ground.",
+    "Overturning means that the rotation reaches the angle of unstable equilibrium, at which the "
+    "weight no longer restores the body, not that the body falls to the ground.",
     "Rocking near that angle is sensitive: small differences of the motion or of a parameter "
-    "grow, so that a single verdict near a boundary says little. The certificate tells how near.",
+    "grow, so that a single verdict near a boundary means little. The certificate shows how near "
+    "the boundary is.",
 )
-"""What holds of every verdict."""
+"""Limits of every verdict."""
 
 
 def limits_of(parts: Parts | None, *, slides: bool = False) -> list[Limit]:
-    """Give the limits that concern a scene; all of them where its parts are not known.
+    """Give the limits that concern a scene; all of them if its parts are not known.
 
-    Equations in which the block slides have it fly, too.
+    Equations in which the block slides include its flight, too.
     """
     found = [one for one in LIMITS if parts is None or one.concerns(parts)]
     return [one for one in found if not (slides and one.title in (SLIDING, FLIGHT))]

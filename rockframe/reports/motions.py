@@ -1,4 +1,4 @@
-"""The motions in a report: what is known of their records, their spectra, and the target."""
+"""The motions in a report: metadata of their records, spectra, and the target."""
 
 import json
 import math
@@ -34,7 +34,7 @@ OF_RECORDS: Final = (
     "scale_factor",
     "peak_ground_acceleration",
 )
-"""Columns of a suite that the table of records shows where they are known, in this order."""
+"""Columns of a suite that the table of records shows if they are known, in this order."""
 Numbers: TypeAlias = NDArray[np.float64]
 _DISTANCES: Final = reader_units({"length": "km"}, owner="report")
 _PERIODS: Final = (np.geomspace(0.05, 5.0, 80), str(Unit.SECOND))
@@ -66,14 +66,14 @@ def aim_of(given: object, motions: object, owner: str) -> Aim | None:
         if target is not None:
             return Aim(target, given["period"].to_numpy())
     msg = (
-        f"{owner}: target must be a TargetSpectrum, or what suite.scaling_to or "
-        f"suite.selection_for found for one at several periods, got {shown(given)}"
+        f"{owner}: target must be a TargetSpectrum, or the result of suite.scaling_to or "
+        f"suite.selection_for for one at several periods, got {shown(given)}"
     )
     raise ComponentError(msg)
 
 
 def motions_of(dataset: xr.Dataset, given: object, owner: str) -> dict[str, GroundMotion]:
-    """Give the motions of a study that can be had: those handed in, else those at hand."""
+    """Give the available motions of a study: those given, else those in the dataset or process."""
     named = _named(given, owner)
     if "motions_json" not in dataset.attrs:
         return named
@@ -101,7 +101,7 @@ def _named(given: object, owner: str) -> dict[str, GroundMotion]:
 def spectra_section(
     motions: Mapping[str, GroundMotion], aim: Aim | None, units: ReaderUnits
 ) -> Iterator[str]:
-    """Show the spectra of motions beside a target, and what is known of each."""
+    """Give the spectra of motions with a target, and what is known of each motion."""
     damping = 0.05 if aim is None else aim.target.damping_ratio
     if aim is not None:
         name = powers_in_html(units.of_sentence(aim.target.name))
@@ -122,7 +122,7 @@ def spectra_section(
     yield page.picture(figure_of(drawn), words)
     misfits: Numbers | None = None
     if aim is not None:
-        # by factors of one: each as it is
+        # scale factors of one, for the misfit of each motion as it is
         found = MotionSuite(motions).scaling_to(
             aim.target, periods=(aim.periods, str(Unit.SECOND)), bounds=(1.0, 1.0)
         )
@@ -135,7 +135,7 @@ def spectra_section(
 
 
 def _of_the_mean(over: Numbers, periods: Numbers) -> str:
-    """Say between what their mean spectrum lies, over the target."""
+    """Write the range of the ratio of the mean spectrum to the target."""
     least, most = int(over.argmin()), int(over.argmax())
     return (
         f"The mean of the motions is {over[least]:.3g} to {over[most]:.3g} times the target, least "
@@ -146,7 +146,7 @@ def _of_the_mean(over: Numbers, periods: Numbers) -> str:
 def _records(
     motions: Mapping[str, GroundMotion], misfits: Numbers | None, units: ReaderUnits
 ) -> str:
-    """Give a row for each motion, with what is known of its record."""
+    """Give a table with a row for each motion, with what is known of its record."""
     known = {
         name: values for name in OF_RECORDS
         if not all(map(_missing, values := [column(name, one) for one in motions.values()]))
@@ -161,7 +161,7 @@ def _records(
 
 
 def record_rows(motion: GroundMotion, units: ReaderUnits) -> list[tuple[str, str]]:
-    """Give what is known of the record of a motion, but for its peak."""
+    """Give what is known of the record of a motion, without its peak."""
     found = ((name, column(name, motion)) for name in OF_RECORDS[:-1])
     return [
         (_head(name, units), _cell(name, value, units))
@@ -175,7 +175,7 @@ def _head(name: str, units: ReaderUnits) -> str:
 
 
 def _of(name: str, units: ReaderUnits) -> ReaderUnits:
-    """Give the units of a column: distances are in km, whatever the lengths of the body are in."""
+    """Give the units of a column: distances are in km, in whichever unit lengths are shown."""
     return _DISTANCES if SCHEMA[name].unit is Unit.METRE else units
 
 

@@ -1,4 +1,4 @@
-"""Pieces of an HTML page that needs no other file and makes no request."""
+"""Elements of an HTML page that needs no other file and no network."""
 
 import base64
 from collections.abc import Iterable, Sequence
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 KIND: Final = FileKind.marked("a report", (".html", ".htm"), generator("report"))
 LARGEST_DRAWING: Final = 1_500_000
-"""Size of a drawing by lines beyond which it is drawn by dots [bytes]."""
+"""Size of a vector drawing above which pixels replace it [bytes]."""
 _LONGEST_VALUE: Final = 14
-"""Letters of a cell beyond which it is words, and may go on in a second line."""
+"""Longest content of a cell that is kept in one line [characters]."""
 _POLICY: Final = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 STYLE: Final = """\
 :root { color-scheme: light dark; --ink: #1c2430; --soft: #5a6675; --paper: #ffffff;
@@ -74,7 +74,7 @@ td.value { white-space: normal; min-width: 5.5rem; }
 
 
 def page(title: str, body: Iterable[str]) -> str:
-    """Put a page together."""
+    """Give the whole page."""
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"{generator('report', __version__)}\n"
@@ -124,7 +124,7 @@ def rows(given: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
 
 
 def columns(given: Iterable[Sequence[str]], head: Sequence[str]) -> str:
-    """Give a table of which all columns but the first hold values."""
+    """Give a table in which all columns but the first hold values."""
     names = "".join(f"<th>{escape(name)}</th>" for name in head)
     lines = [f'<div class="scroll"><table class="many"><thead><tr>{names}</tr></thead><tbody>']
     for first, *others in given:
@@ -148,12 +148,12 @@ def items(given: Iterable[str | tuple[str, str]]) -> str:
 
 
 def verbatim(text: str) -> str:
-    """Give text as it is set."""
+    """Give preformatted text."""
     return f"<pre>{escape(text)}</pre>"
 
 
 def picture(figure: "Figure", words: str) -> str:
-    """Give a figure with what it shows, its image inside the page."""
+    """Give a figure with its caption, with the image inside the page."""
     data, kind = _drawn(figure, "svg"), "svg+xml"
     if len(data) > LARGEST_DRAWING:
         data, kind = _drawn(figure, "png"), "png"
@@ -167,7 +167,7 @@ def _drawn(figure: "Figure", kind: str) -> bytes:
     import matplotlib as mpl
 
     store = BytesIO()
-    # letters as outlines, so that no font is needed; the same bytes every time
+    # letters as outlines, so that no font is needed; a fixed salt for reproducible bytes
     with mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": "rockframe"}):
         metadata = {"Date": None} if kind == "svg" else {}
         figure.savefig(store, format=kind, dpi=160, metadata=metadata)

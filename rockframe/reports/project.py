@@ -1,4 +1,4 @@
-"""What a report is about, and who answers for it."""
+"""The project of a report: its subject, author, conclusion and assumptions."""
 
 import datetime
 import json
@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, nearest, shown
 from rockframe.reports import page
 
 ATTRIBUTE: Final = "project_json"
-"""Of a result, in which the command line keeps what a scene's file says of the project."""
+"""Attribute of a result in which the command line keeps the project of a scene's file."""
 LINES: Final = {
     "object": "Object",
     "place": "Place",
@@ -24,12 +24,12 @@ LINES: Final = {
 CONCLUSION: Final = "conclusion"
 ASSUMPTIONS: Final = "assumptions"
 CHECKS: Final = "checks"
-"""Checks by codes that the command line is asked for, as it takes them with ``--check``."""
+"""Checks by codes for the command line to make, as typed with ``--check``."""
 
 
 @dataclass(frozen=True)
 class Project:
-    """What a report says beside what was computed."""
+    """What a report says besides the results."""
 
     lines: tuple[tuple[str, str], ...] = ()
     conclusion: str = ""
@@ -42,19 +42,19 @@ class Project:
             yield f'<div class="sheet">{page.rows(self.lines)}</div>'
 
     def conclusions(self) -> Iterator[str]:
-        """Give the conclusion, which stands above all verdicts."""
+        """Give the conclusion, which precedes all verdicts."""
         if self.conclusion:
             yield page.banner("Conclusion", self.conclusion, "")
 
     def unchecked(self) -> Iterator[str]:
-        """Say that checks were asked for, of a report that has none."""
+        """Mention requested checks in a report that has none."""
         if self.checks:
-            words = "; hand it in as checks=, or the motions to 'rockframe report'."
-            yield page.banner("Not checked", f"Asked for: {'; '.join(self.checks)}{words}", "doubt")
+            words = "; pass checks=, or the motions to 'rockframe report'."
+            yield page.banner("Not checked", f"Requested: {'; '.join(self.checks)}{words}", "doubt")
 
 
 def project_of(given: object, dataset: xr.Dataset, owner: str) -> Project:
-    """Read a project, or what the result says of it where none is given."""
+    """Read a project, or that of the result if none is given."""
     if given is None:
         given = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}")))
     return read_project(given, owner)
@@ -85,7 +85,7 @@ def read_project(given: object, owner: str) -> Project:
 
 
 def project_json(given: Mapping[str, object], owner: str) -> str:
-    """Write a project, as results keep it."""
+    """Write a project in JSON, as results keep it."""
     read_project(given, owner)
     return json.dumps(given, default=str)
 

@@ -39,12 +39,12 @@ _BANNERS: Final = {
     False: ("Did not overturn", "good"),
     None: ("Not finished", "doubt"),
 }
-"""Title and kind of what became of the body, by the verdict."""
+"""Title and kind of the banner, by the verdict."""
 _CERTIFICATE: Final = [row.name for row in (*CERTIFICATE, *PROOF)]
 _NUMBERS: Final = re.compile(r": |, after ")
-"""Where a verdict goes on from what became of the body to its numbers."""
+"""Ends of the part of a verdict before its numbers."""
 _PANELS: Final = 4
-"""Histories in one figure, which so fits on a page."""
+"""Largest number of histories in one figure, which then fits on a page."""
 _DRAWN: Final = frozenset({
     "ground_acceleration", "vertical_ground_acceleration", "rotation", "relative_rotation",
     "angular_velocity", "vertical_displacement", "relative_vertical_displacement",
@@ -52,9 +52,9 @@ _DRAWN: Final = frozenset({
     "cap_vertical_displacement", "cap_vertical_velocity", "rotation_on_cap",
     "vertical_displacement_on_cap",
 })  # fmt: skip
-"""Histories that the first figure shows, or that follow from what it shows."""
+"""Histories in the first figure, and those that follow from them."""
 _PROVENANCE: Final = (
-    # (attribute, what it is)
+    # (attribute, label)
     ("source", "computed by"),
     ("history", "when"),
     ("model", "model"),
@@ -73,7 +73,7 @@ _PROVENANCE: Final = (
 
 
 def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
-    """Say what became of the body, on top whether it slid."""
+    """Give the verdict; its title says whether the body slid."""
     title, kind = _BANNERS[verdict_of(dataset)]
     words = units.of_sentence(str(dataset.attrs.get("verdict", "")))
     slid = float(slips_of_cases(dataset)) >= LEAST_SLIP
@@ -85,7 +85,7 @@ def outcome_of(dataset: xr.Dataset, units: ReaderUnits) -> str:
 
 
 def verdict_section(dataset: xr.Dataset, reason: str, units: ReaderUnits) -> Iterator[str]:
-    """Say what became of the body, and how sure that is."""
+    """Give the verdict, its proof or certificate, and cautions."""
     yield outcome_of(dataset, units)
     if "proof" in dataset.attrs:
         proved = bool(dataset["verdict_proved"])
@@ -100,14 +100,14 @@ def verdict_section(dataset: xr.Dataset, reason: str, units: ReaderUnits) -> Ite
         title = f"Certificate: the verdict {said}"
         yield page.banner(title, words, "good" if sure and not near else "doubt")
     elif "proof" not in dataset.attrs:
-        yield page.banner("No certificate", reason or "none was asked for.", "doubt")
+        yield page.banner("No certificate", reason or "none was requested.", "doubt")
     cautions = str(dataset.attrs.get("cautions", NONE))
     if cautions != NONE:
         yield page.banner("To be used with care", units.of_sentence(cautions), "doubt")
 
 
 def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits) -> Iterator[str]:
-    """Show the parts with their parameters, and the model."""
+    """Give the parts with their parameters, and the model."""
     if system is not None:
         yield from _drawing(system, units)
         for part in system.parts.structural():
@@ -119,7 +119,7 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits
             if name != "coupling" or system.scene.coupling is not None
         )
     yield page.subtitle("Model")
-    # analyses do not keep the words that a run keeps
+    # runs keep the description of their model, analyses do not
     told = "not described" if system is None else system.describe()
     yield page.verbatim(units.of_sentence(str(dataset.attrs.get("model_description", told))))
 
@@ -127,13 +127,13 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits
 def motion_section(
     dataset: xr.Dataset, found: GroundMotion | None, units: ReaderUnits, aim: Aim | None = None
 ) -> Iterator[str]:
-    """Show the motion, its measures and its figure; and a target beside its spectrum."""
+    """Give the motion, its measures and its figure, and its spectrum with a target."""
     attributes = dict(dataset.attrs)
     if "motion" in attributes:
         attributes["motion"] = motion_words(attributes)
     known = (
         ("motion", "name"),
-        ("motion_history", "made of"),
+        ("motion_history", "made from"),
         ("motion_samples", "samples"),
         ("motion_time_step", "time step [s]"),
         ("motion_sha256", "digest (SHA-256)"),
@@ -146,7 +146,7 @@ def motion_section(
     yield page.rows(table_of(intensity_measures(found), units=units))
     yield page.picture(
         figure_of(plot.spectra(found, units=units.words)),
-        "Ground acceleration along time, its response spectra at 5 % damping and its Fourier "
+        "History of the ground acceleration, its response spectra at 5 % damping and its Fourier "
         "spectrum.",
     )
     if aim is not None:
@@ -155,7 +155,7 @@ def motion_section(
 
 
 def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
-    """Show the scalars of a run, and figures of its histories."""
+    """Give the scalars of a run, and figures of its histories."""
     if dataset.sizes.get("time", 0) > 1 and {*RUN.known, *RUN.needed} <= {*dataset.variables}:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.picture(
@@ -164,11 +164,11 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
             ),
             "From the top: ground acceleration; rotation"
             f"{'' if angle else ' over the overturning angle'}; vertical displacement; "
-            f"{'slip; ' if has_slid(dataset) else ''}and what bears.",
+            f"{'slip; ' if has_slid(dataset) else ''}and contact states.",
         )
         yield from _histories(dataset, units)
     else:
-        yield page.paragraph("The run kept no histories of its motion to draw.", kind="soft")
+        yield page.paragraph("The result has no histories of the motion to draw.", kind="soft")
     names = [str(name) for name in dataset.data_vars if str(name) not in _CERTIFICATE]
     yield page.rows(table_of(dataset, names, units))
     if any(name in dataset for name in _CERTIFICATE):
@@ -177,34 +177,34 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
 
 
 def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
-    """Show forces, accelerations and all else that was asked for along time."""
+    """Give figures and extremes of forces, accelerations and other requested histories."""
     beside = [name for name in histories_of(dataset) if name not in _DRAWN]
     below = [name for name in beside if name not in SLIPS or not has_slid(dataset)]
     for start in range(0, len(below), _PANELS):
         names = below[start : start + _PANELS]
         drawn = plot.response(dataset, panels=tuple(names), units=units.words, title=" ")
         words = ", ".join(name.replace("_", " ") for name in names)
-        yield page.picture(figure_of(drawn), f"{words[0].upper()}{words[1:]}, along time.")
+        yield page.picture(figure_of(drawn), f"{words[0].upper()}{words[1:]}, over time.")
     if beside:
-        yield page.subtitle("Least and greatest values along time")
+        yield page.subtitle("Least and greatest values over time")
         rows = extremes_of(dataset, beside, units)
         yield page.columns(rows, ("", "unit", "least", "greatest"))
 
 
 def limits_section(system: System | None, assumptions: Sequence[str] = ()) -> Iterator[str]:
-    """Say what was assumed, and what the model leaves out."""
+    """Give the assumptions, and what the model neglects."""
     parts = None if system is None else system.parts
     slides = system is not None and system.setting.slides
     left_out = [(one.title, one.words) for one in limits_of(parts, slides=slides)]
     if assumptions:
         yield page.subtitle("Assumptions")
         yield page.items(assumptions)
-        yield page.subtitle("What the model leaves out")
+        yield page.subtitle("What the model neglects")
     yield page.items([*GENERAL, *left_out])
 
 
 def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
-    """Say where the numbers come from, so that they can be had again."""
+    """Give the provenance of the numbers, from which they can be computed again."""
     attributes = dataset.attrs
     told = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
     versions = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
@@ -212,12 +212,12 @@ def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
     yield page.rows([*([("file", file)] if file else []), *told, ("page written by", here)])
     for name, words in (("system_json", "System"), ("run_json", "Run")):
         if name in attributes:
-            yield page.subtitle(f"{words}, as it can be built again")
+            yield page.subtitle(f"{words}, to be built again")
             yield page.verbatim(_indented(str(attributes[name])))
 
 
 def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
-    """Draw the scene, where it can be drawn."""
+    """Draw the scene, if it can be drawn."""
     draw = getattr(plot, "scene", None)
     if draw is None:
         return
@@ -229,7 +229,7 @@ def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
 
 
 def _part(title: str, part: Component, units: ReaderUnits) -> Iterator[str]:
-    """Show a part with its parameters, and the parts that it is made of."""
+    """Give a part with its parameters, and the parts of which it consists."""
     yield page.subtitle(title)
     yield page.rows(_parameters(part, units))
     described: dict[str, Any] = dict(part.to_dict())
@@ -249,7 +249,7 @@ def _made_of(value: object) -> list[Any]:
 
 
 def _parameters(part: Component, units: ReaderUnits) -> list[tuple[str, str, str]]:
-    """Give the parameters of a part as they were given, with what they are."""
+    """Give the parameters of a part as they were given, with their meanings."""
     declared = part.declared()
     return [
         (
@@ -268,7 +268,7 @@ def _meaning(one: Declared[Any, Any]) -> str:
 
 
 def _value(given: object, units: ReaderUnits) -> str:
-    """Write a number with its unit, as far as six digits show it; several in a row."""
+    """Write a number with its unit, in six digits; the numbers of a list with commas."""
     if isinstance(given, list):
         return ", ".join(_value(one, units) for one in given)
     number, blank, unit = units.of_sentence(str(given)).partition(" ")

@@ -1,4 +1,4 @@
-"""The sections of a report on many runs, or on what was read from them."""
+"""The sections of a report on many runs, or on an analysis of them."""
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -27,7 +27,7 @@ from rockframe.units.shown import ReaderUnits
 def verdict_sections(
     dataset: xr.Dataset, about: Project, units: ReaderUnits, by_codes: Sequence[str] = ()
 ) -> Iterator[str]:
-    """Give what became of all cases, what codes say, their figure and their numbers."""
+    """Give the verdicts of the cases and of codes, the figure, and the numbers."""
     sentence = cases_verdict(dataset)
     verdict = [*about.conclusions()]
     if sentence:
@@ -51,7 +51,7 @@ def worst_case(
 ) -> tuple[str, tuple[xr.Dataset, System] | None]:
     """Simulate the case of a sweep that comes nearest to overturning, or overturns first.
 
-    Gives its words, which say why where it cannot be simulated; none of what has no cases.
+    Gives a sentence on it, or on why it cannot be simulated; an empty one if there are no cases.
     """
     order = from_worst(dataset) if _is_sweep(dataset) else np.array([])
     if not order.size:
@@ -60,7 +60,7 @@ def worst_case(
     labels = labels_at(dataset, place)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RockframeWarning)  # they stand in the dataset
+            warnings.simplefilter("ignore", RockframeWarning)  # the dataset has them
             found = case(dataset, motions=motions or None, **labels)
             run = found.simulate(outputs=())
     except RockframeError as problem:  # such as without its motions
@@ -72,7 +72,7 @@ def worst_case(
 
 
 def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
-    """Simulate a case that was picked out of a sweep; without its motion give what it holds."""
+    """Simulate a case that was picked out of a sweep; without its motion give it as it is."""
     try:
         return case(dataset, motions=motions).simulate(outputs=())
     except (SchemaError, StudyError):
@@ -80,7 +80,7 @@ def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
             raise
     own = system_of_case(dataset, owner="report").assembly.json
     found = dataset.assign_attrs(system_json=own, verdict=cases_verdict(dataset))
-    del found.attrs["axes_json"]  # it is no part of a sweep any more
+    del found.attrs["axes_json"]  # it is a run of its own now
     return found
 
 
@@ -91,7 +91,7 @@ def under(system: System, motion: GroundMotion) -> System:
 
 
 def is_study(dataset: xr.Dataset) -> bool:
-    """Tell many runs, and what was read from them."""
+    """Whether a dataset has many runs, or is an analysis of them."""
     try:
         return _is_sweep(dataset) or drawn_by(dataset) != "response"
     except SchemaError:
@@ -116,7 +116,7 @@ def _banner(dataset: xr.Dataset, sentence: str) -> str:
 
 
 def _slid(dataset: xr.Dataset) -> str:
-    """Say whether cases slid, or would slide; nothing where none did."""
+    """Write whether cases slid, or would slide; an empty text if none did."""
     if (slips_of_cases(dataset) >= LEAST_SLIP).any():
         return ", some slid"
     would = dataset.get("would_slide")
@@ -124,7 +124,7 @@ def _slid(dataset: xr.Dataset) -> str:
 
 
 def _figure(dataset: xr.Dataset, units: ReaderUnits) -> str:
-    """Draw a dataset with the function that draws its kind, where there is one."""
+    """Draw a dataset with the function for its kind, if there is one."""
     try:
         drawn = getattr(plot, drawn_by(dataset))(dataset, units=units.words)
     except RockframeError:
@@ -133,7 +133,7 @@ def _figure(dataset: xr.Dataset, units: ReaderUnits) -> str:
 
 
 def _of_limit_states(dataset: xr.Dataset, units: ReaderUnits) -> list[str]:
-    """Give all numbers of a fragility, a row for each and a column for each limit state."""
+    """Give all numbers of a fragility: a row for each, with a column for each limit state."""
     dim = "limit_state"
     if dim not in dataset.dims:
         return []

@@ -13,13 +13,13 @@ from rockframe.units.shown import ReaderUnits
 
 _TRUTH: Final = {"true": "yes", "false": "no"}
 _GAP: Final = re.compile(r", NaN if .*$")
-"""What a number says where there is none; here it is the word "none"."""
+"""Words on missing numbers in their meanings; reports write "none" for these."""
 _POWER: Final = re.compile(r"\^(-?\d+)")
 _ABOVE: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
-    """Write a scalar with its unit; flags and truth values as words."""
+    """Write a scalar with its unit, and flags and truth values as words."""
     value: Any = variable.item()
     if "flag_values" in variable.attrs:
         places = np.atleast_1d(variable.attrs["flag_values"]).tolist()
@@ -40,7 +40,7 @@ def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
 
 
 def number_in(value: float, unit: str, units: ReaderUnits) -> str:
-    """Write a number, given in an SI unit, in the reader's unit, without it."""
+    """Write a number of an SI unit in the reader's unit, without the unit."""
     return "-" if math.isnan(value) else f"{value / units.of(unit).size + 0.0:.4g}"
 
 
@@ -51,7 +51,7 @@ def column_head(name: str, unit: str, units: ReaderUnits) -> str:
 
 
 def powers_in_html(unit: str) -> str:
-    """Write the powers of a unit above the line."""
+    """Write the powers of a unit as superscript characters."""
     return _POWER.sub(lambda power: power[1].translate(_ABOVE), unit)
 
 
@@ -73,7 +73,7 @@ def table_of(
 def extremes_of(
     dataset: xr.Dataset, names: Iterable[str], units: ReaderUnits
 ) -> list[tuple[str, str, str, str]]:
-    """Give name, unit, least and largest value of histories; of several points, of each."""
+    """Give the name, unit, least and largest value of histories, at each of several points."""
     found = list[tuple[str, str, str, str]]()
     for name in names:
         values = dataset[name]

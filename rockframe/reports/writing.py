@@ -1,4 +1,4 @@
-"""``report``: a page on a run or a study, to file or to print."""
+"""``report``: a page on a run or a study, to keep or to print."""
 
 import warnings
 from collections.abc import Iterable, Mapping
@@ -48,75 +48,75 @@ def report(
     certify: bool = True,
     overwrite: bool = False,
 ) -> Path:
-    """Write a page on a run or a study: one HTML file that needs no other and makes no request.
+    """Write a page on a run or a study: one HTML file that needs no other file and no network.
 
     Parameters
     ----------
     response : xarray.Dataset
         The result of one run; or of a sweep over motions or axes, a fragility, a critical scale
         or another analysis; also one read back from a file. A case that was picked out of a sweep
-        is simulated again, where its motion can be had.
+        is simulated again if its motion is available.
     path : str or path
-        Of the file; its name ends in ``.html``. A report that is there is replaced. Browsers
-        print it to PDF, on sheets of A4.
+        The file; its name ends in ``.html``. An existing report is replaced. Browsers print it to
+        PDF, on sheets of A4.
     title : str, optional
-        Of the page; the model unless given.
+        Title of the page; the model unless given.
     project : mapping of str to str, optional
-        What the report is about: ``object``, ``place``, ``number``, ``date``, ``author``,
-        ``checked_by``; ``conclusion``, a sentence that stands first; ``assumptions``, a list of
-        texts; and ``checks``, those that the command line is to make. What the file of the scene
-        says in its table ``[project]`` unless given.
+        Subject of the report: ``object``, ``place``, ``number``, ``date``, ``author``,
+        ``checked_by``; ``conclusion``, a sentence at the head of the verdict; ``assumptions``, a
+        list of texts; and ``checks``, those for the command line to make. By default the table
+        ``[project]`` in the file of the scene.
     units : mapping of str to str, optional
-        Units of all numbers by what they are of, such as ``{"force": "kN", "angle": "deg"}``:
-        length, mass, angle, angular_velocity, velocity, acceleration, force, moment, energy,
-        stiffness. SI units unless given.
+        Units of all numbers by quantity, such as ``{"force": "kN", "angle": "deg"}``: length,
+        mass, angle, angular_velocity, velocity, acceleration, force, moment, energy, stiffness.
+        SI units unless given.
     motion : GroundMotion, optional
-        That the run was made with, where the dataset does not hold it sample by sample: for its
-        certificate, its measures and its figure.
+        The motion of the run, for its certificate, its measures and its figure, if the dataset
+        does not hold its samples.
     motions : GroundMotion, or iterable or mapping of them, optional
-        Those of a study, such as a suite, where neither the dataset nor this process has them: for
-        their spectra, and for the worst case.
+        The motions of a study, such as a suite, for their spectra and for the worst case, if
+        neither the dataset nor this process has them.
     target : TargetSpectrum or xarray.Dataset, optional
-        What the spectra of the motions are shown beside; or what
-        :meth:`rockframe.MotionSuite.scaling_to` or :meth:`rockframe.MotionSuite.selection_for`
-        found for it, whose periods they are compared at. The target that `motions` were scaled to
-        unless given.
+        Target of the spectra of the motions; or the result of
+        :meth:`rockframe.MotionSuite.scaling_to` or :meth:`rockframe.MotionSuite.selection_for` for
+        a target, with the periods of the comparison. By default the target to which `motions`
+        were scaled.
     checks : CodeCheck, or iterable of them, optional
-        Checks by codes (:mod:`rockframe.codes`): their verdicts stand beside that of the motion,
-        their numbers with the clauses in a section each.
+        Checks by codes (:mod:`rockframe.codes`): their verdicts follow that of the run, their
+        numbers and clauses are in a section each.
     certify : bool, optional
-        Whether a run without a certificate is certified first, where the dataset holds its
-        motion; that takes some hundred runs.
+        Whether a run without a certificate is certified first, if the dataset holds its motion;
+        that takes some hundred runs.
     overwrite : bool, optional
-        Whether a file that is there is replaced though it is no report.
+        Whether to replace an existing file that is not a report.
 
     Returns
     -------
     Path
         The file. Of a run it shows the verdict with its certificate, the scene, the motion and its
-        measures, all scalars, all histories, limits of validity, and where the numbers come from;
-        of a sweep, all cases in a table with mean and largest values, a figure, and the worst case
-        as a run; of other analyses, their figure and numbers. Of a study also the records that
-        can be had, with their spectra beside the target.
+        measures, all scalars, all histories, limits of validity, and provenance. Of a sweep it
+        shows all cases in a table with mean and largest values, a figure, and the worst case as a
+        run; of other analyses their figure and numbers. Of a study it also shows the available
+        records, with their spectra and the target.
 
     Raises
     ------
     SchemaError
-        No dataset, or none of rockframe.
+        Not a dataset, or not one of rockframe.
     ComponentError
-        A title that is no text, an unknown entry of the project, units that are none, motions that
-        are none or not those of the study, a target or checks that are none, or `certify` or
-        `overwrite` neither True nor False.
+        An argument that cannot be read: a title that is not text, an unknown entry of the project,
+        motions that are not those of the study, units, a target or checks of another type, or
+        `certify` or `overwrite` neither True nor False.
     UnitsError
         A unit of another kind.
     FileError
-        The file cannot be written, its name has another ending, it is there already and no
-        report, or it is the one that the result was read from.
+        The file cannot be written, its name has another ending, it exists and is not a report, or
+        the result was read from it.
 
     Warns
     -----
     RockframeWarning
-        There is a target, and no motion at hand whose spectrum could stand beside it.
+        There is a target, but no motion is available whose spectrum could be compared with it.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def report(
     """
     dataset = checked_dataset(response, owner=_OWNER)
     _check(dataset)
-    # dimensions that xarray stacked: their levels are coordinates as others
+    # dimensions that xarray stacked: make their levels ordinary coordinates
     stacked = [
         dim for dim, index in dataset.indexes.items() if dim in dataset.dims and index.nlevels > 1
     ]
@@ -148,18 +148,18 @@ def report(
     by_codes = by_codes or [*about.unchecked()]
     source = str(dataset.encoding.get("source", ""))
     read = [source] if source else []
-    # before the certificate, which takes a while
+    # checked before the certificate, which takes a while
     checked_path(path, page.KIND, overwrite=overwrite, read=read)
-    run, picked = _is_run(dataset), "axes_json" in dataset.attrs  # out of a sweep
+    run, picked = _is_run(dataset), "axes_json" in dataset.attrs  # picked out of a sweep
     if motion is not None and not run:
-        msg = f"{_OWNER}: found motion=, which is that of a run; those of a study are motions="
+        msg = f"{_OWNER}: found motion=, which is for a run; a study takes motions="
         raise ComponentError(msg)
     if motions is not None and run and not picked and not aim_of(None, motions, _OWNER):
-        msg = f"{_OWNER}: found motions=, which are those of a study; that of a run is motion="
+        msg = f"{_OWNER}: found motions=, which is for a study; a run takes motion="
         raise ComponentError(msg)
     if run and picked:
         dataset = studies.run_of_case(dataset, motions if motion is None else motion)
-        motion = None  # the run has its own, which is scaled
+        motion = None  # the run has its own motion, which is scaled
     if _is_run(dataset):
         model = str(dataset.attrs["model"])
         heading = given or f"Rocking response, {model} model"
@@ -205,9 +205,9 @@ def report(
 
 
 def _tell_of_target(target: object, found: object, name: str) -> None:
-    """Warn of a target beside which there is no spectrum, for no motion is at hand."""
+    """Warn of a target without spectra to compare, since no motion is available."""
     if target is not None and not found:
-        msg = f"{_OWNER}: no motion is at hand to be drawn beside the target; give it, by {name}="
+        msg = f"{_OWNER}: no motion is available to compare with the target; pass it by {name}="
         warn(msg, RockframeWarning)
 
 
@@ -218,7 +218,7 @@ def _of_run(
     units: ReaderUnits,
     aim: Aim | None = None,
 ) -> list[str]:
-    """Give the sections on a run behind its verdict."""
+    """Give the sections on a run that follow its verdict."""
     motion = None if system is None else system.motion
     return [
         page.section("Response", sections.response_section(dataset, units)),
@@ -229,7 +229,7 @@ def _of_run(
 
 
 def _check(dataset: xr.Dataset) -> None:
-    """Refuse what is no result of a run or of a study."""
+    """Raise on a dataset that is not the result of a run or of a study."""
     if not _is_run(dataset) and not studies.is_study(dataset):
         title = dataset.attrs.get("title", "without a title")
         msg = (
@@ -240,7 +240,7 @@ def _check(dataset: xr.Dataset) -> None:
 
 
 def _is_run(dataset: xr.Dataset) -> bool:
-    """Tell the result of one run."""
+    """Whether a dataset is the result of one run."""
     needed = ("overturned", "status", "peak_rotation")
     return "model" in dataset.attrs and all(
         name in dataset and not dataset[name].dims for name in needed
@@ -255,10 +255,10 @@ def _heading(words: str, made: list[str]) -> str:
 
 
 def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | None:
-    """Give the system of a result with its motion; None where that cannot be had."""
+    """Give the system of a result with its motion; None if the result does not describe it."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RecordWarning)  # said in words on the page
+            warnings.simplefilter("ignore", RecordWarning)  # the page mentions them
             found = System.from_dataset(dataset)
     except SchemaError:
         return None
@@ -268,7 +268,7 @@ def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | Non
     if digest != motion.sha256 or dataset.attrs.get("motion") == "none":
         msg = (
             f"{_OWNER}: found a motion ({motion.name}) whose samples are not those of the run "
-            f"({dataset.attrs.get('motion')}); expected the one that it was made with"
+            f"({dataset.attrs.get('motion')}); expected the motion of the run"
         )
         raise SchemaError(msg)
     return studies.under(found, motion)

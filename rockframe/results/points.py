@@ -109,6 +109,7 @@ class Placement:
     restraint: Restraint  # which point of the base is held horizontally
     # rotation and both displacements of each body of a stack; None at rest
     bodies: Array | None = None
+    broken: frozenset[int] = frozenset()  # restrainers that do not hold any more, from 0
 
     def block(self, points: Array) -> Array:
         """Give where points of the block are, or of anything that is one body with it."""

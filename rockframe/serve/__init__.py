@@ -1,3 +1,3 @@
-"""A local page on which a scene is tried: sliders, verdict, player, and the scene as a file."""
+"""A local page to try a scene: sliders, the verdict, an animation, and the scene as a file."""
 
 from rockframe.serve.server import Server as Server

@@ -1,4 +1,4 @@
-"""What the page can change, between which ends, and the tables of a scene's file that it makes."""
+"""The controls of the page with their ranges, and the file of a scene that they make."""
 
 import json
 import math
@@ -17,16 +17,16 @@ class Control:
     """A number that the page can change."""
 
     name: str  # in the address of the page
-    words: str  # on the page
+    words: str  # label on the page
     low: float
     high: float
     step: float  # of the slider
     default: float
     unit: str = ""
-    of: str = ""  # the choice that it belongs to; always shown unless given
+    of: str = ""  # the choice to which it belongs; always shown unless given
 
     def quantity(self, value: float) -> str | float:
-        """Write a value as components and files take it."""
+        """Write a value for components and files."""
         return f"{value:.15g} {self.unit}" if self.unit else value
 
 
@@ -40,19 +40,19 @@ CONTROLS: Final = (
     Control("soil_damping", "Damping ratio of the bed", 0.0, 1.0, 0.01, 0.2, "", "soil"),
     Control("amplitude", "Amplitude of the pulse", 0.1, 20.0, 0.1, 5.0, "m/s^2", "pulse"),
     Control("frequency", "Frequency of the pulse", 0.1, 10.0, 0.1, 2.0, "Hz", "pulse"),
-    Control("scale", "Times the motion", 0.1, 10.0, 0.1, 1.0),
+    Control("scale", "Scale of the motion", 0.1, 10.0, 0.1, 1.0),
 )
 BASES: Final = {"ground": "Rigid ground", "pads": "Pads", "soil": "Bed of springs"}
 PULSES: Final = {"sine_pulse": "Sine pulse", "cosine_pulse": "Cosine pulse"}
 EXAMPLE: Final = "example"
 RECORD: Final = "record"
 FREE_VIBRATION: Final = "5 s"
-"""Behind the motion, so that the body comes to rest or falls."""
+"""Time after the motion, in which the body comes to rest or overturns."""
 
 
 @dataclass(frozen=True)
 class NamedRecord:
-    """The record that was handed to the server, and the keys that read it."""
+    """The record of the server, and the keys for reading it in a scene's file."""
 
     motion: GroundMotion
     keys: Mapping[str, Any]
@@ -60,7 +60,7 @@ class NamedRecord:
 
 @dataclass(frozen=True)
 class Tried:
-    """What was chosen on the page."""
+    """The choices on the page."""
 
     numbers: Mapping[str, float]
     base: str
@@ -87,7 +87,7 @@ class Tried:
         return System(*(kinds[name](**table) for name, table in self.parts.items()))
 
     def ground(self, record: NamedRecord | None) -> GroundMotion:
-        """Make the motion."""
+        """Make the motion of the ground."""
         if self.motion == RECORD and record is not None:
             motion = record.motion
         elif self.motion == EXAMPLE:
@@ -121,13 +121,13 @@ class Tried:
 
 
 def motions_with(record: NamedRecord | None) -> dict[str, str]:
-    """Give the motions that can be chosen, the record first where there is one."""
+    """Give the motions of the page; the record, if there is one, comes first."""
     own = {} if record is None else {RECORD: f"Record: {record.motion.name}"}
     return {**own, **PULSES, EXAMPLE: "Example record (Loma Prieta 1989)"}
 
 
 def read_choice(given: Mapping[str, str], record: NamedRecord | None) -> tuple[Tried, list[str]]:
-    """Read what the address of the page says; what is wrong keeps its default, and is told."""
+    """Read the address of the page; a wrong value is reported and replaced by its default."""
     faults = [*_unknown(given)]
     numbers = dict[str, float]()
     for control in CONTROLS:
@@ -173,5 +173,5 @@ def _number(control: Control, text: str) -> float:
 
 
 def _toml(value: object) -> str:
-    """Write a value; texts of TOML have the escapes of JSON."""
+    """Write a value in TOML, whose texts have the escapes of JSON."""
     return json.dumps(value, ensure_ascii=False)

@@ -1,5 +1,5 @@
 "use strict";
-// the page works without this script, by its button; with it, every change is run at once
+// without this script the page works by its button; with it, every change runs immediately
 const form = document.querySelector("form"), outcome = document.getElementById("outcome");
 let waiting = 0, asked = 0;
 
@@ -19,9 +19,9 @@ async function run() {
     text = await (await fetch(`/outcome?${query}`)).text();
   } catch {
     text = '<div class="verdict doubt" role="alert"><strong>No answer</strong>'
-      + "The server has ended, or cannot be reached; start it again by: rockframe serve</div>";
+      + "The server has ended or cannot be reached; start it again by: rockframe serve</div>";
   }
-  if (number !== asked) return; // another change came since
+  if (number !== asked) return; // there is a newer change
   outcome.innerHTML = text;
   outcome.setAttribute("aria-busy", "false");
   history.replaceState(null, "", `/?${query}`);

@@ -1,4 +1,4 @@
-"""The page of the server, in HTML: the form, and what became of the body."""
+"""The page of the server, in HTML: the form and the outcome of a run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ SCRIPT: Final = "/page.js"
 
 @dataclass(frozen=True)
 class ToldOutcome:
-    """What a choice came to."""
+    """The outcome of a run, for the page."""
 
     title: str
     verdict: str
@@ -27,7 +27,7 @@ class ToldOutcome:
 
 
 def trial_page(choice: Tried, motions: Mapping[str, str], outcome: str) -> str:
-    """Give the page."""
+    """Give the whole page."""
     groups = [
         _group("Body", "", _numbers(choice, "", without=("scale",))),
         _group("Base", "", [_choices("base", BASES, choice.base)]),
@@ -52,13 +52,13 @@ def trial_page(choice: Tried, motions: Mapping[str, str], outcome: str) -> str:
 
 
 def told(outcome: ToldOutcome, query: Mapping[str, str]) -> str:
-    """Give the part of the page that tells what became of the body."""
+    """Give the part of the page with the outcome of a run."""
     address = escape(urlencode(query))
     cautions = "".join(banner("To be used with care", one, "doubt") for one in outcome.warnings)
     return (
         banner(outcome.title, outcome.verdict, outcome.kind)
         + cautions
-        + f'\n<iframe title="The run as it moves" src="/player?{address}"></iframe>\n'
+        + f'\n<iframe title="Animation of the run" src="/player?{address}"></iframe>\n'
         "<h2>The scene as a file</h2>\n"
         f'<p><a href="/scene.toml?{address}" download="scene.toml">scene.toml</a>, for '
         "<code>rockframe run scene.toml</code></p>\n"
@@ -67,7 +67,7 @@ def told(outcome: ToldOutcome, query: Mapping[str, str]) -> str:
 
 
 def refused(faults: Sequence[str]) -> str:
-    """Give the part of the page that tells what is wrong."""
+    """Give the part of the page with faults."""
     lines = "".join(f"<li>{escape(one)}</li>" for one in faults)
     return f'<div class="verdict doubt" role="alert"><strong>Not run</strong><ul>{lines}</ul></div>'
 

@@ -1,4 +1,4 @@
-"""The server of the page: this machine alone, and no file but the page's own."""
+"""The server of the page, for this machine only and for no files but those of the page."""
 
 import sys
 import threading
@@ -25,12 +25,12 @@ from rockframe.serve.controls import (
 from rockframe.serve.page import ToldOutcome
 
 LOOPBACK: Final = "127.0.0.1"
-_MOVING: Final = "The run as it moves"
+_MOVING: Final = "Animation of the run"
 _KEPT: Final = 16
-"""Outcomes, so that the player of a run is there when its frame asks for it."""
+"""Number of outcomes kept, so that the player of a run is available when its frame loads."""
 _MOST_FIELDS: Final = 50
 _PATIENCE: Final = 30.0
-"""With a client that says nothing [s]."""
+"""Time after which a silent client is disconnected [s]."""
 _TITLES: Final = {True: ("Overturned", "bad"), False: ("Did not overturn", "good"),
                   None: ("Not finished", "doubt")}  # fmt: skip
 _HTML: Final = "text/html; charset=utf-8"
@@ -51,14 +51,14 @@ class Server(ThreadingHTTPServer):
     Parameters
     ----------
     port : int
-        Of the loopback address; 0 takes one that is free.
+        Port of the loopback address; 0 for a free one.
     record : NamedRecord, optional
-        That can be chosen beside pulses and the example.
+        A record to offer besides pulses and the example.
 
     Raises
     ------
     ComponentError
-        The port is none, or is taken.
+        The port is out of range, or is in use.
     """
 
     daemon_threads = True
@@ -84,7 +84,7 @@ class Server(ThreadingHTTPServer):
         return f"http://{LOOPBACK}:{self.server_port}/"
 
     def outcome(self, choice: Tried) -> ToldOutcome:
-        """Simulate a choice, or remember what it came to."""
+        """Simulate a choice, or give its outcome if it is kept."""
         toml = choice.toml(self.record)
         with self._lock:
             if toml not in self._outcomes:
@@ -137,7 +137,7 @@ class _Handler(BaseHTTPRequestHandler):
         answers[target.path](query)
 
     def _is_own(self) -> bool:
-        """Tell a request of the page from one that another page has a browser make."""
+        """Whether a request is from the page itself, not from another page in the browser."""
         hosts = self.server.hosts
         origin = self.headers.get("Origin")
         return (
@@ -154,7 +154,7 @@ class _Handler(BaseHTTPRequestHandler):
             return choice, self.server.outcome(choice), []
         except RockframeError as problem:
             return choice, None, [str(problem)]
-        except Exception:  # the page stays, whatever fails behind it
+        except Exception:  # the page remains, whatever fails in a run
             traceback.print_exc()
             return choice, None, [f"The run failed: {PLEASE_REPORT}."]
 
@@ -201,8 +201,8 @@ class _Handler(BaseHTTPRequestHandler):
         self.end_headers()
         try:
             self.wfile.write(data)
-        except (BrokenPipeError, ConnectionResetError):  # the browser asks for something newer
+        except (BrokenPipeError, ConnectionResetError):  # the browser has a newer request
             self.close_connection = True
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002
-        """Say nothing of requests."""
+        """Log no requests."""

@@ -215,7 +215,8 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     gaps = [f"at {start}" if start == end else f"from {start} to {end}" for start, end in ends]
     if gaps:
         text += f", stands again {_listed(gaps)}"
-    text += f"; looked at {len(scales)} scales up to {number(largest)}"
+    plural = "" if len(scales) == 1 else "s"
+    text += f"; looked at {len(scales)} scale{plural} up to {number(largest)}"
     if not math.isnan(gap := found.largest_gap):  # to two digits, rounded up
         size = 10.0 ** (math.floor(math.log10(gap)) - 1)
         text += f", at most {math.ceil(gap / size - _ROUNDING) * size:.2g} apart"

@@ -15,7 +15,6 @@ from rockframe.results.outcome import Generic, overturns
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODIES, RESTRAINERS
 from rockframe.results.variables.requests import FORCE_SCALARS, POINT_PEAKS
-from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME, unit_behind
 from rockframe.studies.confidence import SHARE
 from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
@@ -245,8 +244,3 @@ def _instead(runs: xr.Dataset, name: str) -> str:
     numbers = [str(one) for one, values in runs.items() if values.dtype.kind in "fiu"]
     near = nearest(name, numbers)
     return f"{near}; they have {', '.join(numbers)}"
-
-
-def interrupted(runs: xr.Dataset) -> bool:
-    """Give whether some cases have not been run."""
-    return bool(np.any(runs["status"].to_numpy() == RunStatus.NOT_RUN))

@@ -29,7 +29,6 @@ from rockframe.results.table import head
 from rockframe.results.variables.studies import CASE, MOTION
 from rockframe.signals.arrays import Array
 from rockframe.simulation.system import System
-from rockframe.studies.limit_states import interrupted
 from rockframe.studies.sweeps.arguments import ExecutionArguments, SweepArguments
 from rockframe.studies.sweeps.axes import numbers_of
 from rockframe.studies.sweeps.case import remember
@@ -73,10 +72,11 @@ class Rounds:
         *,
         further: bool = False,
         **more: Any,
-    ) -> xr.Dataset:
+    ) -> tuple[xr.Dataset, bool]:
         """Run the cases of a part, which names a folder and stands on the bar.
 
-        Parts after the first are not recorded for :func:`rockframe.case`, as no result has them.
+        Tell, too, whether this was not interrupted. Parts after the first are not recorded for
+        :func:`rockframe.case`, as no result has them.
         """
         asked = {**self.run, **more}
         means: Any = {name: asked.pop(name, None) for name in ExecutionArguments.__annotations__}
@@ -323,14 +323,15 @@ class Lines:
         """
         with rounds_of(self.scene, self.motions, self.run, owner=self.owner) as rounds:
             heads = self._heads(slice(None))
-            scan = rounds.sweep("scan", heads or None, {SCALE: scales}, **kept)
+            scan, whole = rounds.sweep("scan", heads or None, {SCALE: scales}, **kept)
 
             def look(part: str, wanted: Wanted) -> tuple[Array, bool]:
-                runs, shown = self._at(rounds, part, wanted)
-                return shown, not interrupted(runs)
+                return self._at(rounds, part, wanted)[1:]
 
             with collected_warnings() as said:
-                seen, whole = self._seen(rounds, scan, resolution)
+                seen = self._seen(scan)
+                if whole and resolution is not None:
+                    seen, whole = self._finer(rounds, seen, resolution)
                 found = brackets_of(seen.scales, seen.verdicts)
                 if whole:
                     found, whole = narrowed(found, look, width=width)
@@ -343,39 +344,43 @@ class Lines:
             warn(msg, SolverWarning)
         return FollowedLines(scan, seen, found)
 
-    def _seen(
-        self, rounds: Rounds, runs: xr.Dataset, resolution: float | None
-    ) -> tuple[Seen, bool]:
-        """Give the verdicts of the scan and of runs in its gaps, and whether all were made."""
+    def _seen(self, runs: xr.Dataset) -> Seen:
+        """Give the verdicts of the scan."""
         order = ([CASE] if self.columns else []) + [MOTION, SCALE]
         shown = self.verdicts(runs).transpose(VERDICT, *order).to_numpy()
         shown = shown.reshape(len(shown), -1, shown.shape[-1])
         moves = _moves(runs).transpose(*order).to_numpy().reshape(shown.shape[1:])
-        seen = Seen(runs[SCALE].to_numpy(), shown, moves)
+        return Seen(runs[SCALE].to_numpy(), shown, moves)
+
+    def _finer(self, rounds: Rounds, seen: Seen, resolution: float) -> tuple[Seen, bool]:
+        """Run the gaps below the first exceedance; tell, too, whether this was not interrupted."""
         tried = set[tuple[int, float]]()
         for number in range(1, MOST_ROUNDS + 1):
-            if interrupted(runs):
-                return seen, False
             # where a middle has no verdict the gap stays
-            wanted = [] if resolution is None else sorted({*seen.middles(resolution)} - tried)
+            wanted = sorted({*seen.middles(resolution)} - tried)
             if not wanted:
                 break
             tried |= set(wanted)
             try:
-                runs, shown = self._at(rounds, f"finer {number:02d}", wanted)
+                runs, shown, whole = self._at(rounds, f"finer {number:02d}", wanted)
             except KeyboardInterrupt:  # between the runs of two rounds
                 return seen, False
             seen = seen.joined(wanted, shown, _moves(runs).to_numpy())
+            if not whole:
+                return seen, False
         return seen, True
 
-    def _at(self, rounds: Rounds, part: str, wanted: Wanted) -> tuple[xr.Dataset, Array]:
-        """Run each line at its own scale; give runs, and verdicts over verdicts and cases."""
+    def _at(self, rounds: Rounds, part: str, wanted: Wanted) -> tuple[xr.Dataset, Array, bool]:
+        """Run each line at its own scale.
+
+        Give runs, verdicts over verdicts and cases, and whether this was not interrupted.
+        """
         lines, scales = (np.array(each) for each in zip(*wanted, strict=True))
         names = list(self.motions)
         rows, motions = np.divmod(lines, len(names))
         cases = {**self._heads(rows), SCALE: scales, MOTION: [names[k] for k in motions]}
-        runs = rounds.sweep(part, cases, {}, further=True)
-        return runs, self.verdicts(runs).transpose(VERDICT, CASE).to_numpy()
+        runs, whole = rounds.sweep(part, cases, {}, further=True)
+        return runs, self.verdicts(runs).transpose(VERDICT, CASE).to_numpy(), whole
 
     def _heads(self, rows: Any) -> dict[str, Any]:
         columns = self.columns.items()

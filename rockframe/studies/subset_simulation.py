@@ -40,7 +40,6 @@ from rockframe.studies.limit_states import (
     STATES,
     LimitState,
     demands,
-    interrupted,
     limit_states,
     states_json,
 )
@@ -257,9 +256,9 @@ class _Sampler:
         """Run samples, a row of normal scores each; give their demands."""
         table = self._table(scores)
         with collected_warnings() if self.runs else nullcontext([]) as said:
-            runs = self._rounds.sweep(part, table, {}, further=bool(self.runs))
+            runs, whole = self._rounds.sweep(part, table, {}, further=bool(self.runs))
         self.said += said
-        if interrupted(runs):
+        if not whole:
             raise KeyboardInterrupt
         # of a function that makes the motion the sweep has a dimension for it
         self.runs.append(runs.isel({MOTION: 0}) if MOTION in runs.dims else runs)

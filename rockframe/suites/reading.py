@@ -78,10 +78,10 @@ def read_suite(
     Notes
     -----
     Components are put together by the record sequence number of PEER, in names of files or in
-    the table ``_SearchResults.csv``, else by station and earthquake, else by their file. What
-    the table tells is added to the metadata. Nothing is unpacked to the disk; an archive may
-    expand to a hundred times its size, archives in archives in it are not opened, and links and
-    names that lead out of it are not followed.
+    the table ``_SearchResults.csv``, else by station and earthquake, else by their file. Of files
+    of the same content the first is read. What the table tells is added to the metadata. Nothing
+    is unpacked to the disk; an archive may expand to a hundred times its size, archives in
+    archives in it are not opened, and links and names that lead out of it are not followed.
 
     Examples
     --------
@@ -123,6 +123,7 @@ class _Found:
         self._tables: dict[str, Known] = {}
         self._table = ""
         self._labels: set[str] = set()
+        self._digests: dict[str, str] = {}
 
     def take(self, file: Source, format_name: str | None, request: Request) -> None:
         """Read a file, or record why it was not read."""
@@ -147,6 +148,12 @@ class _Found:
             found = f"found what the reader fails at ({type(problem).__name__}: {problem})"
             self.left.append(Unread(file.path, f"{found[:300]}; {PLEASE_REPORT}"))
             return
+        if file.sha256 in self._digests:
+            found = f"found a copy of {self._digests[file.sha256]}; expected each record once"
+            self.left.append(Unread(file.path, found))
+            return
+        self._digests[file.sha256] = file.path
+        number = len(self._digests)
         for reading in readings:
             if isinstance(reading, RecordError):
                 self.left.append(Unread.of(reading.path, reading))
@@ -160,10 +167,10 @@ class _Found:
                 history=reading.history,
                 recipe=reading.recipe,
             )
-            component = RecordedComponent(label, motion, reading.vertical, file.path)
-            number = number_in_name(reading.file)
-            if number is not None:
-                component.known["record_sequence_number"] = number
+            component = RecordedComponent(label, motion, reading.vertical, file.path, number)
+            sequence_number = number_in_name(reading.file)
+            if sequence_number is not None:
+                component.known["record_sequence_number"] = sequence_number
             self.components.append(component)
 
     def complete(self) -> None:

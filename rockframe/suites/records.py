@@ -32,7 +32,8 @@ class RecordedComponent:
     label: str  # its label in the suite
     motion: GroundMotion  # as it was read
     vertical: bool  # whether it is vertical
-    file: str  # path of its file, for messages
+    file: str  # path of its file
+    number: int  # of its file, among those that were read: paths of files in memory are alike
     # what is known of it besides; added to
     known: dict[str, str | float | int] = field(default_factory=dict)
 
@@ -68,7 +69,7 @@ def assign_records(components: Iterable[RecordedComponent]) -> list[str]:
     remarks: list[str] = []
     names: set[str] = set()
     lonely: list[RecordedComponent] = []
-    for members in _sorted_by(held, _record_of):
+    for members in _sorted_by(held, _group_of):
         for part in [members] if _is_one(members) else _sorted_by(members, _instrument):
             record = unique = _name_of(part[0])
             if record in names:
@@ -144,12 +145,20 @@ def _named_by_station(metadata: Mapping[str, Any]) -> bool:
     return bool(station) and "record_sequence_number" not in metadata
 
 
+def _group_of(component: RecordedComponent) -> tuple[str, ...]:
+    """Give what components that belong together share."""
+    metadata = component.metadata
+    if "record_sequence_number" in metadata or _named_by_station(metadata):
+        return _record_of(component)
+    # files in two folders may have one name
+    return (str(component.number),)
+
+
 def _record_of(component: RecordedComponent) -> tuple[str, ...]:
     metadata = component.metadata
     if "record_sequence_number" in metadata:
         return (f"RSN{metadata['record_sequence_number']}",)
     if not _named_by_station(metadata):
-        # all components of one file have its path
         return (component.file.replace("\\", "/").rsplit("/", 1)[-1],)
     where = [metadata[key] for key in _WHERE if metadata.get(key)] or [metadata["station_name"]]
     return (*_event(component), *map(str, where))
@@ -173,7 +182,7 @@ def _event(component: RecordedComponent) -> tuple[str, ...]:
 def _event_and_station(component: RecordedComponent) -> tuple[str, ...]:
     metadata = component.metadata
     if not _named_by_station(metadata):
-        return _record_of(component)
+        return _group_of(component)
     station = metadata.get("station") or metadata.get("station_name")
     return (*_event(component), str(metadata.get("network", "")), str(station))
 

@@ -1,7 +1,7 @@
 """Scaling motions so that their spectra fit a target."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import xarray as xr
@@ -12,7 +12,6 @@ from rockframe.proposals import hinted
 from rockframe.results.joining import MOTION
 from rockframe.results.schema import SCHEMA, build_dataset, without_fill_values
 from rockframe.suites.candidates import Candidates, Combination, candidates_of
-from rockframe.suites.columns import column
 from rockframe.suites.target import TargetSpectrum
 from rockframe.suites.value import LabelledMotions
 from rockframe.units import QuantityLike, RatioLike, Unit
@@ -210,12 +209,7 @@ def scaled_motions(
 
 def _scaled(motion: "GroundMotion", factor: float, misfit: float) -> "GroundMotion":
     done = motion.scaled(factor)
-    before: Any = column("scale_factor", motion)
-    metadata = {
-        **done.metadata,
-        "scale_factor": factor * (1.0 if before is None else before),
-        "spectral_misfit": misfit,
-    }
+    metadata = {**done.metadata, "spectral_misfit": misfit}
     return type(done)(
         done.si, name=done.name, metadata=metadata, history=done.history, recipe=done.recipe
     )

@@ -9,6 +9,7 @@ from rockframe.components import (
     Load,
     PointLink,
     RearWall,
+    Restrainer,
     RigidGround,
     Stack,
     Tendon,
@@ -278,6 +279,15 @@ def unused(parts: Parts, options: Options) -> list[str]:
             f"sliding={str(options.sliding)!r} changes nothing here: no base has a friction that "
             "could be compared with what is needed"
         )
+    for name, link in zip(link_labels(parts.links), parts.links, strict=True):
+        if not isinstance(link, Restrainer | Tendon) or link.si.strength is not None:
+            continue
+        ends = getattr(link.si, "breaking_elongation", None) is not None
+        if not ends and link.si.brittle != type(link).brittle.default:
+            told.append(
+                f"{name}: brittle={link.si.brittle} changes nothing: it has no strength at which "
+                "it could break or yield"
+            )
     return told
 
 

@@ -1,4 +1,4 @@
-"""The boundary where quantities become floats, and units of which kinds there are."""
+"""Conversion of quantities to floats in SI units, and the kinds of quantities with their units."""
 
 from rockframe.units.kinds import (
     ACCELERATION,

@@ -1,4 +1,4 @@
-"""Units, and kinds of quantities that arguments ask for."""
+"""Units, and the kinds of quantities that arguments need."""
 
 import math
 from collections.abc import Callable
@@ -8,7 +8,7 @@ from typing import Final
 
 
 class Unit(StrEnum):
-    """Every unit string of rockframe, in a spelling that pint and UDUNITS both parse."""
+    """All units of rockframe, in a spelling that both pint and UDUNITS parse."""
 
     ONE = "1"
     METRE = "m"
@@ -36,23 +36,23 @@ class Unit(StrEnum):
 
 @dataclass(frozen=True)
 class Measure:
-    """A kind of physical quantity that an argument can ask for."""
+    """A kind of physical quantity, for arguments."""
 
     name: str
     unit: Unit
     example: str
 
     def like(self, example: str) -> "Measure":
-        """Give the same kind with an example that fits other arguments."""
+        """Give the same kind with another example."""
         return replace(self, example=example)
 
     @property
     def needed(self) -> str:
-        """The kind, and that it needs a unit, in words."""
+        """The kind in words, with the need of a unit."""
         return self.name if self.unit == Unit.ONE else f"{self.name} with a unit"
 
     def example_of(self, argument: str) -> str:
-        """Show how an argument is written."""
+        """Give an example of how to write an argument."""
         written = self.example if self.unit == Unit.ONE else repr(self.example)
         return f"write for example {argument}={written}"
 
@@ -82,14 +82,14 @@ SUBGRADE_MODULUS: Final = Measure("a subgrade modulus", Unit.PASCAL_PER_METRE, "
 
 @dataclass(frozen=True)
 class Condition:
-    """A range that a value must lie in, with the words for it."""
+    """A range in which a value must lie, with its description."""
 
     words: str
     holds: Callable[[float], bool]
     hint: Callable[[str], str] = lambda _: ""
-    """What may have been meant by a value outside it, as it was written."""
+    """Gives a hint, for the message, from the text of a value outside the range."""
     bounds: tuple[float, float] = (-math.inf, math.inf)
-    """Numbers between which the range lies, for searches inside it."""
+    """Lower and upper bound of the range, for searches in it."""
 
 
 POSITIVE: Final = Condition("greater than zero", lambda value: value > 0.0, bounds=(0.0, math.inf))

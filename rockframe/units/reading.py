@@ -1,8 +1,7 @@
-"""The unit boundary: quantities come in here and leave as SI floats.
+"""Conversion of quantities to floats in SI units.
 
-The shared pint application registry is used and never changed; quantities are
-converted by unit *strings*, so that a registry swapped by another library
-does no harm.
+The application registry of pint is used and never changed. Quantities are converted by unit
+*strings*, so that a registry that another library has set works, too.
 """
 
 import math
@@ -44,8 +43,8 @@ _RAISED: Final = re.compile(r"(?<=[^\W\d_)])⁻?[⁰¹²³⁴-⁹]+")
 _PLAIN: Final = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _POWER: Final = r"(?:\d{1,2}(?:\.\d*)?|\.\d+)(?![\d^])"
 _UNIT: Final = re.compile(
-    # a second number, or a power of a number or of a power: no unit has them, and pint would
-    # compute even 9**9**9; nor is there a sign before anything but a power
+    # excluded are a second number and a power of a number or of a power: no unit has them, and
+    # pint would even compute 9**9**9; a sign may only precede a power
     rf"(?:[^\W\d_]|_\d*|\^(?:[-+]?{_POWER}|\([-+]{_POWER}\))|[\s*·()%‰°]|/(?!/)|\.(?!\d))*"
 )
 _NAME: Final = re.compile(r"[^\W\d]\w*")
@@ -53,13 +52,13 @@ _FOREIGN: Final = re.compile(r"[^\s\w*/^()%‰°·.+⁻-]")
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
-    """Part a text behind the number that it begins with."""
+    """Split a text after the number with which it begins."""
     parts = _NUMBER_AND_UNIT.fullmatch(text)
     return None if parts is None else (parts["number"], parts["unit"])
 
 
 def _plain_spelling(text: str) -> str | None:
-    """Write a text that is one number and a unit so that pint drops nothing; None of any other."""
+    """Rewrite one number and its unit so that pint drops nothing; None for any other text."""
     parts = number_and_unit(text)
     if parts is None or not _is_unit(parts[1]):
         return None
@@ -67,16 +66,16 @@ def _plain_spelling(text: str) -> str | None:
 
 
 def foreign_sign(text: str) -> str | None:
-    """Give the first sign that stands neither in numbers nor in units; None if all do."""
+    """Give the first character that occurs in no number and no unit; None if there is none."""
     found = _FOREIGN.search(text.translate(_SPELLINGS))
     if found is not None:
         return found[0]
-    # such as a fraction or a lowered figure, which are digits and yet in no number
+    # for example a fraction or a subscript: numeric characters that occur in no number
     return next((one for one in text if one.isnumeric() and not _is_figure(one)), None)
 
 
 def _is_unit(text: str) -> bool:
-    """Whether all of a text is names, powers, and what parts them; the names may be unknown."""
+    """Whether a text consists of names, powers and operators; the names may be unknown."""
     plain = _DOUBLE_STAR.sub("^", text.translate(_SPELLINGS))
     plain = _RAISED.sub(lambda power: f"^{power[0].translate(_PLAIN)}", plain)
     names: list[str] = _NAME.findall(plain)
@@ -89,7 +88,7 @@ def _is_figure(one: str) -> bool:
 
 _HEAVY: Final = (Unit.KILOGRAM, Unit.KILOGRAM_PER_CUBIC_METRE, Unit.KILOGRAM_METRE_SQUARED)
 _MISREAD_UNITS: Final = (
-    # (pattern, unit it is meant for or None for any, what is wrong)
+    # (pattern, unit of the argument or None for any, what is wrong)
     (
         r"(?<![A-Za-z_])g(?![A-Za-z_0])",
         Unit.METRE_PER_SECOND_SQUARED,
@@ -110,13 +109,13 @@ _MISREAD_UNITS: Final = (
 )
 _SHARE: Final = (Unit.NEWTON_SECOND_PER_METRE, Unit.PASCAL_SECOND)
 AMBIGUOUS: Final = (
-    # read without complaint by pint, but rarely as the writer meant it
+    # pint reads these without an error, but rarely as they were meant
     (r",", "a decimal point is written '.'; pint would drop the comma"),
     (
         r"\d\s*[^\w\s,.*/^()%+-]\s*\d",
-        "a number is written without marks between its digits; pint would multiply its parts",
+        "a number is written without separators; pint would multiply its parts",
     ),
-    (r"\d\s+[\d.]", "a number is written without blanks; pint would multiply its parts"),
+    (r"\d\s+[\d.]", "a number is written without spaces; pint would multiply its parts"),
     (
         r"\b(?:k|M|G|kilo|mega|giga)?tons?\b",
         "'ton' is the US short ton of 907 kg; the tonne is written 't'",
@@ -125,19 +124,19 @@ AMBIGUOUS: Final = (
 
 
 def foreign_quantity(value: object) -> str:
-    """Say how a quantity of another library is given; nothing of what is none."""
+    """Say how to convert a quantity of another library; nothing for other values."""
     home = type(value).__module__.partition(".")[0]
     unit = next((one for one in ("unit", "units") if hasattr(value, one)), None)
     if unit is None or not hasattr(value, "value"):
         return ""
     return (
-        f"a {type(value).__name__} of {home}, and quantities are those of pint; give it as "
+        f"a {type(value).__name__} of {home}, where one of pint is needed; give it as "
         f"(q.value, str(q.{unit}))"
     )
 
 
 def _weight(given: Any, text: str, measure: Measure) -> str:
-    """Say how a mass follows from a weight, where one was given for a mass."""
+    """Say how to get the mass from a weight that was given for a mass."""
     if measure.unit not in _HEAVY:
         return ""
     over_g = re.search(r"/\s*g$", text)  # read as the gram
@@ -151,7 +150,7 @@ def _weight(given: Any, text: str, measure: Measure) -> str:
 
 
 def _subgrade(given: Any, measure: Measure) -> str:
-    """Say what takes the subgrade modulus, where it was given for the stiffness of a bed."""
+    """Name the constructor for a subgrade modulus that was given for the stiffness of a bed."""
     if measure.unit != BED_STIFFNESS.unit or not _is_in(given, SUBGRADE_MODULUS.unit):
         return ""
     return (
@@ -161,7 +160,7 @@ def _subgrade(given: Any, measure: Measure) -> str:
 
 
 def _period(given: Any, measure: Measure) -> str:
-    """Give the frequency of a period, where that was given."""
+    """Give the frequency of a period that was given for a frequency."""
     if measure.unit != FREQUENCY.unit or not _is_in(given, TIME.unit):
         return ""
     seconds = float(given.m_as(str(TIME.unit)))
@@ -178,7 +177,7 @@ def _is_in(given: Any, unit: Unit) -> bool:
 
 
 def misread(text: str, measure: Measure) -> str:
-    """Say which unit was probably meant; nothing if that is not known."""
+    """Say which unit was probably meant, or nothing."""
     parts = number_and_unit(text)
     text = text if parts is None else parts[1]
     for pattern, meant, words in _MISREAD_UNITS:
@@ -186,27 +185,27 @@ def misread(text: str, measure: Measure) -> str:
             return f" ({words})"
     sign = foreign_sign(text)
     if sign is not None:
-        return f" ({shown(sign)} stands in no number and in no unit)"
+        return f" ({shown(sign)} occurs in no number and in no unit)"
     if measure is FREQUENCY:
         return " (a cyclic frequency in Hz is the angular one in rad/s divided by 2 pi)"
     return ""
 
 
 Quantity: TypeAlias = PlainQuantity[Any]
-"""Every quantity of pint, as type checkers can follow it; pint.Quantity itself they cannot."""
+"""Every quantity of pint, in a form that type checkers can follow, unlike pint.Quantity."""
 QuantityLike: TypeAlias = str | Quantity | tuple[float, str]
 """A number with its unit: ``"0.3 m"``, ``(0.3, "m")``, or a Quantity of pint."""
 RatioLike: TypeAlias = float | str | Quantity
 
 _GRAVITY: Final = ("g", "G", "g0")
-"""What engineers write for the acceleration of gravity, which pint calls ``g_0``."""
+"""Usual symbols of the acceleration of gravity, which pint calls ``g_0``."""
 _EXACT: Final = Context(prec=64)
 _LONGEST_FACTOR: Final = 12
-"""Letters of a unit's size that is a number of few digits, such as 0.45359237 kg or 1e-06 m."""
+"""Characters of a conversion factor that is exact with few digits: 0.45359237 kg, 1e-06 m."""
 
 
 def quantity(value: "float | npt.NDArray[np.float64]", measure: Measure) -> Quantity:
-    """Give an SI value its unit back."""
+    """Make a quantity of pint from a value in SI units."""
     return pint.get_application_registry().Quantity(value, str(measure.unit))
 
 
@@ -218,7 +217,7 @@ def to_si(
     name: str,
     condition: "Condition | None" = None,
 ) -> float:
-    """Convert an argument to a float in SI units, or refuse it."""
+    """Convert an argument to a float in SI units; raise an error if that is not possible."""
     number = _in_si(value, measure)
     if number is not None:
         return _check_value(number, value, condition, owner=owner, name=name)
@@ -235,7 +234,7 @@ def to_si(
 
 
 def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> list[float]:
-    """Convert an argument that holds one or several values to floats in SI units."""
+    """Convert an argument of one or several values to floats in SI units."""
     if isinstance(value, str):
         return [to_si(value, measure, owner=owner, name=name)]
     if isinstance(value, pint.Quantity):
@@ -256,7 +255,7 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
                 read = products(floats, factor)
                 if all(map(math.isfinite, read)):
                     return read
-            return [  # of other values, which may be wrong
+            return [  # one by one, with checks
                 _times(number, factor, items[1], owner=owner, name=name) for number in numbers
             ]
         return [to_si(item, measure, owner=owner, name=name) for item in items]
@@ -264,7 +263,7 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
 
 
 def own_unit(values: object) -> str | None:
-    """Give the unit that an array has itself: a Quantity, or one with an attribute ``units``."""
+    """Give the unit that an array carries: as a Quantity, or in an attribute ``units``."""
     held: Any = values
     for one in (held, getattr(held, "data", None)):
         if isinstance(one, pint.Quantity):
@@ -274,7 +273,7 @@ def own_unit(values: object) -> str | None:
 
 
 def check_own_unit(values: object, unit: str, *, owner: str, name: str) -> None:
-    """Refuse an array that has another unit itself than the one that is given beside it."""
+    """Refuse an array that carries another unit than the one given with it."""
     own = own_unit(values)
     if own is None or own == unit:
         return
@@ -282,18 +281,18 @@ def check_own_unit(values: object, unit: str, *, owner: str, name: str) -> None:
     try:  # powers as UDUNITS writes them
         both = [units.Quantity(1.0, re.sub(r"(?<=[A-Za-z])(?=-?\d)", "^", u)) for u in (own, unit)]
         same = bool(both[0].is_compatible_with(both[1]) and both[0] == both[1])
-    except Exception:  # whatever pint makes of it
+    except Exception:  # pint raises many unrelated types
         same = False
     if not same:
         msg = (
-            f"{owner}: {name} is in {own!r} itself, and {unit!r} is given beside it; give bare "
-            "values beside a unit"
+            f"{owner}: {name} has the unit {own!r}, but {unit!r} is given with it; give values "
+            "without a unit of their own"
         )
         raise UnitsError(msg)
 
 
 def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> float:
-    """Convert one of several values whose unit is given for all."""
+    """Convert one of several values that have a common unit."""
     if getattr(number, "ndim", None) == 0 and bool(getattr(number, "mask", False)):
         msg = f"{owner}: {name} has masked values; fill them in first"
         raise ComponentError(msg)
@@ -304,7 +303,7 @@ def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> f
             number = float(number)
     if isinstance(number, bool) or not isinstance(number, Real):
         msg = (
-            f"{owner}: {name} needs numbers where their unit, {unit!r}, is given for all of them; "
+            f"{owner}: {name} needs numbers only, as their common unit {unit!r} is given; "
             f"got {shown(number)}"
         )
         raise UnitsError(msg)
@@ -312,7 +311,7 @@ def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> f
 
 
 def _float(number: Real) -> float:
-    """Give a number as a float, infinite where it is larger than any."""
+    """Convert a number to a float; one beyond its range becomes infinite."""
     try:
         return float(number)
     except OverflowError:
@@ -320,9 +319,9 @@ def _float(number: Real) -> float:
 
 
 def _converted(given: Any, measure: Measure) -> Any:
-    """Convert a magnitude, as long as it is one number, as it is written."""
+    """Convert a magnitude to SI units; a single number without rounding by the factor."""
     unit, number = str(measure.unit), given.magnitude
-    if getattr(number, "ndim", None) == 0:  # registries that others set make arrays of numbers
+    if getattr(number, "ndim", None) == 0:  # other registries may make arrays of single numbers
         number = number.item()
     if not isinstance(number, int | float):
         return given.m_as(unit)
@@ -333,9 +332,9 @@ def _converted(given: Any, measure: Measure) -> Any:
 
 
 def _product(number: float, factor: float) -> float:
-    """Multiply a number by the size of its unit as both are written: 70 cm are 0.7 m.
+    """Multiply a number by a conversion factor in decimal arithmetic: 70 cm are 0.7 m.
 
-    The product of the floats is 0.7000000000000001 m.
+    The product of the floats would be 0.7000000000000001 m.
     """
     written = repr(factor)
     if not math.isfinite(number) or len(written) > _LONGEST_FACTOR:
@@ -344,7 +343,7 @@ def _product(number: float, factor: float) -> float:
 
 
 def products(numbers: Sequence[float], factor: float) -> list[float]:
-    """Give the products of many numbers; of a power of ten it moves the point of each."""
+    """Multiply many numbers by a factor; for a power of ten only the exponents change."""
     if factor == 1.0:
         return [number + 0.0 for number in numbers]
     written = repr(factor)
@@ -373,7 +372,7 @@ def to_ratio(
     condition: "Condition | None" = None,
     example: str = "0.1",
 ) -> float:
-    """Convert a pure ratio (bare number, or a dimensionless quantity such as ``"5 %"``)."""
+    """Convert a pure ratio: a bare number, or a dimensionless quantity such as ``"5 %"``."""
     number: object = value
     ratio = Measure("a pure ratio", Unit.ONE, example)
     if isinstance(value, str | pint.Quantity):
@@ -391,7 +390,7 @@ def to_ratio(
 
 
 def _in_si(value: object, measure: Measure) -> float | None:
-    """Read a value that is in the SI unit already: most are, and need no conversion."""
+    """Read a text in the SI unit, which needs no conversion; None for any other."""
     if not isinstance(value, str) or not value.endswith(measure.unit):
         return None
     parts = number_and_unit(value)
@@ -408,7 +407,7 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
     example = measure.example_of(name)
     if not isinstance(value, str):
         kind = "a bare number" if isinstance(value, Real) else f"a {type(value).__name__}"
-        share = "; a share of critical damping is a damping_ratio" if measure.unit in _SHARE else ""
+        share = "; a ratio to critical damping is damping_ratio" if measure.unit in _SHARE else ""
         why = foreign_quantity(value) or f"{kind} has no unit{share}"
         if isinstance(value, tuple):
             why = "one number and its unit are needed"
@@ -434,14 +433,14 @@ def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantit
 
 
 def _gravity(text: str, measure: Measure) -> str:
-    """Read ``g``, elsewhere the gram, as that of gravity where an acceleration is asked for."""
+    """Read ``g``, otherwise the gram, as the acceleration of gravity in accelerations."""
     parts = number_and_unit(text)
     gravity = measure.unit == Unit.METRE_PER_SECOND_SQUARED and parts and parts[1] in _GRAVITY
     return f"{parts[0]} g_0" if parts and gravity else text
 
 
 def _joined(value: object) -> object:
-    """Write a number beside its unit, ``(0.3, "m")``, as one text; leave all else as it is."""
+    """Join a pair of number and unit, ``(0.3, "m")``, to one text; keep any other value."""
     if not isinstance(value, tuple):
         return value
     pair: tuple[Any, ...] = value  # pyright: ignore[reportUnknownVariableType]
@@ -450,7 +449,7 @@ def _joined(value: object) -> object:
         return pair
     try:
         return f"{float(number)!r} {unit}"
-    except OverflowError:  # beyond what a float can be
+    except OverflowError:  # beyond the range of floats
         return f"{math.inf} {unit}"
 
 
@@ -465,7 +464,7 @@ def _check_kind(given: Quantity, value: object, measure: Measure, *, owner: str,
     unit = f"{given.units:~}" or "no unit"
     unit_needed = "" if measure.unit == Unit.ONE else f" in a unit such as {measure.unit}"
     text = str(value)
-    # how what is needed follows from a related quantity, where that was given
+    # for a related quantity: how to convert it to the one that is needed
     hint = _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
     msg = (
         f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(text)} ({unit})"
@@ -476,9 +475,9 @@ def _check_kind(given: Quantity, value: object, measure: Measure, *, owner: str,
 
 
 def _roots(given: Any) -> dict[str, float]:
-    # pint calls the radian dimensionless, so that a ratio would pass for an
-    # angle and rad/s for Hz (a factor of 2 pi); the root units tell them apart.
-    # Of one unit, not of the value: a huge one would overflow.
+    # For pint the radian is dimensionless, so that a ratio would pass for an angle and rad/s for
+    # Hz (a factor of 2 pi); the root units differ. They are those of one unit, as a huge value
+    # would overflow.
     one: Any = type(given)(1.0, given.units)
     return {unit: float(power) for unit, power in one.to_root_units().unit_items()}
 

@@ -1,4 +1,4 @@
-"""Units in which people read numbers, in the place of SI units."""
+"""Units of a reader's choice in which numbers are shown, in place of SI units."""
 
 import math
 import re
@@ -19,29 +19,29 @@ if TYPE_CHECKING:
 
 _WRITTEN: Final = {"g_0": "g", "deg": "°", "degree": "°", "degrees": "°"}
 _READ: Final = {("g", kinds.ACCELERATION): "g_0"}
-"""What is meant by a letter that is a unit of something else too."""
+"""Meaning of a unit symbol that has another meaning elsewhere: ``g`` is also the gram."""
 _BELOW: Final = re.compile(r"\s*/\s*([^\W\d_]+)(?:\^(\d+))?")
 _NUMBER: Final = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 _SPELLED: Final = {
     "m/s^2": "m s^-2", "m/s": "m s^-1", "rad/s": "rad s^-1", "N/m": "N m^-1",
     "N s/m": "N s m^-1",
 }  # fmt: skip
-"""Units as descriptions of models spell them."""
+"""Spellings of units in descriptions of models."""
 _UNITS: Final = "|".join(
     sorted(map(re.escape, [*_SPELLED, *map(str, list(kinds.Unit)[1:])]), key=len, reverse=True)
 )
 _QUANTITY: Final = re.compile(
     rf"(?<![\w.])(?:\((?P<across>{_NUMBER}), (?P<up>{_NUMBER})\)|"
     rf"(?:(?P<first>{_NUMBER}) (?P<word>to|and) )?(?P<last>{_NUMBER})) (?P<unit>{_UNITS})"
-    # behind it the same in another unit
+    # followed by the same quantity in another unit
     rf"(?![\w^/])(?: \({_NUMBER} ?(?:g|deg|°)\))?"
 )
 _DIGITS: Final = 4
-"""Of most numbers in sentences."""
+"""Significant digits of most numbers in sentences."""
 _SENTENCES: Final = ("verdict",)
-"""Attributes of datasets that tell numbers with their units."""
+"""Attributes of datasets whose texts contain numbers with units."""
 UnitsLike: TypeAlias = Mapping[str, str] | None
-"""Units by what they are of, such as ``{"force": "kN"}``."""
+"""Units by kind of quantity, such as ``{"force": "kN"}``."""
 KINDS: Final[Mapping[str, Measure]] = {
     "length": kinds.LENGTH,
     "mass": kinds.MASS,
@@ -54,18 +54,18 @@ KINDS: Final[Mapping[str, Measure]] = {
     "energy": kinds.ENERGY,
     "stiffness": kinds.STIFFNESS,
 }
-"""What readers choose units of."""
+"""Kinds of quantities for which a reader can choose a unit."""
 
 
 @dataclass(frozen=True)
 class Shown:
     """A unit in which numbers are shown."""
 
-    words: str  # as it is written behind them
-    size: float  # in the SI unit
+    words: str  # spelling after numbers
+    size: float  # value of one unit in the SI unit
 
     def of(self, values: Any) -> npt.NDArray[np.float64]:
-        """Give values, in SI units, in this one."""
+        """Convert values from the SI unit to this one."""
         return np.asarray(values, np.float64) / self.size
 
 
@@ -80,7 +80,7 @@ def shown_unit(given: object, measure: Measure, *, owner: str, name: str) -> Sho
 
 
 def _spelled(unit: str) -> str:
-    """Write a unit as those of datasets are: ``m s^-2`` for ``m/s^2`` and ``m/s**2``."""
+    """Spell a unit as in datasets: ``m s^-2`` for ``m/s^2`` and ``m/s**2``."""
     plain = unit.strip().replace("**", "^").replace("*", " ")
     plain = _BELOW.sub(lambda part: f" {part[1]}^-{part[2] or 1}", plain)
     return " ".join(_WRITTEN.get(part, part) for part in plain.split())
@@ -88,21 +88,21 @@ def _spelled(unit: str) -> str:
 
 @dataclass(frozen=True)
 class ReaderUnits:
-    """The units of a reader's choice, and SI units where none was chosen."""
+    """The units that a reader has chosen; all others are SI units."""
 
     chosen: Mapping[str, Shown] = field(default_factory=dict[str, Shown])  # by the SI unit
-    words: Mapping[str, str] = field(default_factory=dict[str, str])  # as they were given
+    words: Mapping[str, str] = field(default_factory=dict[str, str])  # argument of the reader
 
     def of(self, unit: str) -> Shown:
         """Give the unit in which values in an SI unit are shown."""
         return self.chosen.get(unit, Shown(unit, 1.0))
 
     def chose(self, measure: Measure) -> Shown | None:
-        """Give the unit that was chosen for a kind; None where none was."""
+        """Give the unit that was chosen for a kind, or None."""
         return self.chosen.get(str(measure.unit))
 
     def of_all(self, dataset: "xr.Dataset") -> "xr.Dataset":
-        """Give a dataset with its values, and its attributes of units, in these units."""
+        """Give a dataset with its values and their attributes ``units`` in these units."""
         found: dict[str, Any] = {}
         for name, values in dataset.variables.items():
             unit = self.chosen.get(str(values.attrs.get("units")))
@@ -119,11 +119,11 @@ class ReaderUnits:
         )
 
     def of_sentence(self, text: str) -> str:
-        """Write the numbers of a text that are in SI units in these units."""
+        """Convert the quantities in a text from SI units to these units."""
         return _QUANTITY.sub(self._written, text) if self.chosen else text
 
     def _written(self, found: "re.Match[str]") -> str:
-        """Write one number with its unit, a range of two, or a place."""
+        """Convert one number with its unit, a range of two, or a pair of coordinates."""
         unit = self.chosen.get(_SPELLED.get(found["unit"], found["unit"]))
         if unit is None:
             return found[0]
@@ -137,10 +137,10 @@ class ReaderUnits:
 
 
 def _with_digits(number: str, size: float) -> str:
-    """Write a number over the size of a unit, with the digits that it tells.
+    """Convert a number to a unit of some size, without more digits than are significant.
 
-    A rounded number is known to a digit less in another unit, but for one that is a power of ten
-    of its own; one of few digits may be whole.
+    The conversion of a rounded number costs one digit, unless the size is a power of ten. A number
+    of one or two digits may be exact and is written with four.
     """
     told = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
     moved = float(f"1e{round(math.log10(size))}") == size
@@ -150,7 +150,7 @@ def _with_digits(number: str, size: float) -> str:
 
 
 def reader_units(given: object, *, owner: str) -> ReaderUnits:
-    """Read units by what they are of, such as ``{"force": "kN"}``."""
+    """Read units by kind of quantity, such as ``{"force": "kN"}``."""
     if given is None:
         return ReaderUnits()
     example = "such as units={'force': 'kN', 'angle': 'deg'}"
@@ -162,7 +162,7 @@ def reader_units(given: object, *, owner: str) -> ReaderUnits:
         if name not in KINDS:
             found = f"found {shown(name)}{nearest(name, KINDS)}"
             known = f"known are {', '.join(KINDS)}; times stay in s, and frequencies in Hz"
-            msg = f"{owner}: units are of kinds, {example}; {found}; {known}"
+            msg = f"{owner}: units belong to kinds of quantities, {example}; {found}; {known}"
             raise ComponentError(msg)
         kind = KINDS[name]
         chosen[str(kind.unit)] = shown_unit(unit, kind, owner=owner, name=f"units[{name!r}]")

@@ -171,7 +171,7 @@ def test_all_figures_are_here_and_take_the_three():
         shared = {"units", "title"} if name == "player" else {"units", "ax", "title"}
         assert shared <= set(taken)
         assert all(taken[one].default is None for one in shared)
-        assert "mapping of str to str, optional\n    Units by what they are of" in inspect.getdoc(
+        assert "mapping of str to str, optional\n    Units by quantity" in inspect.getdoc(
             getattr(rf.plot, name)
         )
 
@@ -191,7 +191,8 @@ def test_units_are_those_of_the_reader(name, given):
         assert np.abs(first).max() > 0.0
         np.testing.assert_allclose(first, size * second, rtol=1e-5)
     with pytest.raises(
-        ComponentError, match=rf"plot\.{name}: units are of kinds.*'angel'.*'angle'"
+        ComponentError,
+        match=rf"plot\.{name}: units belong to kinds of quantities.*'angel'.*'angle'",
     ):
         draw(given(name), units={"angel": "deg"})
     with pytest.raises(UnitsError, match=rf"plot\.{name}.*force"):
@@ -240,7 +241,7 @@ def test_tables_obey_units(given):
     np.testing.assert_allclose(table["left_reaction [kN]"], 1e-3 * run.left_reaction, rtol=1e-12)
     np.testing.assert_allclose(table["rotation [°]"], np.degrees(run.rotation), rtol=1e-12)
     assert "base_overturning_moment [N m]" in table
-    with pytest.raises(ComponentError, match="table: units are of kinds"):
+    with pytest.raises(ComponentError, match="table: units belong to kinds of quantities"):
         rf.table(run, units={"weight": "kN"})
 
 

@@ -164,7 +164,7 @@ class TestRun:
     def test_report_and_figures(self, response, system, tmp_path):
         text = rf.report(response, tmp_path / "run.html").read_text(encoding="utf-8")
         assert "slide-rock" in text
-        assert "The base does not slide while it presses" not in text
+        assert "The base does not slide while it is in contact" not in text
         rf.plot.response(response)
         rf.plot.scene(system)
 

@@ -37,7 +37,7 @@ def test_the_table_is_that_of_the_command():
 
 LEVELS = (
     "| accuracy | scenes | agree | chaos | sensitive | by tolerance | else | other verdict | "
-    "of these told | peak off by 5 % | of these told |"
+    "of these warned of | peak off by 5 % | of these warned of |"
 )
 
 

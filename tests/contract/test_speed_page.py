@@ -24,7 +24,7 @@ def test_ratios_are_those_measured():
 
 
 def test_a_slack_restrainer_adds_no_steps():
-    (most,) = said(PAGE, "One that hangs slack adds no step but # at its events")
+    (most,) = said(PAGE, "A restrainer that remains slack adds no step but # at its events")
     for ground in ("rigid ground", "pads"):
         for level in MEASURED[f"restrainer, slack, {ground}"].values():
             assert 0 <= level["steps with"] - level["steps without"] <= most

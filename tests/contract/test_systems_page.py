@@ -90,7 +90,7 @@ def test_the_energies_of_a_block_released_or_shaken():
         "theory/energy.md",
         "# separations and # landings, and a drift of # (`leading-corner`) and # (`centre`)",
     )
-    dissipated, most = said("theory/energy.md", "re-pinnings cost # J of # MJ in the same run")
+    dissipated, most = said("theory/energy.md", "re-pinnings dissipate # J of # MJ in the same run")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # a restitution of one
         elastic = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0, restitution=1)
@@ -115,7 +115,7 @@ def test_the_energies_of_a_block_released_or_shaken():
     assert float(run.kinetic_energy.max()) == pytest.approx(1e6 * most, rel=0.01)
 
     lost, put_in = said(
-        "theory/impact_and_restraint.md", "loses # J so, of # MJ put in by the ground"
+        "theory/impact_and_restraint.md", "loses # J by re-pinning, of # MJ supplied by the ground"
     )
     shaken = OPTIONS["contact-state"].simulate(
         rf.GroundMotion.sine_pulse(), free_vibration="5 s", outputs="energy", accuracy="reference"

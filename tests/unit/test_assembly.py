@@ -894,6 +894,21 @@ def test_options_that_a_scene_has_no_use_for_are_told(option, chosen, useless, u
     assert rf.System(*useless).assembly.doubts == []
 
 
+@pytest.mark.parametrize(
+    "tie",
+    [
+        rf.Tendon(stiffness="5 MN/m", brittle=True),
+        rf.Restrainer(on=("-0.5 m", "2 m"), to=("-1 m", "2 m"), stiffness="1 MN/m", brittle=False),
+    ],
+)
+def test_a_tie_without_strength_that_would_break_or_yield_is_told(tie):
+    with pytest.warns(ModelWarning, match=f"brittle={tie.brittle} changes nothing") as caught:
+        rf.System(block(), tie)
+    assert len(caught) == 1
+    assert rf.System(block(), tie.replace(strength="20 kN")).assembly.doubts == []
+    assert rf.System(block(), tie.replace(brittle=not tie.brittle)).assembly.doubts == []
+
+
 def test_parts_are_iterated_over_and_found_by_their_slots():
     system = rf.System(pads(), block(), pulse())
     assert list(system.parts) == [block(), pads(), pulse()]

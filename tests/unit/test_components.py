@@ -156,7 +156,6 @@ def test_every_kind_of_component_is_among_those_that_are_looked_at():
     assert own - {Link, PointLink} == {type(one) for one in GIVEN}
 
 
-@pytest.mark.filterwarnings("ignore:.*left as it was:rockframe.errors.ModelWarning")
 @pytest.mark.parametrize("given", GIVEN, ids=lambda one: type(one).__name__)
 def test_a_component_takes_back_what_it_gives(given):
     for name in inspect.signature(type(given)).parameters:

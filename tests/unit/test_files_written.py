@@ -69,21 +69,21 @@ REFUSED = {
     # a file that is read, by any of its names
     "run scene.toml -o scene.toml --overwrite": "the result of a run ends in .nc",
     "certify scene.toml -o scene.toml --overwrite": "ends in .nc",
-    "run scene.toml -m motion.nc -o motion.nc --overwrite": "this file is read",
-    "run scene.toml -m motion.nc -o ./kept/../motion.nc --overwrite": "this file is read",
-    "run scene.toml -m motion.nc -o soft.nc --overwrite": "this file is read",
-    "run scene.toml -m motion.nc -o hard.nc --overwrite": "this file is read",
-    "run inner.toml -o motion.nc --overwrite": "this file is read",
+    "run scene.toml -m motion.nc -o motion.nc --overwrite": "this file is an input",
+    "run scene.toml -m motion.nc -o ./kept/../motion.nc --overwrite": "this file is an input",
+    "run scene.toml -m motion.nc -o soft.nc --overwrite": "this file is an input",
+    "run scene.toml -m motion.nc -o hard.nc --overwrite": "this file is an input",
+    "run inner.toml -o motion.nc --overwrite": "this file is an input",
     "study study.toml --csv study.toml --overwrite": "ends in .csv",
-    "study cases.toml --csv study.csv --overwrite": "this file is read",
-    "study stored.toml -o motion.nc --overwrite": "this file is read",
-    "study all.toml --csv kept/some.csv --overwrite": "this file is read",
+    "study cases.toml --csv study.csv --overwrite": "this file is an input",
+    "study stored.toml -o motion.nc --overwrite": "this file is an input",
+    "study all.toml --csv kept/some.csv --overwrite": "this file is an input",
     "motion record.AT2 --csv record.AT2 --overwrite": "a table of measures ends in .csv",
-    "motion column.csv --unit g --csv column.csv --overwrite": "this file is read",
-    "motion kept --csv kept/some.csv --overwrite": "'kept', which is read",
+    "motion column.csv --unit g --csv column.csv --overwrite": "this file is an input",
+    "motion kept --csv kept/some.csv --overwrite": "in the input folder 'kept'",
     "plot run.nc -o run.nc --overwrite": "a picture ends in .png or .svg or .pdf",
     "report run.nc -o run.nc --overwrite": "a report ends in .html or .htm",
-    "report odd.html --overwrite": "this file is read",
+    "report odd.html --overwrite": "this file is an input",
     # what somebody else wrote, or rockframe as another kind
     "run scene.toml -o mine.nc": "not the result of a run that rockframe wrote",
     "run scene.toml -o motion.nc": "not the result of a run that rockframe wrote",
@@ -96,7 +96,7 @@ REFUSED = {
     "motion record.AT2 --csv study.csv": "not a table of measures",
     "motion record.AT2 --csv mine.csv": "not a table of measures",
     "motion record.AT2 --picture mine.png": "not a picture that rockframe wrote",
-    "motion record.AT2 kept --picture mine.png": "mine-2.png: this file is there already",
+    "motion record.AT2 kept --picture mine.png": "mine-2.png: this file exists already",
     "plot run.nc -o mine.svg": "not a picture that rockframe wrote",
     "plot run.nc -o mine.pdf": "not a picture that rockframe wrote",
     "report run.nc -o mine.html": "not a report that rockframe wrote",
@@ -107,7 +107,7 @@ REFUSED = {
     "run scene.toml -o out.csv": "ends in '.csv'",
     "run scene.toml -o kept": "this is a folder",
     "run scene.toml -o none/out.nc": "there is no folder 'none'",
-    "run scene.toml -o pipe.nc --overwrite": "this is no file",
+    "run scene.toml -o pipe.nc --overwrite": "this is not a regular file",
     "plot run.nc -o out.jpg": "ends in '.jpg'",
     "report run.nc -o report.pdf": "ends in '.pdf'",
     "motion record.AT2 --picture record": "the name has no ending",
@@ -196,7 +196,7 @@ def test_functions_replace_nothing_that_they_did_not_write(folder):
         (rf.report, (run, "a\0.html"), "expected the path of a file"),
         (record.to_at2, ("mine.AT2",), "not an acceleration file that rockframe wrote"),
         (record.to_at2, ("record.txt",), "ends in .at2"),
-        (record.scaled(2.0).to_at2, ("record.AT2",), "this file is read"),
+        (record.scaled(2.0).to_at2, ("record.AT2",), "this file is an input"),
         (moving.save, ("mine.gif",), "not an animation"),
         (moving.save, ("run.html",), "not a player"),
         (run.rockframe.player, ("run.html",), "not a player"),
@@ -207,7 +207,7 @@ def test_functions_replace_nothing_that_they_did_not_write(folder):
         (rf.report, (odd, "odd.html")),
         (record.scaled(2.0).to_at2, ("record.AT2",)),
     ):
-        with pytest.raises(FileError, match="this file is read"):
+        with pytest.raises(FileError, match="this file is an input"):
             write(*given, overwrite=True)
     assert contents(folder) == before
     run.close()

@@ -660,7 +660,7 @@ def test_the_table_says_what_is_not_known():
         ({"name": ""}, "name must be a text"),
         ({"name": 3}, "name must be a text"),
         ({"kind": " "}, "kind must be a text"),
-        ({"mass": None}, "give mass or density, exactly one; depth, height, width given"),
+        ({"mass": None}, "give mass or density, exactly one; got depth, height, width"),
         ({"density": "2500 kg/m^3"}, "give mass or density, exactly one"),
         ({"mass": None, "density": "2500 kg/m^3", "depth": None}, "density needs width, height"),
         ({"width": None}, "give width and height, or inertia"),
@@ -673,7 +673,7 @@ def test_the_table_says_what_is_not_known():
         ({"height": "-1 m"}, "height must be greater than zero"),
         ({"depth": "0 m"}, "depth must be greater than zero"),
         ({"x": "nan m"}, "x must be finite"),
-        ({"width": "1e200 m"}, "computer's numbers"),
+        ({"width": "1e200 m"}, "floating-point numbers"),
     ],
 )
 def test_a_faulty_member_is_refused(changes, words):
@@ -712,7 +712,7 @@ def test_a_member_needs_units(name):
         ({"infill_thickness": "2.1 m"}, "infill_thickness must be half the depth or less"),
         ({"infill_thickness": "0 m"}, "greater than zero, or None for no walls"),
         ({"slab_thickness": "0 m"}, "slab_thickness must be greater than zero"),
-        ({"storey_heights": ["3 m"]}, "storey_heights tells the storeys and the height"),
+        ({"storey_heights": ["3 m"]}, "storey_heights determines storeys and height"),
         ({"storeys": None, "height": None, "storey_heights": []}, "storey_heights is empty"),
         (
             {"storeys": None, "height": None, "storey_heights": ["3 m", "0 m"]},
@@ -723,7 +723,7 @@ def test_a_member_needs_units(name):
             r"lowest storey's height \(0.2 m\)",
         ),
         ({"storeys": None, "height": None, "storey_heights": ["1e308 m"] * 2}, "finite"),
-        ({"density": None}, "give members, or the measures .* density is missing"),
+        ({"density": None}, "give members, or the dimensions .* density is missing"),
         ({"storeys": None, "beam_width": None}, "storeys, beam_width are missing"),
         ({"height": None}, "height is missing"),
     ],
@@ -754,14 +754,14 @@ def test_a_regular_frame_itself_says_what_it_needs():
     ("members", "words"),
     [
         ([], "members is empty"),
-        ([core(), core()], "different names, found twice: core"),
+        ([core(), core()], "different names, got twice: core"),
         ([core(x="1.1 m")], "'core' reaches from x = 0.1 m to 2.1 m, beyond the building"),
         ([core(x="-1.1 m")], "reaches from x = -2.1 m"),
         ([core(y="5.1 m")], "reaches from y = 0.1 m to 10.1 m"),
         ([core(y="4.9 m")], "reaches from y = -0.1 m"),
-        ([tank(x="2.1 m")], "beyond the building, which lies from -2 m to 2 m"),
+        ([tank(x="2.1 m")], "beyond the building, which extends from -2 m to 2 m"),
         ([core(depth="6 m")], "depth of 6 m, more than the building's 5 m"),
-        ([tank(inertia="25000 kg*m^2")], "no more than 24750 kg m"),
+        ([tank(inertia="25000 kg*m^2")], "at most 24750 kg m"),
         (
             [core(width="4 m", depth="5 m"), core(name="overlap", depth="5 m")],
             "together fill 1.5 times the building",

@@ -95,8 +95,8 @@ def test_what_cannot_be_had_is_said(response, tmp_path):
     system = rf.System.from_dict({**rf.System.from_dataset(response).to_dict(), "motion": None})
     short = system.simulate(record, outputs=None)
     text = rf.report(short, tmp_path / "short.html").read_text()
-    assert "does not hold its motion" in text
-    assert "kept no histories" in text
+    assert "does not hold the samples of its motion" in text
+    assert "has no histories" in text
     unknown = response.assign_attrs(system_json="{}")
     assert "does not describe its system" in rf.report(unknown, tmp_path / "u.html").read_text()
 
@@ -155,7 +155,7 @@ def test_a_run_of_coarse_samples_asks_for_its_motion(tmp_path):
     record = rf.GroundMotion.from_arrays((shaking, "m/s^2"), "0.02 s", name="a record")
     coarse = rf.System(BLOCK, PADS).simulate(record, free_vibration="9 s", output_step="0.1 s")
     said = words_of(rf.report(coarse, tmp_path / "out.html"))
-    assert "does not hold its motion, sample by sample; hand it in, with motion=" in said
+    assert "does not hold the samples of its motion; pass it by motion=" in said
 
 
 ROUGH = {"frequency_ratio": 20, "damping_ratio": 0.1, "friction": 0.2}
@@ -351,7 +351,7 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
     alone = rf.case(runs, motion="long", scale=2.0).simulate()
     assert "Simulated again: scale 2, motion long." in words
     assert alone.attrs["verdict"] in words
-    assert "Ground acceleration along time" in words
+    assert "History of the ground acceleration" in words
     assert "2 sine pulse" not in words
 
 
@@ -446,7 +446,7 @@ def test_a_certificate_of_another_run_is_none(tmp_path):
     system = rf.System(rf.Block(width="0.8 m", height="3.2 m", mass="5.5 t"))
     pulses = [rf.GroundMotion.sine_pulse(f"{peak} m/s^2", "2 Hz") for peak in (3.0, 4.0)]
     joined = rf.concat([system.simulate(one, outputs=None) for one in pulses], "run")
-    for place, words in enumerate(("Certificate: the verdict", "run again, it ends otherwise")):
+    for place, words in enumerate(("Certificate: the verdict", "a repeated run differs")):
         path = tmp_path / f"{place}.html"
         assert words in rf.report(joined.isel(run=place), path, motion=pulses[0]).read_text("utf-8")
 
@@ -469,7 +469,7 @@ def test_a_browser_prints_it_on_whole_sheets(response, tmp_path):
 
 
 def test_the_limits_are_those_of_the_manual():
-    left_out = read("theory/validity.md").split("## Left out")[1].split("\n## ")[0]
+    left_out = read("theory/validity.md").split("## Omitted effects")[1].split("\n## ")[0]
     assert re.findall(r"^(\w.*)\n: ", left_out, re.MULTILINE) == [one.title for one in LIMITS]
 
 

@@ -105,19 +105,19 @@ def test_a_target_is_given_in_three_ways(runs, suite, tmp_path):
     assert "Response spectra of the motions at 5 % damping, their mean." in without
     assert "spectral misfit" not in without
     for wrong in ("Eurocode 8", raw.response_spectrum(["1 s"])):
-        with pytest.raises(ComponentError, match="target must be a TargetSpectrum, or what"):
+        with pytest.raises(ComponentError, match="target must be a TargetSpectrum, or the result"):
             rf.report(runs, path, target=wrong)
     scale = rf.critical_scale(BLOCK, record(9), largest=1.0, runs=2, scales=2)
-    with pytest.warns(RockframeWarning, match="no motion is at hand to be drawn beside the target"):
+    with pytest.warns(RockframeWarning, match="no motion is available to compare with the target"):
         rf.report(scale, path, target=TARGET)
     with pytest.raises(ComponentError, match="motions must be a GroundMotion, or several"):
         rf.report(runs, path, motions=3.5)
     with pytest.raises(ComponentError, match="no motion with the samples of 'record 9'"):
         rf.report(runs, path, motions=[record(9)])
-    with pytest.raises(ComponentError, match="those of a study are motions="):
+    with pytest.raises(ComponentError, match="a study takes motions="):
         rf.report(runs, path, motion=record(9))
     run = BLOCK.simulate(record(9))
-    with pytest.raises(ComponentError, match="that of a run is motion="):
+    with pytest.raises(ComponentError, match="a run takes motion="):
         rf.report(run, path, motions=[record(9)])
 
 

@@ -84,7 +84,9 @@ def test_checks_by_codes_are_told_in_units_of_the_reader(tmp_path):
         assert left_in_si(alone) == []
         assert left_in_si(words_of(one.report(tmp_path / "c.html")))
     assert checks[2].lines["Forces"][0].written() == "9.80665 kN"
-    with pytest.raises(ComponentError, match=r"CodeCheck\.report: units are of kinds"):
+    with pytest.raises(
+        ComponentError, match=r"CodeCheck\.report: units belong to kinds of quantities"
+    ):
         checks[0].report(tmp_path / "c.html", units={"weight": "kN"})
 
 

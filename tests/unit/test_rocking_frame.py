@@ -38,11 +38,11 @@ def test_a_frame_gives_back_what_it_was_made_of():
 @pytest.mark.parametrize(
     ("column", "given", "words"),
     [
-        (PIER, {"columns": 1}, "2 columns or more, got 1"),
+        (PIER, {"columns": 1}, "columns must be 2 or more, got 1"),
         (PIER, {"columns": 2.5}, "whole number"),
         (PIER, {"beam_mass": "-1 t"}, "beam_mass"),
         ("1.6 m", {}, "column must be a Block"),
-        (PIER.replace(eccentricity="0.1 m"), {}, "0.1 m beside the middle"),
+        (PIER.replace(eccentricity="0.1 m"), {}, "eccentricity of 0.1 m"),
     ],
 )
 def test_what_makes_no_frame_is_refused(column, given, words):

@@ -127,7 +127,7 @@ def test_there_is_nothing_but_its_own_pages(ask, path):
     ("height=-3", "Height: found &#x27;-3&#x27;; expected a number from 0.2 to 20 m"),
     ("mass=nan", "Mass: found &#x27;nan&#x27;"),
     ("mass=inf", "Mass: found &#x27;inf&#x27;"),
-    ("scale=1e9", "Times the motion: found"),
+    ("scale=1e9", "Scale of the motion: found"),
     ("hieght=2", "was &#x27;height&#x27; meant?"),
     ("base=pad", "was &#x27;pads&#x27; meant?"),
     ("motion=sine", "expected one of record, sine_pulse"),

@@ -67,7 +67,7 @@ def test_a_stack_is_changed_by_copying():
         ((STATUE, PLINTH), {"interfaces": []}, "1 interfaces between them, got 0"),
         ((STATUE, JOINT), {"interfaces": [JOINT]}, "a body of a stack is a Block, got Two"),
         ((STATUE, PLINTH), {"interfaces": [PLINTH]}, "an interface is a base"),
-        ((STATUE, PLINTH), {"interfaces": [JOINT], "offsets": []}, "all bodies but the lowest"),
+        ((STATUE, PLINTH), {"interfaces": [JOINT], "offsets": []}, "each body but the lowest"),
         ((PLINTH, STATUE), {"interfaces": [JOINT]}, "base of body 1 from the top reaches 0.45 m"),
         ((STATUE, PLINTH), {"interfaces": [JOINT], "offsets": ["0.21 m"]}, "reaches 0.46 m"),
     ],

@@ -320,22 +320,22 @@ def test_a_blank_inside_a_number_is_not_a_multiplication(maker, name, bad):
 @pytest.mark.parametrize(
     ("maker", "name", "bad", "why"),
     [
-        (make_block, "height", "2'500 mm", "without marks between its digits"),
-        (make_block, "height", "2\u2019500 mm", "without marks between its digits"),
-        (make_block, "height", "2·500 mm", "without marks between its digits"),
-        (make_block, "height", "2:500 mm", "without marks between its digits"),
-        (make_block, "height", "2;500 mm", "without marks between its digits"),
-        (make_block, "height", "12'345'678 mm", "without marks between its digits"),
-        (make_block, "height", "6'8 ft", "without marks between its digits"),
-        (make_block, "height", "2·10³ mm", "without marks between its digits"),
-        (make_block, "height", "2½ m", "'½' stands in no number and in no unit"),
-        (make_block, "height", "2 m₂", "'₂' stands in no number and in no unit"),
-        (make_block, "height", "2 m #3", "'#' stands in no number and in no unit"),
-        (make_block, "height", "2\u200b500 mm", "without marks between its digits"),
-        (make_block, "height", "\u22122 m", "'\u2212' stands in no number and in no unit"),
+        (make_block, "height", "2'500 mm", "without separators"),
+        (make_block, "height", "2\u2019500 mm", "without separators"),
+        (make_block, "height", "2·500 mm", "without separators"),
+        (make_block, "height", "2:500 mm", "without separators"),
+        (make_block, "height", "2;500 mm", "without separators"),
+        (make_block, "height", "12'345'678 mm", "without separators"),
+        (make_block, "height", "6'8 ft", "without separators"),
+        (make_block, "height", "2·10³ mm", "without separators"),
+        (make_block, "height", "2½ m", "'½' occurs in no number and in no unit"),
+        (make_block, "height", "2 m₂", "'₂' occurs in no number and in no unit"),
+        (make_block, "height", "2 m #3", "'#' occurs in no number and in no unit"),
+        (make_block, "height", "2\u200b500 mm", "without separators"),
+        (make_block, "height", "\u22122 m", "'\u2212' occurs in no number and in no unit"),
         (make_block, "height", "2² m", "not one number and a unit"),
-        (make_block, "height", "2\xd73 m", "without marks between its digits"),
-        (make_block, "height", "2\xd710^3 mm", "without marks between its digits"),
+        (make_block, "height", "2\xd73 m", "without separators"),
+        (make_block, "height", "2\xd710^3 mm", "without separators"),
         (make_block, "height", "2 m+3 m", "not one number and a unit"),
         (make_block, "height", "6 ft-2 in", "not one number and a unit"),
         (make_block, "height", "2 m.5", "not one number and a unit"),
@@ -343,7 +343,7 @@ def test_a_blank_inside_a_number_is_not_a_multiplication(maker, name, bad):
         (make_block, "height", "2 m^2²/m^3", "not one number and a unit"),
         (make_pulse, "amplitude", "3 m/-s^2", "not one number and a unit"),
         (make_pulse, "amplitude", "3 m/⁻s^2", "not one number and a unit"),
-        (make_pads, "damping_ratio", "5 $", "'$' stands in no number and in no unit"),
+        (make_pads, "damping_ratio", "5 $", "'$' occurs in no number and in no unit"),
         (make_pads, "damping_ratio", "5 %2", "not a number"),
     ],
 )
@@ -682,7 +682,7 @@ QUANTITY = pint.get_application_registry().Quantity
 )
 def test_a_unit_beside_an_array_that_has_another_is_refused(values, unit, read):
     if read is None:
-        with pytest.raises(UnitsError, match=r"x is in '\w+' itself, and 'm' is given beside it"):
+        with pytest.raises(UnitsError, match=r"x has the unit '\w+', but 'm' is given with it"):
             to_si_values((values, unit), LENGTH, owner="one", name="x")
     else:
         assert to_si_values((values, unit), LENGTH, owner="one", name="x") == read
@@ -693,10 +693,10 @@ def test_accelerations_and_times_have_one_unit():
     for given in (array, (array, "m/s^2")):
         assert rf.GroundMotion.from_arrays(given, "0.01 s").si.peak == 1.0
     for own in (array, QUANTITY(np.array([0.0, 1.0]), "cm/s^2")):
-        with pytest.raises(UnitsError, match=r"acceleration is in .* itself, and 'g' is given"):
+        with pytest.raises(UnitsError, match=r"acceleration has the unit .*, but 'g' is given"):
             rf.GroundMotion.from_arrays((own, "g"), "0.01 s")
     times = xr.DataArray([0.0, 10.0], dims="x", attrs={"units": "ms"})
-    with pytest.raises(UnitsError, match="times is in 'ms' itself, and 's' is given"):
+    with pytest.raises(UnitsError, match="times has the unit 'ms', but 's' is given"):
         rf.GroundMotion.from_times((times, "s"), array, "0.01 s")
 
 

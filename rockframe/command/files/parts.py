@@ -1,4 +1,4 @@
-"""The parts of a scene in a TOML file: a table for each, with tables inside where it has bodies."""
+"""The parts of a scene in a TOML file: one table each, with inner tables for their bodies."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -23,16 +23,16 @@ TYPE: Final = "type"
 CONSTRUCTOR: Final = "constructor"
 MODULES: Final = "modules"
 _OF_ALL: Final = ("from_dict", "declared")
-"""Class methods of all components, which are no way to describe one."""
+"""Class methods of all components that are not constructors for users."""
 _BODIES: Final = "bodies"
 _MOTION: Final = "motion"
 
 
 @dataclass(frozen=True)
 class InnerParts:
-    """Parts that a part consists of."""
+    """Parts of which another part consists."""
 
-    slots: tuple[str, ...]  # of which kinds they are, the usual one first
+    slots: tuple[str, ...]  # their kinds, the usual one first
     several: bool  # whether they are an array of tables
 
 
@@ -59,7 +59,7 @@ def described_parts(file: TomlFile, slot: str, given: object) -> list[Component 
 def _each(
     file: TomlFile, where: Place, known: Mapping[str, type[Component]], given: Any, *, several: bool
 ) -> list[Component | None]:
-    """Build the part of a table, or those of several; those that cannot be are None."""
+    """Build the part of a table, or those of several; parts with faults are None."""
     items: list[Any] = given if several else [given]
     found: list[Component | None] = []
     for number, item in enumerate(items):
@@ -70,14 +70,14 @@ def _each(
 
 
 def inner_parts(kind: type[Component]) -> Mapping[str, InnerParts]:
-    """Give the parts that a part consists of, by the keys of their tables."""
+    """Give the parts of which a part consists, by the keys of their tables."""
     return next((inner for of, inner in _INNER.items() if issubclass(kind, of)), {})
 
 
 def _described(
     file: TomlFile, where: Place, known: Mapping[str, type[Component]], table: dict[str, Any]
 ) -> Component | None:
-    """Build a part of one of some classes, and those that it consists of before it."""
+    """Build a part, of one of the known classes, after the parts of which it consists."""
     kind = _kind_of(file, where, known, table.pop(TYPE, None))
     if kind is None:
         return None
@@ -114,7 +114,7 @@ def _described(
 
 
 def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, Any]) -> bool:
-    """Build the parts of a table inside another; tell whether all could be."""
+    """Build the parts of an inner table; false if one of them has faults."""
     name = str(where[-1])
     given = table[name]
     if wanted.several and not isinstance(given, list):
@@ -136,7 +136,7 @@ def classes_in(slot: str) -> dict[str, type[Component]]:
 
 
 def constructors(kind: type[Component]) -> dict[str, Callable[..., Component]]:
-    """Give the ways to build a component beside its own constructor, by their names."""
+    """Give the named constructors of a component, besides its class itself."""
     return {
         name: one
         for name, one in getmembers(kind, ismethod)
@@ -161,7 +161,7 @@ def _kind_of(
 
 
 def _say_ways(file: TomlFile, where: Place, kind: type[Component], unknown: list[str]) -> None:
-    """Say which other constructors take the keys that this one does not know."""
+    """Note which other constructors take the keys that this one does not know."""
     for name in unknown:
         ways = [way for way, one in constructors(kind).items() if name in arguments_of(one)]
         if ways:

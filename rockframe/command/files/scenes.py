@@ -34,7 +34,7 @@ from rockframe.system.parts import slot_of_kind
 
 _FILE: Final = "file"
 MOTIONS: Final = (*CONSTRUCTORS, "example")
-"""Constructors of motions that files may name; one of them gives a record of the package."""
+"""Constructors of motions that files may name; ``example`` gives a record of the package."""
 _OPERATIONS: Final = "operations"
 _RESPONSE: Final = "response"
 
@@ -70,7 +70,7 @@ def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion |
         file.fault((*where, _FILE), f"file must be the path of a record, got {shown(name)}")
         return None
     component = table.get("component")
-    if isinstance(component, list):  # TOML has no pairs
+    if isinstance(component, list):  # TOML has no tuples
         table["component"] = tuple(component)  # pyright: ignore[reportUnknownArgumentType]
     if isinstance(table.get(_RESPONSE), str):
         table[_RESPONSE] = file.path_beside(table[_RESPONSE])
@@ -96,7 +96,7 @@ def _constructed(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundM
 def _operated(
     file: TomlFile, where: Place, motion: GroundMotion, operations: object
 ) -> GroundMotion | None:
-    """Do to a motion what a list of tables with one key each says."""
+    """Apply a list of operations to a motion, each a table with one key."""
     where = (*where, _OPERATIONS)
     if not isinstance(operations, list):
         words = "operations must be a list such as [{ scaled = { factor = 1.5 } }]"
@@ -107,7 +107,8 @@ def _operated(
         here = (*where, number)
         if not isinstance(one, dict) or len(one) != 1:  # pyright: ignore[reportUnknownArgumentType]
             file.fault(
-                here, f"an operation is written {{ scaled = {{ factor = 1.5 }} }}; {shown(one)}"
+                here,
+                f"an operation is written {{ scaled = {{ factor = 1.5 }} }}, got {shown(one)}",
             )  # pyright: ignore[reportUnknownArgumentType]
             return None
         ((name, given),) = one.items()  # pyright: ignore[reportUnknownVariableType]
@@ -143,32 +144,31 @@ PROJECT: Final = "project"
 
 
 def keys() -> tuple[str, ...]:
-    """Give what a file of a scene may hold."""
+    """Give the keys of the file of a scene."""
     return (MODULES, *part_slots(), OPTIONS, MOTION, RUN, PROJECT)
 
 
 @dataclass(frozen=True)
 class Described:
-    """What a file describes."""
+    """What the file of a scene describes."""
 
     system: System  # the parts, without the motion
-    motion: GroundMotion | None  # of the ground
-    # further arguments of :meth:`rockframe.System.simulate`
-    run: dict[str, Any]
-    files: tuple[Path, ...]  # all files that it was read from
-    project: str  # what reports say of it, as results keep it
+    motion: GroundMotion | None
+    run: dict[str, Any]  # further arguments of :meth:`rockframe.System.simulate`
+    files: tuple[Path, ...]  # all files that were read
+    project: str  # the project in JSON, as results keep it
 
 
 def read_scene(path: str | Path) -> Described:
     """Read the file of a scene."""
     file = TomlFile.read(path)
-    import_modules(file)  # whose parts may have tables of their own
+    import_modules(file)  # before the keys are checked: its parts may add tables
     for name in file.values:
         if name not in keys():
             _unknown_table(file, name)
     found = described_scene(file)
     file.check()
-    if found is None:  # without a fault there is a system
+    if found is None:  # cannot be: without a fault there is a system
         raise AssertionError
     return found
 
@@ -185,7 +185,7 @@ def described_scene(file: TomlFile) -> Described | None:
     project = described_project(file, given[PROJECT]) if PROJECT in given else ""
     options = file.table((OPTIONS,), given.get(OPTIONS, {}))
     known = arguments_of(System.__init__, without=("parts",))
-    hints = hints_of(System.simulate)  # of what belongs to the parts or to the run
+    hints = hints_of(System.simulate)  # for keys that belong to the parts or to the run
     if options is None or not checked(file, (OPTIONS,), options, known, hints=hints):
         return None
     if not file.sound:
@@ -200,7 +200,7 @@ def run_keys() -> dict[str, bool]:
 
 
 def described_run(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[str, Any]:
-    """Build the objects that tables inside a table of a run stand for."""
+    """Build the objects that inner tables of the table of a run describe."""
     found = dict(table)
     for name, kind in _OBJECTS.items():
         inner = found.get(name)
@@ -211,7 +211,7 @@ def described_run(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[s
         declared = kind.declared() if issubclass(kind, Component) else {}
         if checked(file, here, given, arguments_of(kind), declared):
             found[name] = made(file, here, kind, given)
-        if not isinstance(found[name], kind):  # which has been told
+        if not isinstance(found[name], kind):  # its fault has been noted
             del found[name]
     return found
 
@@ -221,7 +221,7 @@ _OBJECTS: Final[Mapping[str, type]] = {
     "accuracy": Accuracy,
     "certify": Certification,
 }
-"""Classes of what a table inside that of a run describes."""
+"""Classes of the objects that inner tables of the table of a run describe."""
 
 
 def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
@@ -237,7 +237,7 @@ def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
 
 
 def described_project(file: TomlFile, given: object) -> str:
-    """Read what reports are to say of the project."""
+    """Read the description of the project for reports."""
     table = file.table((PROJECT,), given)
     if table is None:
         return ""
@@ -245,7 +245,7 @@ def described_project(file: TomlFile, given: object) -> str:
 
 
 def _read_project(**given: Any) -> str:
-    """Read a project, and the checks that it asks for, before there is a result."""
+    """Read a project and its checks by codes, before there is a result."""
     text = project_json(given, PROJECT)
     for one in given.get(CHECKS, ()):
         check_of(str(one), CHECKS)
@@ -253,7 +253,7 @@ def _read_project(**given: Any) -> str:
 
 
 def _read_arguments(**given: Any) -> None:
-    """Read the arguments of a run before there is one, so that faults have their line."""
+    """Check the arguments of a run before it begins, so that faults have their lines."""
     usual: dict[str, Any] = {
         "accuracy": AccuracyLevel.STANDARD,
         "outputs": (),
@@ -287,7 +287,7 @@ def import_modules(file: TomlFile) -> None:
             _import(file, str(name))  # pyright: ignore[reportUnknownArgumentType]
         except RockframeError as problem:
             file.fault((MODULES,), f"{name}: {problem}")
-        except Exception as problem:  # code of others: whatever it raises
+        except Exception as problem:  # code of users may raise anything
             words = f"{name} cannot be imported ({type(problem).__name__}: {problem})"
             file.fault((MODULES,), words)
 
@@ -308,7 +308,7 @@ def _import(file: TomlFile, name: str) -> None:
     if spec is None or spec.loader is None:
         raise ImportError(name)
     module = module_from_spec(spec)
-    sys.modules[stem] = module  # classes are told by the names of their modules
+    sys.modules[stem] = module  # classes are found by the names of their modules
     try:
         spec.loader.exec_module(module)
     except BaseException:

@@ -41,7 +41,7 @@ OUTPUT: Final = "output"
 SWEEP: Final = "sweep"
 KNOWN: Final = "known"
 KEYS: Final = (SCENE, MOTIONS, AXES, CASES, STORE, OUTPUT, SWEEP)
-"""What a file of a study may hold, beside the tables of its scene."""
+"""Keys of the file of a study, besides the tables of its scene."""
 _NOT_OF_SWEEP: Final = (
     "scene", "motions", "axes", "cases", "store", "executor", "progress",
 )  # fmt: skip
@@ -58,15 +58,15 @@ class DescribedStudy:
 
     system: System  # the scene
     motions: Motions  # as :func:`rockframe.sweep` takes them
-    arguments: dict[str, Any]  # further arguments of it
-    store: Path | None  # where the cases are kept, and the file of the results
-    output: Path | None
-    files: tuple[Path, ...]  # all files, and folders of files, that it was read from
-    project: str  # what reports say of it, as results keep it
+    arguments: dict[str, Any]  # further arguments of :func:`rockframe.sweep`
+    store: Path | None  # folder of finished cases
+    output: Path | None  # file of the results
+    files: tuple[Path, ...]  # all files and folders that were read
+    project: str  # the project in JSON, as results keep it
     source: TomlFile  # the file of the study
 
     def at_lines(self, problem: StudyError) -> FileError:
-        """Tell what is wrong with a study at the lines of its file."""
+        """Give the faults of a study with the lines of its file."""
         given = {name: self.source.values.get(name) for name in (AXES, SWEEP)}
         tables = {name: table for name, table in given.items() if isinstance(table, dict)}
         for words in problem.faults:
@@ -76,9 +76,9 @@ class DescribedStudy:
 
 
 def read_study(path: str | Path, *, varied: bool = True) -> DescribedStudy:
-    """Read the file of a study; one that need not be varied may be a scene alone."""
+    """Read the file of a study; unless `varied`, it may be a scene alone."""
     file = TomlFile.read(path)
-    import_modules(file)  # whose parts may have tables of their own
+    import_modules(file)  # before the keys are checked: its parts may add tables
     for name in file.values:
         if name not in (*KEYS, *scene_keys()):
             file.unknown((), name, (*KEYS, *scene_keys()))
@@ -89,7 +89,7 @@ def read_study(path: str | Path, *, varied: bool = True) -> DescribedStudy:
     if varied and AXES not in file.values and CASES not in file.values:
         file.fault((), "a study needs [axes], such as scale = [0.5, 1.0, 1.5], or cases")
     file.check()
-    if scene is None:  # without a fault there is a scene
+    if scene is None:  # cannot be: without a fault there is a scene
         raise AssertionError
     taken = {name: value for name, value in scene.run.items() if name in _FROM_RUN}
     used = scene.motion if motions is None else motions
@@ -110,8 +110,8 @@ def _scene_of(file: TomlFile) -> Described | None:
         return described_scene(file)
     inner = [key for key in file.values if key in scene_keys() and key != PROJECT]
     for key in inner:
-        where = "; what the runs of a study take stands in [sweep]" if key == RUN else ""
-        words = f"[{key}] and scene = {shown(name)} are both given; one of them does{where}"
+        where = "; arguments of the runs of a study belong in [sweep]" if key == RUN else ""
+        words = f"[{key}] and scene = {shown(name)} are both given; give only one of them{where}"
         file.fault((key,), words)
     if not isinstance(name, str):
         file.fault((SCENE,), f"scene must be the path of a file, got {shown(name)}")
@@ -119,9 +119,9 @@ def _scene_of(file: TomlFile) -> Described | None:
     try:
         scene = read_scene(file.path_beside(name))
     except FileError as problem:
-        file.fault((SCENE,), f"the scene is not sound\n{problem}")
+        file.fault((SCENE,), f"the scene has faults\n{problem}")
         return None
-    if PROJECT in file.values:  # that of the study goes before that of the scene
+    if PROJECT in file.values:  # the project of the study replaces that of the scene
         return replace(scene, project=described_project(file, file.values[PROJECT]))
     return scene
 
@@ -178,7 +178,7 @@ def _axis(file: TomlFile, name: str, given: object) -> Any:
     table = file.table(where, given) or {}
     if table and not {"values", "unit"}.intersection(table):
         written = f'"{name}.{next(iter(table))}" = [...]'
-        file.fault(where, f"an axis of a part stands in quotation marks: {written}")
+        file.fault(where, f"write the axis of a part in quotation marks: {written}")
         return []
     if checked(file, where, table, {"values": True, "unit": True}):
         return (table["values"], table["unit"])

@@ -1,4 +1,4 @@
-"""A TOML file with what is wrong in it, each fault with its line; functions called with a table."""
+"""TOML files whose faults are collected with their lines, and calls of functions with a table."""
 
 import re
 import tomllib
@@ -37,7 +37,7 @@ _PIECE: Final = re.compile(
     r"|.",
     re.DOTALL,
 )
-"""A text, a comment, or a letter."""
+"""A text in quotation marks, a comment, or a single character."""
 
 
 def lines_of(text: str) -> dict[Place, int]:
@@ -81,7 +81,7 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _names(nested: Any) -> Place:
-    """Give the keys of tables of which each holds one."""
+    """Give the keys of nested tables that have one key each."""
     names: list[str] = []
     while isinstance(nested, dict | list) and nested:
         if isinstance(nested, list):
@@ -93,7 +93,7 @@ def _names(nested: Any) -> Place:
 
 
 def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
-    """Give a path with the numbers of tables in arrays: a header speaks of the last one so far."""
+    """Give a path with the numbers of tables in arrays: a header refers to the last one so far."""
     place: Place = ()
     for name in names:
         place = (*place, name)
@@ -104,9 +104,9 @@ def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
 
 _WHERE: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
 _EXAMPLE: Final = re.compile(r"for example (\w+)='([^']*)'")
-"""An argument as Python has it, which TOML writes otherwise."""
+"""An argument in the notation of Python, to be rewritten in that of TOML."""
 _CONTROL: Final = re.compile(r"[\x00-\x08\x0e-\x1f\ufffd]")
-"""What stands in no text."""
+"""Characters that do not occur in text."""
 _NO_TEXT: Final = (
     "this is no text; expected a scene or a study in TOML, as 'rockframe template' prints it. "
     "Results (.nc) are for 'rockframe plot' and for 'rockframe report', which certifies them"
@@ -114,7 +114,7 @@ _NO_TEXT: Final = (
 
 
 class TomlFile:
-    """What stands in a file, and the faults found so far."""
+    """The contents of a file, and the faults found so far."""
 
     def __init__(self, path: Path, values: Mapping[str, Any], lines: Mapping[Place, int]) -> None:
         self.path = path
@@ -122,7 +122,7 @@ class TomlFile:
         self._lines = lines
         self._faults: list[tuple[int | None, str]] = []
         self.files: list[Path] = [path]
-        """This one, and those that were read because they are named in it."""
+        """This file, and those that were read because it names them."""
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
@@ -135,21 +135,21 @@ class TomlFile:
             found = _WHERE.search(str(problem))
             line = int(found[1]) if found else None
             words = f"this is no TOML: {_WHERE.sub('', str(problem))}"
-            hint = '; a text stands in quotation marks, as in width = "1 m"'
+            hint = '; write text in quotation marks, as in width = "1 m"'
             raise FileError(str(place), [(line, words + hint)]) from problem
         return cls(place, values, lines_of(text))
 
     def path_beside(self, name: str) -> Path:
-        """Give the path of a file to be read, which is named relative to the folder of this one."""
+        """Give the path of a file to be read, named relative to the folder of this file."""
         self.files.append(self.path_of(name))
         return self.files[-1]
 
     def path_of(self, name: str) -> Path:
-        """Give a path that is named in this file, relative to its folder."""
+        """Give the path of a name in this file, relative to its folder."""
         return self.path.parent / Path(name).expanduser()
 
     def fault(self, where: Place, words: str) -> None:
-        """Note what is wrong, at the line of a place or of the table around it."""
+        """Note a fault, with the line of a place or else of the table around it."""
         depths = range(len(where), 0, -1)
         lines = [self._lines[where[:depth]] for depth in depths if where[:depth] in self._lines]
         written = _EXAMPLE.sub(r'for example \1 = "\2"', words)
@@ -161,16 +161,16 @@ class TomlFile:
         return not self._faults
 
     def check(self) -> None:
-        """Refuse the file if a fault has been found."""
+        """Raise if a fault has been found."""
         if self._faults:
             raise self.error()
 
     def error(self) -> FileError:
-        """Give the faults that have been found, in the order of their lines."""
+        """Give the error with all faults, in the order of their lines."""
         return FileError(str(self.path), sorted(self._faults, key=lambda fault: fault[0] or 0))
 
     def table(self, where: Place, given: object) -> dict[str, Any] | None:
-        """Give a value that must be a table, or note that it is none."""
+        """Give a value that must be a table, or note a fault."""
         if isinstance(given, dict):
             return {str(name): value for name, value in given.items()}  # pyright: ignore[reportUnknownVariableType]
         self.fault(
@@ -181,7 +181,7 @@ class TomlFile:
         return None
 
     def unknown(self, where: Place, name: str, known: Iterable[str], hint: str = "") -> None:
-        """Note a key that means nothing, and which one may have been meant."""
+        """Note an unknown key, and the one that may have been meant."""
         known = list(known)
         if hint:
             self.fault((*where, name), f"unknown key {name!r}: {hint}")
@@ -192,7 +192,7 @@ class TomlFile:
 
 
 def _bytes_of(path: str | Path) -> tuple[Path, bytes]:
-    """Read a file, or the standard input, beside which are the files of the folder one is in."""
+    """Read a file, or the standard input, whose folder is the current one."""
     if str(path) == STREAM:
         return Path(INPUT), StandardInput.read_for("a scene").getvalue()
     try:
@@ -201,14 +201,14 @@ def _bytes_of(path: str | Path) -> tuple[Path, bytes]:
     except FileNotFoundError as problem:
         raise FileError(str(path), [(None, "there is no such file")]) from problem
     except IsADirectoryError as problem:
-        words = "this is a folder; expected the file of a scene or a study in it"
+        words = "this is a folder; expected the file of a scene or a study"
         raise FileError(str(path), [(None, words)]) from problem
-    except (OSError, ValueError, RuntimeError) as problem:  # or a name that no file can have
+    except (OSError, ValueError, RuntimeError) as problem:  # also names that no file can have
         raise FileError(str(path), [(None, f"it cannot be read ({problem})")]) from problem
 
 
 def _text_of(name: str, data: bytes) -> str:
-    """Read the text of a file, as any editor may have written it, with its lines ended alike."""
+    r"""Read the text of a file in any usual encoding, with ``\n`` at the end of lines."""
     try:
         marked = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
         text = data.decode("utf-16" if marked else "utf-8-sig")
@@ -219,26 +219,26 @@ def _text_of(name: str, data: bytes) -> str:
         line = data[: problem.start].count(b"\n") + 1
         sign = data[problem.start : problem.start + 1].decode("cp1252", "replace")
         words = (
-            f"{name}, line {line}: found {sign!r} in the encoding of old Windows (Latin-1), in "
-            "which the whole file is read; save it as UTF-8, which TOML is written in"
+            f"{name}, line {line}: found {sign!r} in the old encoding of Windows (Latin-1), in "
+            "which the whole file is read; save it as UTF-8, the encoding of TOML"
         )
         warn(words, RockframeWarning)
     return text.replace("\r\n", "\n")
 
 
 def read_columns(path: str | Path) -> pd.DataFrame:
-    """Read a table in CSV, each row with as many values as there are heads; OSError, ValueError."""
-    # a motion called 01 is another one than 1
+    """Read a table in CSV whose rows have as many values as heads; OSError, ValueError."""
+    # motions stay text, since the names 01 and 1 differ
     found = pd.read_csv(path, comment="#", skipinitialspace=True, dtype={MOTION: str})
-    if not isinstance(found.index, pd.RangeIndex):  # pandas takes what is too much for labels
+    if not isinstance(found.index, pd.RangeIndex):  # pandas takes superfluous values as labels
         count = len(found.columns)
-        msg = f"its rows have {count + found.index.nlevels} values, below {count} heads"
+        msg = f"its rows have {count + found.index.nlevels} values, but there are {count} heads"
         raise ValueError(msg)
     return found
 
 
 def table_title(where: Place) -> str:
-    """Name a table as its header does."""
+    """Name a table as in its header."""
     return ".".join(name for name in where if isinstance(name, str))
 
 
@@ -263,7 +263,7 @@ def checked(
     declared: Mapping[str, Declared[Any, Any]] | None = None,
     hints: Mapping[str, str] | None = None,
 ) -> bool:
-    """Note keys that mean nothing, keys that are missing, and values that cannot be read."""
+    """Note unknown keys, missing keys and values that cannot be read; false if there are any."""
     sound = True
     declared = declared or {}
     for name in table:
@@ -287,7 +287,7 @@ def checked(
 def made(
     file: TomlFile, where: Place, function: Callable[..., Made], table: Mapping[str, Any]
 ) -> Made | None:
-    """Call a function with a table that has been checked; note why that cannot be done."""
+    """Call a function with a checked table, or note why this fails."""
     try:
         return function(**table)
     except (AssemblyError, StudyError) as problem:
@@ -308,7 +308,7 @@ def _wanted(one: Declared[Any, Any] | None) -> str:
 
 
 def key_in(words: str, where: Place, table: Mapping[str, Any]) -> Place:
-    """Give the place of the first key of a table that a message names; else of the table."""
+    """Give the place of the first key of a table that a message names, else of the table."""
     found = {name: re.search(rf"\b{re.escape(name)}\b", words) for name in table}
     starts = {name: match.start() for name, match in found.items() if match is not None}
     if starts:
@@ -322,7 +322,7 @@ def key_in(words: str, where: Place, table: Mapping[str, Any]) -> Place:
 
 
 def _within(words: str, where: Place, inner: object) -> Place:
-    """Follow the keys of inner tables that a message has in quotation marks."""
+    """Follow the keys of inner tables that a message has in quotation marks, to the innermost."""
     if not isinstance(inner, dict):
         return where
     table = cast("dict[str, object]", inner)

@@ -1,4 +1,4 @@
-"""Scenes and a study to begin with, and a file of all keys, from the declarations."""
+"""Scenes and a study to begin with, and a file of all keys made from their declarations."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -31,13 +31,13 @@ amplitude = "{amplitude}"
 frequency = "{frequency}"
 
 [run]
-free_vibration = "{free}"          # still ground after the motion
+free_vibration = "{free}"          # time after the motion, with the ground at rest
 accuracy = "standard"            # or "fast", "reference"
 """
 
 _BLOCK: Final = """\
-# A block that stands freely on rigid ground.
-# Every quantity carries its unit. 'rockframe template all' lists every key.
+# A freestanding block on rigid ground.
+# Every quantity has its unit. 'rockframe template all' lists every key.
 
 [block]
 width = "0.8 m"                  # in the plane of rocking
@@ -80,7 +80,7 @@ _STACK: Final = """\
 # A frame building on pads, on a cap, on soil.
 
 [block]
-type = "FrameEquivalent"         # the rigid block that rocks like the frame
+type = "FrameEquivalent"         # the equivalent rigid block of the frame
 width = "4 m"
 height = "18 m"
 mass = "99 t"
@@ -133,9 +133,9 @@ _STUDY: Final = """\
 # A study: a scene at all combinations of the values of its axes.
 
 scene = "scene.toml"             # or the tables of the scene in this file
-# motions = ["records/*.AT2"]    # files, folders and archives; else the scene's motion
-# cases = "cases.csv"            # a table with a row for each case, instead of axes
-store = "study"                  # a folder: an interrupted study goes on
+# motions = ["records/*.AT2"]    # files, folders and archives, instead of the scene's motion
+# cases = "cases.csv"            # a table with one row for each case, instead of axes
+store = "study"                  # a folder: an interrupted study continues
 output = "study.nc"
 
 [axes]
@@ -154,13 +154,13 @@ TEMPLATES: Final = {
     "statue": _STATUE + _MOTION.format(amplitude="-3 m/s^2", frequency="1.5 Hz", free="5 s"),
     "study": _STUDY,
 }
-"""Texts by what they describe."""
+"""Texts by the kind of scene."""
 
 
 _WIDTH: Final = 96
 _HEAD: Final = """\
 # Every table and every key of the files of scenes and studies.
-# What must be given is marked so; all else may be left out.
+# All keys are optional but those marked "must be given".
 
 modules = []      # files in which you declare parts of your own, such as ["mine.py"]
 """
@@ -185,8 +185,8 @@ def _lines() -> Iterator[str]:
     yield from _of_function("system", "options of the system", System.__init__, of=System)
     yield from _of_motion()
     yield from _of_function("run", "how it is simulated", System.simulate, names=run_keys())
-    yield from _of_component("run.initial", "where the run starts", InitialState)
-    yield from _title("project", "what reports say of it")
+    yield from _of_component("run.initial", "state at the start of the run", InitialState)
+    yield from _title("project", "for reports")
     yield from (f'{name} = ""' for name in LINES)
     yield f'{CONCLUSION} = ""'.ljust(18) + "# a sentence"
     yield f"{ASSUMPTIONS} = []".ljust(18) + "# a list of texts"
@@ -260,10 +260,10 @@ def _of_function(
 
 
 def _of_motion() -> Iterator[str]:
-    yield from _title("motion", "of the ground; a record")
+    yield from _title("motion", "motion of the ground, from a record")
     meanings = _meanings(GroundMotion.read)
     for name, must in motion_keys().items():
-        words = {"file": "path of the record", "operations": "list of what is done to it"}
+        words = {"file": "path of the record", "operations": "list of operations on the motion"}
         meaning = words.get(name, meanings.get(name, ""))
         yield from _commented(f"# {name}", f"{'must be given: ' if must else ''}{meaning}")
     yield f"# or {CONSTRUCTOR}, with its arguments:"
@@ -282,13 +282,13 @@ def _of_study() -> Iterator[str]:
     for name, words in (
         ("scene", "path of the scene, unless its tables are in the file of the study"),
         ("motions", "list of files, folders, archives and patterns; or tables [[motions]]"),
-        ("cases", "path of a table in CSV, with a row for each case and units in its heads"),
-        ("store", "folder that keeps what has been run"),
+        ("cases", "path of a table in CSV, with one row for each case and units in its heads"),
+        ("store", "folder that keeps finished cases"),
         ("output", "file of the results"),
     ):
         yield from _commented(f"# {name}", words)
-    yield from _title("axes", "what varies: parameters, options, scale; lists of values")
-    yield from _of_function("sweep", "how all of it is simulated", sweep, names=sweep_keys())
+    yield from _title("axes", "lists of values of what varies: parameters, options, scale")
+    yield from _of_function("sweep", "how the cases are simulated", sweep, names=sweep_keys())
 
 
 def _marked(keys: Mapping[str, bool]) -> list[str]:
@@ -300,7 +300,7 @@ def _keys(words: str) -> Iterator[str]:
 
 
 def _commented(head: str, words: str) -> Iterator[str]:
-    """Set a key, and its meaning behind it, broken into lines."""
+    """Write a key, followed by its meaning in wrapped lines."""
     column = max(len(head) + 2, 34)
     pieces = wrap(words, max(_WIDTH - column, 40)) or [""]
     yield f"{head.ljust(column)}{pieces[0]}".rstrip()
@@ -319,7 +319,7 @@ def _summary(documented: object) -> str:
 
 
 def _meanings(documented: object) -> dict[str, str]:
-    """Give what the docstring in numpydoc's style says of every argument."""
+    """Give the description of each parameter in a numpydoc docstring."""
     section = _PARAMETERS.search(getdoc(documented) or "")
     found: dict[str, str] = {}
     for names, words in _ENTRY.findall(section[1] if section else ""):
@@ -329,5 +329,5 @@ def _meanings(documented: object) -> dict[str, str]:
 
 
 def _without_markup(words: str) -> str:
-    """Take the marks of reStructuredText away."""
+    """Remove the markup of reStructuredText."""
     return re.sub(r":\w+:`[~.]?([^`]*)`", r"\1", words).replace("``", "").replace("`", "")

@@ -1,1 +1,1 @@
-"""Bodies as they are: mass, centre of mass, inertia and base from their shape."""
+"""Bodies of any shape: mass, centre of mass, moment of inertia and base from the shape."""

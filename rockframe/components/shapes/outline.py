@@ -24,15 +24,15 @@ from rockframe.proposals import hinted
 from rockframe.signals.arrays import Array
 from rockframe.units import DENSITY, LENGTH, MASS, POSITIVE, THICKNESS, Measure, QuantityLike, to_si
 
-_THIN: Final = 1e-12  # of the size: what is thinner has no area
+_THIN: Final = 1e-12  # thickness over size below which an outline has no area
 
 
 def polygon(points: Array) -> tuple[float, float, float, float]:
-    """Give area, centroid and mean square distance from it, :eq:`eq-polygon-area` and after.
+    """Give area, centroid and mean square distance from it, from :eq:`eq-polygon-area` on.
 
-    The points are corners in their order, either way round. Sums by Green's theorem (Steger 1996)
-    are exact, about the middle of the polygon and in parts of its size, so that a far origin costs
-    no digits.
+    The points are the corners in order, clockwise or anticlockwise. The sums follow from Green's
+    theorem and are exact (Steger 1996). They use coordinates from the middle of the polygon,
+    divided by its size, so that a distant origin costs no digits.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     middle, size = 0.5 * (low + high), extent_of(points)
@@ -53,7 +53,7 @@ def extent_of(points: Array) -> float:
 
 
 def is_flat(points: Array) -> bool:
-    """Tell whether all points lie on one line, but for rounding."""
+    """Tell whether all points lie on one line, up to rounding."""
     size = extent_of(points)
     if not 0.0 < size < math.inf:
         return True
@@ -97,7 +97,7 @@ def crossing(points: Array) -> tuple[int, int] | None:
 
 def _squares(x: Array) -> Array:
     """Give six times the mean square over the triangle of the origin and each edge."""
-    # in an order that is the same either way round
+    # in an order that gives the same rounding in both directions
     ahead = np.roll(x, -1)
     return (x * x + ahead * ahead) + x * ahead
 
@@ -118,7 +118,7 @@ def outline_mass(
 ) -> tuple[PlaneMass, list[OutlineCorner]]:
     """Read an outline, check that it is a simple polygon, and give its mass and corners."""
     read = read_points(points, owner=owner, name=name)
-    # a point that repeats the one before, as the last may repeat the first, is no corner
+    # points that repeat the one before are left out; the first follows the last
     kept = [k for k in range(len(read)) if (read[k] != read[k - 1]).any()]
     corners = [OutlineCorner(f"{name}[{k}]", float(read[k, 0]), float(read[k, 1])) for k in kept]
     _check_simple(read[kept], corners, owner)
@@ -163,9 +163,9 @@ def _refuse_single(corners: Sequence[OutlineCorner], owner: str) -> None:
     if (second - first) % len(corners) in (1, len(corners) - 1):
         slope = math.copysign(math.degrees(math.atan2(rise, abs(run))), run)
         msg += (
-            f": the edge between these is inclined by {slope:.4g} deg; turn the outline until it "
-            f"is level, and where the ground slopes so give System(..., inclination='{slope:.4g} "
-            "deg')"
+            f": the edge between these is inclined by {slope:.4g} deg; rotate the outline until "
+            f"it is level, and for ground with this slope give System(..., "
+            f"inclination='{slope:.4g} deg')"
         )
     raise ComponentError(msg)
 
@@ -189,15 +189,15 @@ def from_outline(
     Parameters
     ----------
     points : sequence of (x, y), or array with a unit
-        Corners of the outline in their order around it, either way round: pairs of
-        lengths, a Quantity of shape (n, 2), or such an array and a unit; x to the right,
-        y upwards, from any origin. The first need not be repeated [m].
+        Corners of the outline in order, clockwise or anticlockwise: pairs of lengths, a
+        Quantity of shape (n, 2), or such an array and a unit; x to the right, y upwards,
+        from any origin. The first corner need not be repeated [m].
     unit : str, optional
-        Of points that are bare numbers.
+        Unit of points that are bare numbers.
     density, depth : str or Quantity, optional
         Mass per volume [kg m^-3], and size perpendicular to the plane [m].
     mass : str or Quantity, optional
-        Mass, instead of both, spread evenly over the outline [kg].
+        Mass, instead of both, distributed evenly over the outline [kg].
 
     Returns
     -------
@@ -216,14 +216,14 @@ def from_outline(
     -----
     ModelWarning
         A corner beyond the base would touch the ground before the body overturns; the
-        model lets it through.
+        model ignores this contact.
 
     Notes
     -----
-    The base goes from the leftmost to the rightmost of the lowest corners, so that a body
-    on feet stands on these. Heights that differ by 1e-9 of the size or less are one. Mass,
-    centre of mass and moment of inertia are exact, :eq:`eq-polygon-inertia`. A base that
-    is inclined is refused.
+    The base extends from the leftmost to the rightmost of the lowest corners, so that a body
+    with feet stands on these. Heights that differ by 1e-9 of the size or less count as equal.
+    Mass, centre of mass and moment of inertia are exact, :eq:`eq-polygon-inertia`. An inclined
+    base is refused.
 
     Examples
     --------
@@ -272,7 +272,7 @@ def cylinder(
     density : str or Quantity, optional
         Mass per volume, instead of `mass` [kg m^-3].
     wall_thickness : str or Quantity, optional
-        Of a tube, open at both ends; solid unless given [m].
+        Wall thickness of a tube that is open at both ends; solid unless given [m].
 
     Returns
     -------
@@ -288,9 +288,9 @@ def cylinder(
 
     Notes
     -----
-    Moment of inertia :eq:`eq-cylinder-inertia`. A real cylinder that comes down on its base
-    rolls on along its rim, to a side (Srinivasan and Ruina 2008); the model keeps it in a
-    plane, where it rocks from one end of a diameter to the other.
+    The moment of inertia is :eq:`eq-cylinder-inertia`. A real cylinder that lands on its base
+    rolls on along its rim, out of the plane (Srinivasan and Ruina 2008). The model keeps it in
+    the plane, where it rocks from one end of a diameter to the other.
 
     Examples
     --------
@@ -311,7 +311,7 @@ def cylinder(
         if thickness >= outer:
             msg = (
                 f"{owner}: wall_thickness must be less than half the diameter, {outer:.6g} m, got "
-                f"{thickness:.6g} m; a solid cylinder is given without it"
+                f"{thickness:.6g} m; leave it out for a solid cylinder"
             )
             raise ComponentError(msg)
         inner = outer - thickness

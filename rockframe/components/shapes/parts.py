@@ -1,4 +1,4 @@
-"""A body put together from parts: their masses, and the base they stand on together."""
+"""A body composed of parts: their masses and their common base."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 class Part(TypedDict, total=False):
-    """What a part of a body is told by, see :meth:`rockframe.Block.from_parts`."""
+    """Description of a part of a body, see :meth:`rockframe.Block.from_parts`."""
 
     at: Place
     mass: QuantityLike
@@ -50,7 +50,7 @@ class Part(TypedDict, total=False):
 
 
 _MASS: Final = ("mass", "density", "depth")
-# what tells the kind of a part, and what else may be said of it
+# the word that determines the kind of a part, and all words for this kind
 _KINDS: Final = {
     "body": ("body", "at"),
     "outline": ("outline", *_MASS, "at"),
@@ -62,7 +62,7 @@ _KINDS: Final = {
 
 @dataclass(frozen=True)
 class PlacedPart:
-    """Mass, corners and top of a part, in the coordinates of the whole."""
+    """Mass, corners and top of a part, in the coordinates of the body."""
 
     name: str
     mass: PlaneMass
@@ -91,8 +91,8 @@ def read_part(name: str, given: Mapping[str, Any], owner: str) -> PlacedPart:
     foreign = [word for word in values if word not in _KINDS[kind]]
     if foreign:
         msg = (
-            f"{place} has {', '.join(map(shown, foreign))}, which says nothing of a part with "
-            f"{shown(kind)}; it is told by {', '.join(_KINDS[kind])}"
+            f"{place} has {', '.join(map(shown, foreign))}, which a part with {shown(kind)} does "
+            f"not take; expected some of {', '.join(_KINDS[kind])}"
         )
         raise ComponentError(msg)
     x, y = (0.0, 0.0) if "at" not in values else read_place(values["at"], owner=place, name="at")
@@ -161,7 +161,7 @@ def _positive(values: Mapping[str, Any], name: str, measure: Measure, *, owner: 
 
 
 def _standing(kind: type[Made], given: object, base: object, owner: str) -> Made:
-    """Make a body of parts that stand and are fixed to one another."""
+    """Make a body of parts that are fixed to one another, on their common base."""
     parts = _read(given, owner)
     corners = [corner for part in parts for corner in part.corners]
     top = max(part.top for part in parts)
@@ -205,8 +205,8 @@ def _check_above(parts: Sequence[PlacedPart], slack: float, owner: str) -> None:
     for part in parts:
         if part.bottom < -slack:
             msg = (
-                f"{owner}: part {part.name!r} reaches {-part.bottom:.6g} m below the ground; "
-                "heights count from there"
+                f"{owner}: part {part.name!r} reaches {-part.bottom:.6g} m below the ground, "
+                "from which heights are measured"
             )
             raise ComponentError(msg)
 
@@ -214,19 +214,19 @@ def _check_above(parts: Sequence[PlacedPart], slack: float, owner: str) -> None:
 def _common_base(
     parts: Sequence[PlacedPart], on_ground: Sequence[float], slack: float, owner: str
 ) -> Stance:
-    """Take the base from the outermost corners at the ground."""
+    """Take the base between the outermost corners on the ground."""
     if not on_ground:
         lowest = min(parts, key=lambda part: part.bottom)
         msg = (
             f"{owner}: no part stands on the ground, at height zero; the lowest, "
             f"{lowest.name!r}, is {lowest.bottom:.6g} m above it. Give base=(left, right), the "
-            "ends of the base, if it stands on legs that are no part"
+            "ends of the base, if the body stands on legs that are not among the parts"
         )
         raise ComponentError(msg)
     if on_ground[-1] - on_ground[0] <= slack:
         msg = (
             f"{owner}: the parts stand on one point, at x = {on_ground[0]:.6g} m; give "
-            "base=(left, right), the ends of the base, if there is more"
+            "base=(left, right), the ends of the base, if it is wider"
         )
         raise ComponentError(msg)
     return Stance(on_ground[0], on_ground[-1], 0.0)
@@ -237,13 +237,13 @@ def _given_base(
 ) -> Stance:
     left, right = read_place(base, owner=owner, name="base")
     if left >= right:
-        msg = f"{owner}: base needs its left end and then its right one, got {shown(base)}"
+        msg = f"{owner}: base needs the left end, then the right end, got {shown(base)}"
         raise ComponentError(msg)
     for x, part in on_ground.items():
         if not left - slack <= x <= right + slack:
             msg = (
                 f"{owner}: part {part.name!r} stands on the ground at x = {x:.6g} m, beyond the "
-                f"base, which goes from {left:.6g} m to {right:.6g} m"
+                f"base, which extends from {left:.6g} m to {right:.6g} m"
             )
             raise ComponentError(msg)
     return Stance(left, right, 0.0)
@@ -256,20 +256,20 @@ def from_parts(cls: type[Made], parts: Mapping[str, Part], *, base: Place | None
     Parameters
     ----------
     parts : mapping of str to mapping
-        Every part by its name, told by one of
+        The parts by name, each described by one of
 
         - ``width`` and ``height``, for a rectangle, with its mass;
         - ``outline``, as the points of :meth:`from_outline`, with its mass;
         - ``body``, another Block, with its own mass, centre of mass and inertia;
         - ``mass`` alone for a point, or with ``inertia`` about its centre of mass.
 
-        Mass is ``mass``, or ``density`` with ``depth``. ``at=(x, y)`` says where it is: the
-        middle of the lower edge of a rectangle or of the base of a body, the origin of an
-        outline, the centre of a point. x counts to the right, y from the ground up; both are
-        zero unless given.
+        The mass is ``mass``, or ``density`` with ``depth``. The position ``at=(x, y)`` is that
+        of the middle of the lower edge of a rectangle or of the base of a body, of the origin
+        of an outline, or of a point. x is positive to the right, y upwards from the ground;
+        both are zero unless given.
     base : pair of str or Quantity, optional
-        x of its left and of its right end, where a body stands on more or less than the
-        parts show, such as legs; unless given it goes from the leftmost to the rightmost
+        x of the left and of the right end of the base, if this differs from the parts, for
+        example on legs; unless given, the base extends from the leftmost to the rightmost
         corner on the ground [m].
 
     Returns
@@ -281,20 +281,20 @@ def from_parts(cls: type[Made], parts: Mapping[str, Part], *, base: Place | None
     UnitsError
         A value has no unit, or one of the wrong kind.
     ComponentError
-        A part is not told as above, reaches below the ground or stands beyond the base;
-        none stands on the ground and no base is given; the centre of mass is not above
-        the base; or as for :class:`Block`.
+        A part is not described as above, reaches below the ground or stands beyond the base;
+        none stands on the ground and no base is given; the centre of mass is not above the
+        base; or as for :class:`Block`.
 
     Warns
     -----
     ModelWarning
         A corner of a part beyond the base would touch the ground before the body
-        overturns; the model lets it through.
+        overturns; the model ignores this contact.
 
     Notes
     -----
-    Masses add up by :eq:`eq-parts-centre` and :eq:`eq-parts-inertia`. Whether parts overlap
-    is not checked: books stand within a bookcase. Of a ``body`` its base and its height are
+    Masses add up by :eq:`eq-parts-centre` and :eq:`eq-parts-inertia`. Parts may overlap, as
+    books stand within a bookcase; this is not checked. Only base and height of a ``body`` are
     known, not its outline.
 
     Examples

@@ -1,4 +1,4 @@
-"""Masses and points of shapes as users give them, and how a body stands on level ground."""
+"""Reading of masses and points of shapes, and the base of a body on level ground."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -35,12 +35,12 @@ from rockframe.units import (
 
 @dataclass(frozen=True)
 class PlaneMass:
-    """A mass in SI units."""
+    """A mass with its centre and its moment of inertia, in SI units."""
 
     mass: float
-    x: float  # of its centre, to the right
-    y: float
-    inertia: float  # about its own centre
+    x: float  # coordinates of its centre of mass, to the right
+    y: float  # and upwards
+    inertia: float  # about its centre of mass
 
 
 Mass = TypeVar("Mass", bound=PlaneMass)
@@ -48,7 +48,7 @@ Mass = TypeVar("Mass", bound=PlaneMass)
 
 def mean_by_mass(masses: Sequence[Mass], value: Callable[[Mass], float]) -> float:
     """Give the mean of a value, weighted by mass."""
-    # every share is at most 1: masses of any magnitude stay representable
+    # every fraction is at most 1, so that masses of any magnitude do not overflow
     total = sum(one.mass for one in masses)
     return math.fsum(value(one) * (one.mass / total) for one in masses)
 
@@ -59,7 +59,7 @@ def centre_of_mass(masses: Sequence[PlaneMass]) -> tuple[float, float]:
 
 
 def combined_mass(masses: Sequence[PlaneMass]) -> PlaneMass:
-    """Make one mass of many, by the parallel-axis theorem, :eq:`eq-parts-inertia`."""
+    """Combine masses to one, by the parallel-axis theorem, :eq:`eq-parts-inertia`."""
     x, y = centre_of_mass(masses)
     total = sum(one.mass for one in masses)
     squares = mean_by_mass(
@@ -75,10 +75,10 @@ MASS_WAYS: Final = OneOf("mass", ("density", "depth"))
 
 
 def read_points(given: object, *, owner: str, name: str) -> Array:
-    """Read points, pairs of lengths or an array with a unit: shape (n, 2) [m]."""
+    """Read points from pairs of lengths or an array with a unit, shape (n, 2) [m]."""
     wanted = (
         f"{owner}: {name} needs pairs of lengths, such as [('0 m', '0 m'), ('1 m', '0 m'), ...], "
-        "or numbers of shape (n, 2) beside their unit, (points, 'm')"
+        "or numbers of shape (n, 2) with their unit, (points, 'm')"
     )
     if isinstance(given, pint.Quantity):
         whole: Any = given
@@ -120,7 +120,7 @@ def read_place(given: object, *, owner: str, name: str) -> tuple[float, float]:
 
 
 def read_mass(given: Mapping[str, object], area: float, *, owner: str) -> float:
-    """Read a mass, or what it follows from: density, depth and the area that is seen [kg]."""
+    """Read a mass, or compute it from density, depth and the area in the plane [kg]."""
     MASS_WAYS.check(given, owner)
 
     def positive(name: str, measure: Any) -> float:
@@ -138,7 +138,7 @@ def read_mass(given: Mapping[str, object], area: float, *, owner: str) -> float:
 def _array(values: object, factor: float, wanted: str) -> Array:
     try:
         array = np.asarray(values)
-    except (ValueError, TypeError):  # rows of different lengths, or what is no array
+    except (ValueError, TypeError):  # rows of different lengths, or not an array
         array = np.array([None])
     if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
         found = f"shape {array.shape}" if array.dtype.kind in "fiu" else shown(values)
@@ -152,16 +152,16 @@ def _array(values: object, factor: float, wanted: str) -> Array:
 
 
 ROUNDING: Final = 1e-9
-"""Relative to a body's size: heights that differ by less are one."""
+"""Difference over the size of the body up to which heights count as equal [1]."""
 CENTRED: Final = 1e-12
-"""Relative to the base: a centre of mass that is less beside its middle is above it."""
+"""Eccentricity over the width of the base up to which it counts as zero [1]."""
 
 Made = TypeVar("Made", bound=Component)
 
 
 @dataclass(frozen=True)
 class OutlineCorner:
-    """A point of a body that may touch the ground, and what it is called."""
+    """A point of a body that may touch the ground, with its name."""
 
     words: str
     x: float
@@ -178,14 +178,14 @@ class Stance:
 
     @property
     def middle(self) -> float:
-        """Between the ends [m]."""
+        """Coordinate of the middle between the ends [m]."""
         return 0.5 * (self.left + self.right)
 
     def touching_angle(self, corner: OutlineCorner, side: float) -> float:
-        """Give the rotation at which a corner comes down, :eq:`eq-touching-angle` [rad].
+        """Give the rotation at which a corner touches the ground, :eq:`eq-touching-angle` [rad].
 
-        That is for a corner beyond the end of the base about which the body rocks; no other
-        comes down before the body has turned by a right angle.
+        It holds for a corner beyond the end of the base about which the body rocks; no other
+        corner touches the ground before a rotation by a right angle.
         """
         end = self.right if side > 0.0 else self.left
         beyond = side * (corner.x - end)
@@ -207,14 +207,15 @@ def shaped_body(
     corners: Sequence[OutlineCorner],
     owner: str,
 ) -> Made:
-    """Make a block of its mass and base; refuse a centre of mass that is not above the base.
+    """Make a block from mass and base; refuse a centre of mass that is not above the base.
 
-    `top` is the height of the highest point [m]; `corners` may touch the ground beside the base.
+    `top` is the height of the highest point [m]; `corners` may touch the ground beyond the base.
     """
     if not stance.left < whole.x < stance.right:
         msg = (
             f"{owner}: the body would fall on its own: its centre of mass, at x = {whole.x:.6g} m, "
-            f"is not above its base, which goes from {stance.left:.6g} m to {stance.right:.6g} m"
+            f"is not above its base, which extends from {stance.left:.6g} m to "
+            f"{stance.right:.6g} m"
         )
         raise ComponentError(msg)
     width, beside = stance.right - stance.left, whole.x - stance.middle
@@ -227,7 +228,7 @@ def shaped_body(
     }
     if abs(beside) > CENTRED * width:
         arguments["eccentricity"] = _written(beside, LENGTH)
-    with collected_warnings():  # it may reach out beside its base, beyond the bound of its inertia
+    with collected_warnings():  # a body wider than its base may exceed the bound of its inertia
         made = kind(**arguments)
     for caution in _touching(whole, stance, corners):
         warn(f"{owner}: {caution}", ModelWarning)
@@ -243,7 +244,7 @@ def _touching(whole: PlaneMass, stance: Stance, corners: Sequence[OutlineCorner]
             yield (
                 f"leaning to the {word}, {corner.words}, at ({corner.x:.6g} m, {corner.y:.6g} m), "
                 f"touches the ground at {angle:.4g} rad, before the overturning angle of that "
-                f"side, {limit:.4g} rad; the model lets it through"
+                f"side, {limit:.4g} rad; the model ignores this contact"
             )
 
 

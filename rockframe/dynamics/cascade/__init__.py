@@ -1,1 +1,1 @@
-"""A body on a base, and on its cap another body that does not act back, Eq. (20)."""
+"""Two bodies in series, Eq. (20): the lower one shakes the upper one, which does not act back."""

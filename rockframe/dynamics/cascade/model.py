@@ -27,15 +27,15 @@ def cascade(
     Parameters
     ----------
     first : ContactModel
-        Block and cap as one body, :func:`rockframe.dynamics.alone.alone`.
+        Block and cap as one body on the soil, of :func:`rockframe.dynamics.alone.alone`.
     second : ContactModel
-        The block on its base, likewise.
+        The block on its base, of the same function.
     top, cap_centre : float
         Heights of the cap's top and of its centre above the first body's centre of mass [m].
     beside : float
-        How far that is to the right of the middle of the cap [m].
+        Distance of this centre of mass to the right of the middle of the cap [m].
     rest_rotation : float
-        Of the first body at rest [rad].
+        Rotation of the first body at rest [rad].
 
     Returns
     -------
@@ -82,7 +82,7 @@ def _part_of(model: ContactModel) -> OnBase:
 
 
 def _in_turn(second: Vector, first: Vector) -> Vector:
-    """Put together what belongs to the states of both bodies."""
+    """Join arrays of both bodies in the order of the state of the cascade."""
     coordinates = (second[0], second[1], first[0], first[1], second[2], first[2])
     rates = (second[3], second[4], first[3], first[4], second[5], first[5])
     return np.array([*coordinates, *rates, *second[6:], *first[6:]])

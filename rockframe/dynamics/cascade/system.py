@@ -1,8 +1,8 @@
-"""A building on pads on a cap on soil by two stages, Eq. (20), page "Cap and soil" of the manual.
+"""A building on pads on a cap on soil in two stages, Eq. (20), page "Cap and soil" of the manual.
 
-The lower body, block and cap as one on the soil, is shaken by the ground. The middle of its top
-shakes the upper one, the block on its pads, which does not act back. Both are integrated together,
-so that one control rules the errors of both. Energies are per unit mass of the block.
+The ground shakes the lower body, which is block and cap as one body on the soil. The middle of its
+top shakes the upper body, the block on its pads, which does not act back. Both are integrated
+together, with one control of the error for both. Energies are per unit mass of the block.
 """
 
 from typing import Final, NamedTuple
@@ -39,7 +39,7 @@ COLUMNS: Final = (
     *STACK_COLUMNS,
     Column("cap_acceleration"),
     Column("cap_vertical_acceleration"),
-    # of the second stage, whose forces are shown; its velocities relative to the ground
+    # motion of the second stage, from which forces follow; its velocities relative to the ground
     Column("angular_acceleration_on_base"),
     Column("horizontal_velocity_on_base"),
     Column("vertical_velocity_on_base"),
@@ -56,14 +56,14 @@ class PointMotion(NamedTuple):
 
 
 class Stages(NamedTuple):
-    """What a cascade is made of: the block on its base, and the body that carries it."""
+    """The two bodies of a cascade, each on its base, and the geometry of the cap."""
 
     upper: OnBase  # per unit of its own mass, that of the block
     lower: OnBase  # block and cap as one, per unit of its own mass
     mass_ratio: float  # mass of the lower body over that of the block
-    top: float  # height of the cap's top above the lower centre of mass
-    cap_centre: float  # the same of the cap's centre
-    beside: float  # of the lower centre of mass to the right of the middle of the cap
+    top: float  # height of the cap's top above the centre of mass of the lower body [m]
+    cap_centre: float  # height of the cap's centre above it [m]
+    beside: float  # distance of it to the right of the middle of the cap [m]
 
 
 class Cascade(Stacked, Stages):
@@ -73,7 +73,7 @@ class Cascade(Stacked, Stages):
 
     @inlined
     def moving_in(self, mode: int) -> int:
-        """Give how many coordinates move: all, or none of the horizontal ones."""
+        """Give the number of coordinates that move: all, or all but both horizontal ones."""
         modes = self.modes_in(mode)
         free = self.upper.is_free(modes.upper) or self.lower.is_free(modes.lower)
         return COORDINATES if free else HORIZONTAL
@@ -110,13 +110,13 @@ class Cascade(Stacked, Stages):
 
     @inlined
     def ground_of_upper(self, mode: int, state: Vector, below: Rates, ground: Ground) -> Ground:
-        """Give the absolute acceleration of the cap's top."""
+        """Give the absolute acceleration of the cap's top, the ground of the upper body."""
         top = self.top_motion(mode, state, below)
         return Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
 
     @inlined
     def top_motion(self, mode: int, state: Vector, below: Rates) -> PointMotion:
-        """Give the motion of the middle of the cap's top, by the rates of the lower body."""
+        """Give the motion of the middle of the cap's top from the rates of the lower body."""
         return self.carried(
             self.modes_in(mode).lower, self.state_of(LOWER, state), below.rotation, below.vertical,
             below.horizontal,
@@ -129,7 +129,7 @@ class Cascade(Stacked, Stages):
         below = self.lower_rates(mode, state, ground)
         on_top = self.ground_of_upper(mode, state, below, ground)
         above = self.upper.rates_in(modes.upper, states.upper, self.upper_own(state), on_top)
-        # a held body's own horizontal coordinate rests while the other one's moves
+        # the horizontal coordinate of a held body stays constant while that of the other moves
         sway = above.horizontal if self.upper.is_free(modes.upper) else 0.0
         lower_sway = below.horizontal if self.lower.is_free(modes.lower) else 0.0
         return (
@@ -182,7 +182,7 @@ class Cascade(Stacked, Stages):
     def switch_lower(
         self, mode: int, which: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
-        """Carry out a switch of the lower body, and jolt the upper one, :eq:`eq-carried-jump`."""
+        """Carry out a switch of the lower body, and apply its velocity jump to the upper one."""
         lost, struck = memory[REPINNING_LOSS], memory[IMPACT_LOSS]
         before = self.carried(self.modes_in(mode).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0)
         new = switch_part(self, self.lower, LOWER, which, mode, state, ground, memory)
@@ -198,7 +198,10 @@ class Cascade(Stacked, Stages):
 
     @kernel
     def jolt(self, mode: int, jump_x: float, jump_y: float, state: Vector, memory: Vector) -> None:
-        """Let the velocity of the upper body's ground jump, :eq:`eq-carried-jump`."""
+        """Apply a jump of the velocity of the cap's top to the upper body, :eq:`eq-carried-jump`.
+
+        `jump_x` and `jump_y` are the components of the jump [m s^-1].
+        """
         standing, body = self.modes_in(mode).upper, self.state_of(UPPER, state)
         attitude = self.upper.body.attitude(body.rotation)
         sway = self.upper.sway(standing, body, attitude)
@@ -232,7 +235,7 @@ class Cascade(Stacked, Stages):
     def observe(
         self, mode: int, state: Vector, slope: Slope, ground: Ground, memory: Vector
     ) -> tuple[float, ...]:
-        """Give motion of block and cap, reactions, what shakes the block, and the bases' own."""
+        """Give motion of block and cap, reactions, motion of the cap's top, and both bases."""
         modes, states = self.modes_in(mode), self.states_in(state)
         upper, lower = states
         rates = self.lower_rates(mode, state, ground)
@@ -240,7 +243,7 @@ class Cascade(Stacked, Stages):
         on_top = Ground(ground.x + top.acceleration_x, ground.y + top.acceleration_y)
         above = self.upper.rates_in(modes.upper, upper, self.upper_own(state), on_top)
         sway = self.upper.sway(modes.upper, upper, self.upper.body.attitude(upper.rotation))
-        # a point above the centre of mass sinks by what the centre would rise over it
+        # a point at a height z above the centre of mass sinks by z (1 - cos) relative to it
         attitude = self.lower.body.attitude(lower.rotation)
         versine = attitude.rise / self.lower.body.height
         swaying = sway + self.lower.sway(modes.lower, lower, attitude)
@@ -274,7 +277,10 @@ class Cascade(Stacked, Stages):
 
     @kernel
     def place(self, k: int, mode: int, state: Vector, memory: Vector) -> float:
-        """Give x of a centre of mass: about the held point, or free."""
+        """Give the horizontal displacement of a centre of mass [m].
+
+        It follows from the rotation about the held point, or is a coordinate where none is held.
+        """
         modes, body = self.modes_in(mode), self.state_of(k, state)
         if k == UPPER:
             attitude = self.upper.body.attitude(body.rotation)
@@ -287,7 +293,7 @@ class Cascade(Stacked, Stages):
     def response(
         self, k: int, mode: int, press: float, moment: float, slip: float, state: Vector
     ) -> VelocityChange:
-        """Give how the velocities of a body change by an impulse, or as its hold stops a slip."""
+        """Give the change of a body's velocities by an impulse, or by the restraint of a slip."""
         modes, rotation = self.modes_in(mode), self.state_of(k, state).rotation
         if k == UPPER:
             attitude = self.upper.body.attitude(rotation)
@@ -299,7 +305,7 @@ class Cascade(Stacked, Stages):
     def end_accelerations(
         self, k: int, mode: int, state: Vector, ground: Ground
     ) -> tuple[float, float]:
-        """Give the accelerations of the ends of a base; `ground` is what the body stands on."""
+        """Give the accelerations of the ends of a base; `ground` is the one under this body."""
         modes, body = self.modes_in(mode), self.state_of(k, state)
         if k == UPPER:
             rates = self.upper.rates_in(modes.upper, body, self.upper_own(state), ground)
@@ -309,7 +315,7 @@ class Cascade(Stacked, Stages):
 
     @kernel
     def tendency(self, k: int, mode: int, state: Vector, ground: Ground) -> float:
-        """Give the side to which what a body stands on, or its contact, will rotate it."""
+        """Give the sign of the rotation that the ground under a body, or its contact, begins."""
         if ground.x != 0.0:
             return -ground.x
         if k == UPPER:

@@ -1,1 +1,1 @@
-"""How ground motions are made: from files and arrays, from formulas, from models."""
+"""Constructors of ground motions: from files and arrays, from formulas, from models."""

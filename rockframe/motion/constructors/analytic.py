@@ -1,4 +1,4 @@
-"""Analytic motions: each constructor a row of title, formula, parameters, units and source."""
+"""Constructors of analytic motions, each with title, formula, parameters, units and source."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _AT_LEAST_ONE: Final = Condition("at least 1", lambda value: value >= 1.0)
 
 
 class AnalyticMotion(MotionValue):
-    """Motions in closed form, each by its constructor."""
+    """Motions in closed form, one constructor for each kind."""
 
     __slots__ = ()
 
@@ -35,7 +35,7 @@ class AnalyticMotion(MotionValue):
         frequency: QuantityLike = "1 Hz",
         cycles: RatioLike = 1,
     ) -> Self:
-        """Build ``amplitude sin(2 pi frequency t)`` over some cycles, then nothing.
+        """Build ``amplitude sin(2 pi frequency t)`` over some cycles.
 
         Parameters
         ----------
@@ -44,7 +44,7 @@ class AnalyticMotion(MotionValue):
         frequency : str or Quantity, optional
             Cyclic frequency [Hz].
         cycles : float, optional
-            Length over the period [1].
+            Duration over the period [1].
 
         Returns
         -------
@@ -64,21 +64,21 @@ class AnalyticMotion(MotionValue):
     def cosine_pulse(
         cls, amplitude: QuantityLike, frequency: QuantityLike, cycles: RatioLike = 1
     ) -> Self:
-        """Build ``amplitude cos(2 pi frequency t)`` over some cycles, then nothing.
+        """Build ``amplitude cos(2 pi frequency t)`` over some cycles.
 
         Parameters
         ----------
         amplitude : str or Quantity
-            Amplitude, with which the pulse begins at once [m s^-2].
+            Amplitude, to which the acceleration jumps at the start [m s^-2].
         frequency : str or Quantity
             Cyclic frequency [Hz].
         cycles : float, optional
-            Length over the period [1].
+            Duration over the period [1].
 
         Returns
         -------
         GroundMotion
-            It jumps where it begins and, unless its last value is zero, where it ends.
+            It jumps at the start and, unless its last value is zero, at the end.
 
         See Also
         --------
@@ -98,20 +98,19 @@ class AnalyticMotion(MotionValue):
         lambda owner, amplitude, duration: sine(owner, amplitude, 0.5 / duration, 0.5),
     )
     def half_sine_pulse(cls, amplitude: QuantityLike, duration: QuantityLike) -> Self:
-        """Build ``amplitude sin(pi t/duration)``, half a cycle, then nothing.
+        """Build ``amplitude sin(pi t/duration)``, half a cycle.
 
         Parameters
         ----------
         amplitude : str or Quantity
             Peak [m s^-2].
         duration : str or Quantity
-            Length, half the period [s].
+            Duration, half the period [s].
 
         Returns
         -------
         GroundMotion
-            Its ground does not stop: the velocity at the end is
-            ``2 amplitude duration/pi``.
+            The ground has a residual velocity of ``2 amplitude duration/pi`` at the end.
 
         Examples
         --------
@@ -135,7 +134,7 @@ class AnalyticMotion(MotionValue):
         duration: QuantityLike,
         phase: QuantityLike | None = None,
     ) -> Self:
-        """Build ``amplitude sin(2 pi frequency t + phase)`` for some time.
+        """Build ``amplitude sin(2 pi frequency t + phase)`` of some duration.
 
         Parameters
         ----------
@@ -144,7 +143,7 @@ class AnalyticMotion(MotionValue):
         frequency : str or Quantity
             Cyclic frequency [Hz].
         duration : str or Quantity
-            Length [s].
+            Duration [s].
         phase : str or Quantity, optional
             Phase at the start; zero unless given [rad].
 
@@ -174,12 +173,12 @@ class AnalyticMotion(MotionValue):
         velocity : str or Quantity
             Peak velocity v_p of the ground, at half the period [m s^-1].
         period : str or Quantity
-            Period T_p, the length of the pulse [s].
+            Period T_p, the duration of the pulse [s].
 
         Returns
         -------
         GroundMotion
-            The ground comes to rest ``velocity period/2`` ahead of where it was.
+            The ground comes to rest with a residual displacement of ``velocity period/2``.
 
         Notes
         -----
@@ -208,12 +207,13 @@ class AnalyticMotion(MotionValue):
         velocity : str or Quantity
             Peak velocity v_p of the ground, at a quarter of the period [m s^-1].
         period : str or Quantity
-            Period T_p, the length of the pulse [s].
+            Period T_p, the duration of the pulse [s].
 
         Returns
         -------
         GroundMotion
-            The ground comes to rest where it was. The acceleration jumps at both ends.
+            The ground comes to rest without residual displacement. The acceleration jumps at
+            both ends.
 
         Notes
         -----
@@ -235,17 +235,19 @@ class AnalyticMotion(MotionValue):
         Parameters
         ----------
         velocity : str or Quantity
-            v_p, the amplitude with which the velocity swings; its greatest value, backwards,
-            is ``1 + sin(phi)`` times as much: 1.217 for order 1, 1.128 for order 2 [m s^-1].
+            Amplitude v_p of the harmonic part of the velocity. The greatest velocity, in the
+            opposite direction, is ``1 + sin(phi)`` times as large: 1.217 for order 1, 1.128 for
+            order 2 [m s^-1].
         period : str or Quantity
-            Period T_p; the pulse is 1.430 T_p long for order 1, 2.459 T_p for order 2 [s].
+            Period T_p; the duration is 1.430 T_p for order 1, 2.459 T_p for order 2 [s].
         order : int, optional
-            n of the type C_n [1].
+            Order n of the type C_n [1].
 
         Returns
         -------
         GroundMotion
-            The ground comes to rest where it was. The acceleration jumps at both ends.
+            The ground comes to rest without residual displacement. The acceleration jumps at
+            both ends.
 
         Raises
         ------
@@ -278,18 +280,18 @@ class AnalyticMotion(MotionValue):
         Parameters
         ----------
         amplitude : str or Quantity
-            Peak a_p: of the symmetric wavelet in its middle, of the antisymmetric one
-            0.205 periods before it, followed by the opposite peak [m s^-2].
+            Peak a_p, in the middle of the symmetric wavelet. In the antisymmetric one it is
+            0.205 periods before the middle, and the opposite peak follows [m s^-2].
         period : str or Quantity
-            T_p, one over the frequency at which its Fourier amplitude is greatest [s].
+            Period T_p, one over the frequency of the greatest Fourier amplitude [s].
         antisymmetric : bool, optional
-            The third derivative. Otherwise the second, the "Mexican hat".
+            True for the third derivative, False for the second, the "Mexican hat".
 
         Returns
         -------
         GroundMotion
-            Five periods long; at both ends 7e-16 of the amplitude is left. Exact to
-            2e-13 of the amplitude. The ground comes to rest where it was.
+            Five periods long; it has 7e-16 of its amplitude at both ends. It is exact to 2e-13
+            of the amplitude. The ground comes to rest without residual displacement.
 
         Raises
         ------
@@ -331,15 +333,15 @@ class AnalyticMotion(MotionValue):
         frequency : str or Quantity
             Prevailing frequency f_p [Hz].
         cycles : float
-            gamma, the length over the prevailing period; at least 1 [1].
+            gamma, the duration over the prevailing period; at least 1 [1].
         phase : str or Quantity, optional
             Phase nu of the velocity in the middle; zero unless given [rad].
 
         Returns
         -------
         GroundMotion
-            Exact to 1e-12 of its peak. The ground comes to rest: where it was for a
-            phase of 90 degrees, or if `cycles` is a whole number beyond 1.
+            Exact to 1e-12 of its peak. The ground comes to rest, without residual displacement
+            for a phase of 90 degrees or if `cycles` is a whole number above 1.
 
         Raises
         ------
@@ -351,7 +353,7 @@ class AnalyticMotion(MotionValue):
         Notes
         -----
         Pulse of Mavroeidis and Papageorgiou (2003), :eq:`eq-mp-velocity` and
-        :eq:`eq-mp-acceleration`. It leaves the ground at :eq:`eq-mp-offset`.
+        :eq:`eq-mp-acceleration`. The residual displacement is :eq:`eq-mp-offset`.
 
         Examples
         --------
@@ -370,24 +372,24 @@ class AnalyticMotion(MotionValue):
         interval: QuantityLike,
         pulse_duration: QuantityLike | None = None,
     ) -> Self:
-        """Build two impulses: the ground starts at a velocity, and stops again.
+        """Build two opposite impulses: the ground starts to move, and stops.
 
         Parameters
         ----------
         velocity : str or Quantity
-            V, exactly the change of velocity by the first impulse; the second takes it
-            back [m s^-1].
+            V, the exact change of velocity by the first impulse; that by the second is the
+            opposite [m s^-1].
         interval : str or Quantity
             Time t_0 from impulse to impulse [s].
         pulse_duration : str or Quantity, optional
-            Longest length of an impulse; shortened until `interval` is a whole multiple
+            Longest duration of an impulse; it is reduced until `interval` is a whole multiple
             of it. A hundredth of `interval` unless given [s].
 
         Returns
         -------
         GroundMotion
-            It ends with the second impulse. The ground comes to rest
-            ``velocity interval`` ahead of where it was.
+            It ends with the second impulse. The ground comes to rest with a residual
+            displacement of ``velocity interval``.
 
         Raises
         ------
@@ -400,9 +402,9 @@ class AnalyticMotion(MotionValue):
         Notes
         -----
         Double impulse of Kojima and Takewaki (2015), :eq:`eq-double-impulse`. Each has
-        the shape :eq:`eq-impulse`, with a peak of 1.875 V over its length. An oscillator
-        of the angular frequency omega takes the impulses for weaker by
-        ``(omega pulse_duration)^2/56``, as long as that is small.
+        the shape :eq:`eq-impulse`, with a peak of 1.875 V over its duration. The effect on an
+        oscillator of the angular frequency omega is less than that of ideal impulses, by
+        ``(omega pulse_duration)^2/56`` of it as long as this is small.
 
         Examples
         --------

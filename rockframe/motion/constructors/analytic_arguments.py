@@ -1,4 +1,4 @@
-"""Constructors of analytic motions made of formulas: arguments read by their names, in SI units."""
+"""Constructors of analytic motions from formulas; the arguments are converted to SI units."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ UnitsError
 ComponentError
     Not finite, or a frequency, period or length that is not positive."""
 _MEASURES: Final[dict[str, tuple[Measure, Condition | None, str]]] = {
-    # of each parameter that is a quantity; and the word before it, where its unit leaves a doubt
+    # quantity, range, and the word before the value in names where the unit is ambiguous
     "amplitude": (ACCELERATION, None, ""),
     "velocity": (VELOCITY, None, ""),
     "frequency": (FREQUENCY, POSITIVE, ""),
@@ -58,18 +58,18 @@ _HIGHEST_ORDER: Final = 1000
 
 
 class ArgumentReader:
-    """Reads the arguments of one call, and remembers what it has read."""
+    """Reader of the arguments of one call, with the numbers and texts read so far."""
 
     def __init__(self, owner: str, cycles: Condition) -> None:
         self.owner = owner
         self.numbers: dict[str, Any] = {}  # in SI units, for the formula
-        self.recipe: dict[str, Any] = {}  # for the way back from plain values
+        self.recipe: dict[str, Any] = {}  # for the description of the motion
         self.short: list[str] = []
         self.exact: list[str] = []
         self._cycles = cycles
 
     def read(self, name: str, value: Any) -> None:
-        """Read the argument of a name."""
+        """Read the argument of this name."""
         owner = self.owner
         if name in _MEASURES:
             self._read_quantity(name, value, *_MEASURES[name])
@@ -93,7 +93,7 @@ class ArgumentReader:
             number = to_si(value, measure, owner=self.owner, name=name, condition=condition)
         if name == "pulse_duration":
             number = impulse_duration(self.owner, number, self.numbers["interval"])
-        if number is None:  # left to the formula, and not told
+        if number is None:  # the formula has a default, which is not recorded
             return
         unit = _SPELLED.get(measure.unit, str(measure.unit))
         kept = f"{number!r} {measure.unit}"
@@ -109,9 +109,9 @@ class ArgumentReader:
 def pulse(
     title: str, formula: Callable[..., Motion], cycles: Condition = POSITIVE
 ) -> Callable[[Constructor], Constructor]:
-    """Make a constructor of a formula: its arguments are read by their names, in SI units.
+    """Make a constructor from a formula, whose arguments are converted to SI units.
 
-    What was read is told in the name, the history and the recipe of the motion.
+    Name, history and recipe of the motion state them.
     """
 
     def decorate(declared: Constructor) -> Constructor:
@@ -122,7 +122,7 @@ def pulse(
 
         @wraps(checked)
         def construct(kind: type[Any], *given: Any, **named: Any) -> Any:
-            checked(kind, *given, **named)  # says what is missing, or too much
+            checked(kind, *given, **named)  # raises the error of missing or unknown arguments
             values = own.bind(kind, *given, **named)
             values.apply_defaults()
             reader = ArgumentReader(f"{kind.__name__}.{declared.__name__}", cycles)

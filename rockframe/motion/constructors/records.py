@@ -1,4 +1,4 @@
-"""Constructors of records: from files, those of the package too, and from arrays."""
+"""Constructors of records: from files, from examples in the package, and from arrays."""
 
 from __future__ import annotations
 
@@ -45,33 +45,31 @@ def read(
     Parameters
     ----------
     path : str, path-like, bytes or file object
-        File, by its path (``~`` is the user's folder), by its bytes, or open. It may be packed
-        by gzip, or be the only one in a zip or tar archive; :func:`rockframe.read_suite` reads
-        archives of many.
+        Path of a file (``~`` is the home folder), its bytes, or an open file. It may be packed
+        by gzip, or be the only file of a zip or tar archive; :func:`rockframe.read_suite` reads
+        archives of several.
     format : str, optional
-        A name of :func:`rockframe.motion.formats`; recognised from the
-        file unless given.
+        Name of one of :func:`rockframe.motion.formats`; recognised from the file unless given.
     component : str or pair of str, optional
-        Component by its name in the file (``"HNE"``, ``"S16W"``), by its
-        direction (``"N"``, ``"090"``, ``"U"``) or by its number
-        (``"channel 3"``); a pair takes a horizontal component and sets the
-        vertical one beside it. Needed where a file has more than one
-        horizontal component. ``"row by row"`` says of a text without names that one
-        record is wrapped to several values a line.
+        Component by its name in the file (``"HNE"``, ``"S16W"``), its direction (``"N"``,
+        ``"090"``, ``"U"``) or its number (``"channel 3"``); a pair is a horizontal component
+        with the vertical one. Needed for a file with more than one horizontal component.
+        ``"row by row"`` is for a text without names in which one record has several values in
+        each line.
     unit : str, optional
-        Unit of the samples, where the file does not say: ``"g"``,
-        ``"gal"``, ``"cm/s^2"``, ... Here ``g`` is the acceleration of gravity.
+        Unit of the samples, if the file does not state it: ``"g"``, ``"gal"``, ``"cm/s^2"``, ...
+        Here ``g`` is the acceleration of gravity.
     time_step : str or Quantity, optional
-        For a column of samples without times [s].
+        Time step of a column of samples without times [s].
     response : str or path-like, optional
-        StationXML with the response of the instrument, for counts
-        (miniSEED, SAC, ASDF); looked for beside the file unless given.
+        StationXML file with the response of the instrument, for counts (miniSEED, SAC, ASDF);
+        searched in the folder of the file unless given.
 
     Returns
     -------
     GroundMotion
-        Its metadata name the file and its digest, and what the file says of
-        event, station, component and unit; what was done is in its history.
+        Its metadata have the name and digest of the file, and the event, station, component and
+        unit that it states; its history lists the processing.
 
     Raises
     ------
@@ -87,9 +85,8 @@ def read(
     Warns
     -----
     RecordWarning
-        The file contradicts itself or an argument a little (such as a stated peak
-        and its samples), its peak, offset or time step is unusual, or its only
-        component is vertical.
+        The file slightly contradicts itself or an argument (such as a stated peak and the
+        samples); its peak, offset or time step is unusual; or its only component is vertical.
 
     Examples
     --------
@@ -133,15 +130,15 @@ def from_arrays(
     Parameters
     ----------
     acceleration : Quantity, (sequence, unit) or DataArray, shape (n,)
-        Horizontal acceleration; a DataArray needs the attribute ``units``
-        [m s^-2]. The times of a DataArray, or of a pandas Series as the sequence, must
-        be those of `time_step`.
+        Horizontal acceleration; a DataArray needs the attribute ``units`` [m s^-2]. If a
+        DataArray, or a pandas Series as the sequence, has times, these must agree with
+        `time_step`.
     time_step : str or Quantity
-        Time between samples; it must be given [s].
+        Time between samples, required [s].
     vertical : Quantity, (sequence, unit) or DataArray, shape (n,), optional
         Vertical acceleration, upwards [m s^-2].
     name : str, optional
-        For titles and messages.
+        Name for titles and messages.
 
     Returns
     -------
@@ -152,8 +149,8 @@ def from_arrays(
     UnitsError
         An array or the time step has no unit, or a wrong one.
     ComponentError
-        Not finite, not one-dimensional, of different lengths, or with times of its own
-        that are uneven or of another step.
+        An array is not finite or not one-dimensional, both have different lengths, or times of
+        an array are uneven or of another step.
 
     Examples
     --------
@@ -191,7 +188,7 @@ def from_arrays(
 
 
 def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:
-    """Refuse times of an array that are not those of the time step given with it."""
+    """Refuse times of an array that disagree with the time step given with it."""
     declared = float(times[-1]) / (times.size - 1)
     apart = np.abs(times - declared * np.arange(times.size))
     if not np.isclose(declared, step, rtol=_SAME_STEP, atol=0.0) and apart.max() <= _UNEVEN * step:
@@ -203,7 +200,7 @@ def _check_times(times: Array, step: float, *, owner: str, label: str) -> None:
     if apart.max() > _UNEVEN * step:
         msg = (
             f"{owner}: the time axis of {label} is not even (sample {int(apart.argmax())} is "
-            f"{apart.max():.3g} s from its place); use from_times, which resamples"
+            f"{apart.max():.3g} s from an even spacing); use from_times, which resamples"
         )
         raise ComponentError(msg)
 
@@ -225,14 +222,14 @@ def example(
         The record: San Francisco, 1295 Shafter Avenue, in the Loma Prieta earthquake of 1989,
         0.11 g; or Waipawa in a small earthquake near Waipukurau, New Zealand, in 2018, 0.02 g.
     component : str or pair of str, optional
-        As for :meth:`read`, where the file has several: ``"S16W"``, ``"S74E"`` and ``"Up"`` of
-        Waipukurau, of which the second is taken unless given.
+        As for :meth:`read`, if the file has several: ``"S16W"``, ``"S74E"`` and ``"Up"`` of
+        Waipukurau, of which the second is read unless given.
 
     Returns
     -------
     GroundMotion
-        As published, neither scaled nor corrected. Its metadata tell `source`, `processing`,
-        `licence`, `attribution` and `reference`, and its history the attribution.
+        As published, neither scaled nor corrected. Its metadata have `source`, `processing`,
+        `licence`, `attribution` and `reference`; its history has the attribution, too.
 
     Raises
     ------
@@ -269,5 +266,5 @@ def example(
 
 
 def record_sources(folder: Traversable) -> dict[str, Any]:
-    """Read where the records of a folder are from, by their names."""
+    """Read the sources of the records in a folder, by name."""
     return tomllib.loads((folder / _PROVENANCE).read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""Motions of earthquakes that nobody recorded, by constructor."""
+"""Constructor of synthetic motions from the stochastic point-source model."""
 
 from __future__ import annotations
 
@@ -38,14 +38,15 @@ MODEL: Final = (
 """Source of the model, for the metadata."""
 
 LARGEST_MAGNITUDE: Final = 8.0
-"""The saturation length is calibrated up to here [1] (Yenier and Atkinson 2015)."""
+"""Magnitude up to which the saturation length is calibrated [1] (Yenier and Atkinson 2015)."""
 
 LONGEST_DURATION: Final = 1_000.0
-"""A duration beyond is taken for a slip of the pen [s]."""
+"""Longest plausible duration [s]."""
 
 TWO_CORNERS_FROM: Final = 6.0
-"""Magnitude from which on a source has two corners unless one is asked for [1]: beside recorded
-motions one corner is 1.3 to 1.7 times too strong there at 1 s to 3 s, two are 0.8 to 0.9 times."""
+"""Magnitude from which on a source has two corner frequencies by default [1]. Above it, spectra of
+one corner are 1.1 to 2.2 times those of recorded motions at 1 s to 5 s, those of two 0.7 to 1.5
+times."""
 
 _DISTANCE: Final = Measure("a distance", Unit.METRE, "15 km")
 _STRESS: Final = Measure("a stress", Unit.PASCAL, "10 MPa")
@@ -54,7 +55,7 @@ _KAPPA: Final = TIME.like("0.035 s")
 _STEP: Final = TIME.like("0.005 s")
 
 _MAGNITUDES: Final = Condition(
-    "from 3 to 8.5, where the model means something", lambda value: 3.0 <= value <= 8.5
+    "from 3 to 8.5, the range of the model", lambda value: 3.0 <= value <= 8.5
 )
 _DISTANCES: Final = Condition("above 0 and at most 1000 km", lambda value: 0.0 < value <= 1e6)
 _STEPS: Final = Condition("from 0.0005 s to 0.02 s", lambda value: 0.0005 <= value <= 0.02)
@@ -79,28 +80,27 @@ def stochastic(
     vertical: RatioLike | None = None,
     time_step: QuantityLike = "0.005 s",
 ) -> Made:
-    """Draw the motion of an earthquake from a published model, without a file.
+    """Generate a random motion of an earthquake from a published model.
 
-    Windowed noise gets the spectrum that an earthquake of this magnitude has on
-    the average at this distance, :eq:`eq-target-spectrum`: the point source of
-    Boore (2003) with the parameters of Boore and Thompson (2015) for active
-    crustal regions. Another seed is another motion of the same earthquake.
+    Windowed noise is given the mean spectrum of an earthquake of this magnitude at this
+    distance, :eq:`eq-target-spectrum`: that of the point source of Boore (2003) with the
+    parameters of Boore and Thompson (2015) for active crustal regions. Another seed gives
+    another motion of the same earthquake.
 
     Parameters
     ----------
     magnitude : float
         Moment magnitude [1].
     distance : str or Quantity
-        Closest distance to the rupture; of a small earthquake to its
-        hypocentre [m].
+        Closest distance to the rupture; for a small earthquake, to the hypocentre [m].
     seed : int
-        Not negative; the same seed gives the same motion.
+        Seed of the random numbers, zero or more; the same seed gives the same motion.
     stress_drop : str or Quantity, optional
         Stress drop; 10 MPa are 100 bar [Pa].
     shear_wave_velocity : str or Quantity, optional
-        Of the crust at the source [m s^-1].
+        Shear-wave velocity of the crust at the source [m s^-1].
     density : str or Quantity, optional
-        Of the crust at the source [kg m^-3].
+        Density of the crust at the source [kg m^-3].
     quality_factor : float, optional
         Q0 of the crust, at 1 Hz [1].
     quality_exponent : float, optional
@@ -111,13 +111,13 @@ def stochastic(
         ``"rock 760"`` or ``"rock 620"``: mean shear-wave velocity of the upper
         30 m in m/s.
     source : Corners or str, optional
-        ``"one corner"``: the spectrum of a point, taken below magnitude 6 unless given; from there
-        on it is too strong at periods of 1 s to 5 s. ``"two corners"``: that of a large fault,
-        taken from magnitude 6 on, which mends most of it (Atkinson and Silva 2000, Boore et al.
-        2014).
+        ``"one corner"``, the default below magnitude 6: the spectrum of a point source, which for
+        larger magnitudes is too strong at periods of 1 s to 5 s. ``"two corners"``, the default
+        from magnitude 6 on: the spectrum of a large fault, which corrects most of this (Atkinson
+        and Silva 2000, Boore et al. 2014).
     vertical : float, optional
-        Vertical over horizontal spectrum, the same at all frequencies; no
-        vertical component unless given [1].
+        Ratio of vertical to horizontal spectrum, the same at all frequencies; no vertical
+        component unless given [1].
     time_step : str or Quantity, optional
         Time between samples [s].
 
@@ -131,9 +131,8 @@ def stochastic(
     UnitsError
         A wrong unit, or none.
     ComponentError
-        A magnitude, distance or time step outside its range, a seed that is not
-        a whole number, an unknown site or source, a value that is not positive, or
-        values out of all proportion.
+        A magnitude, distance or time step outside its range, a seed that is not a whole number,
+        an unknown site or source, a value that is not positive, or implausible values.
 
     Warns
     -----
@@ -191,31 +190,31 @@ def stochastic(
 
 
 def _extrapolations(source: PointSource, owner: str) -> list[str]:
-    """Tell what is beyond the model's calibration; refuse what cannot be meant."""
+    """Warn of values beyond the calibration of the model; refuse implausible ones."""
     try:
         duration = source.duration
     except ArithmeticError as problem:
         msg = (
             f"{owner}: source = {str(source.corners)!r} has {problem}; stress_drop or "
-            "shear_wave_velocity is too low for it, take 'one corner'"
+            "shear_wave_velocity is too low for it; take 'one corner'"
         )
         raise ComponentError(msg) from problem
     if duration > LONGEST_DURATION:
         msg = (
             f"{owner}: an earthquake of these properties would last {duration:.6g} s; "
-            f"stress_drop, shear_wave_velocity or magnitude is out of proportion"
+            f"stress_drop, shear_wave_velocity or magnitude is implausible"
         )
         raise ComponentError(msg)
     found: list[str] = []
     if source.magnitude > LARGEST_MAGNITUDE:
         found.append(
             f"{owner}: magnitude = {source.magnitude:.6g} is beyond {LARGEST_MAGNITUDE:g}, up to "
-            "which the model's saturation near large faults is calibrated"
+            "which the saturation of the model near large faults is calibrated"
         )
     if source.distance > LARGEST_DISTANCE:
         found.append(
             f"{owner}: distance = {source.distance / 1e3:.6g} km is beyond "
-            f"{LARGEST_DISTANCE / 1e3:g} km, where the table of the model's durations ends"
+            f"{LARGEST_DISTANCE / 1e3:g} km, where the table of path durations ends"
         )
     return found
 
@@ -223,7 +222,7 @@ def _extrapolations(source: PointSource, owner: str) -> list[str]:
 def _arguments(
     source: PointSource, seed: int, vertical: float | None, time_step: float
 ) -> dict[str, str | float | int]:
-    """Give the arguments that build the same motion again, whatever the defaults become."""
+    """Give all arguments, so that the motion can be built again after changes of defaults."""
     return {
         "magnitude": source.magnitude,
         "distance": f"{source.distance!r} {_DISTANCE.unit}",

@@ -1,4 +1,4 @@
-"""Constructors of motions from times and values: uneven times, data frames, traces of ObsPy."""
+"""Constructors of motions from uneven times, data frames and traces of ObsPy."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _COARSER: Final = 1.5
 
 
 class Between(StrEnum):
-    """What an acceleration is taken to be between its uneven times."""
+    """Interpolation of an acceleration between uneven times."""
 
     LINEAR = "linear"
     CUBIC = "cubic"
@@ -66,41 +66,41 @@ def from_times(
     interpolation: Between | str = Between.LINEAR,
     name: str | None = None,
 ) -> Made:
-    """Build a motion from accelerations at uneven times, read off at an even time step.
+    """Build a motion from accelerations at uneven times, interpolated at an even time step.
 
     Parameters
     ----------
     times : Quantity, (sequence, unit), DataArray or dates, shape (n,)
-        Rising; dates and spans of time (NumPy, pandas) need no unit [s].
+        Increasing times; dates and time differences (NumPy, pandas) need no unit [s].
     acceleration : Quantity, (sequence, unit) or DataArray, shape (n,)
         Horizontal acceleration at these times [m s^-2].
     time_step : str or Quantity
-        Of the motion [s].
+        Time step of the motion [s].
     vertical : Quantity, (sequence, unit) or DataArray, shape (n,), optional
         Vertical acceleration, upwards, at the same times [m s^-2].
     interpolation : {"linear", "cubic"}, optional
-        Between the times: straight lines, or a cubic spline.
+        Straight lines between the times, or a cubic spline.
     name : str, optional
-        For titles and messages.
+        Name for titles and messages.
 
     Returns
     -------
     GroundMotion
-        From the first time on; what was done is in its history.
+        It starts at the first time; its history states the interpolation.
 
     Raises
     ------
     UnitsError
         An array or the time step has no unit, or a wrong one.
     ComponentError
-        Times that do not rise, arrays that are not finite or of different lengths, another
+        Times that do not increase, arrays that are not finite or of different lengths, another
         interpolation, or a time step that gives fewer than two samples or too many.
 
     Warns
     -----
     RecordWarning
-        `time_step` is longer than the times usually are apart: what lies between the new
-        samples is lost, and folded into lower frequencies.
+        `time_step` is longer than most intervals between the times, so that higher frequencies
+        are lost and aliased.
 
     Examples
     --------
@@ -131,15 +131,15 @@ def from_times(
         if values.size != instants.size or not np.isfinite(values).all():
             msg = (
                 f"{owner}: {label} has {values.size} samples at {instants.size} times; it needs "
-                "as many, and finite ones"
+                "one finite sample for each time"
             )
             raise ComponentError(msg)
         read.append(_read_off(instants - instants[0], values, grid, between))
     gaps = np.diff(instants)
     if step > _COARSER * float(np.median(gaps)):
         words = (
-            f"{owner}: time_step = {step:.6g} s is longer than the times are apart (mostly "
-            f"{np.median(gaps):.6g} s); use a shorter one, then resampled, which filters"
+            f"{owner}: time_step = {step:.6g} s is longer than the intervals between the times "
+            f"(mostly {np.median(gaps):.6g} s); use a shorter one, then resampled, which filters"
         )
         warn(words, RecordWarning)
     said = (
@@ -154,7 +154,7 @@ def from_times(
 def _read_off(times: Array, values: Array, grid: Array, between: Between) -> Array:
     if between is Between.LINEAR:
         return np.interp(grid, times, values)
-    from scipy.interpolate import CubicSpline  # loads much that nothing else here needs
+    from scipy.interpolate import CubicSpline  # slow to import, and needed only here
 
     spline: Any = CubicSpline(times, values)
     return np.asarray(spline(grid), dtype=np.float64)
@@ -177,21 +177,21 @@ def from_frame(
     Parameters
     ----------
     frame : pandas.DataFrame
-        With one row for each sample.
+        Data with one row for each sample.
     unit : str
         Unit of the accelerations as record files spell it: ``"g"``, ``"gal"``, ...
     component : str, optional
-        Column with the horizontal acceleration; the only one, unless given.
+        Column with the horizontal acceleration; needed if there is more than one column.
     vertical : str, optional
-        Column with the vertical acceleration; one called ``"DWN"`` or ``"down"`` is
-        turned over.
+        Column with the vertical acceleration; the sign of one called ``"DWN"`` or ``"down"`` is
+        reversed.
     time : str, optional
-        Column with the times, in seconds or as dates; unless given, the index counts
-        as the times if it holds dates or real numbers.
+        Column with the times, in seconds or as dates; unless given, the index has the times if
+        it consists of dates or real numbers.
     time_step : str or Quantity, optional
-        Needed without times [s].
+        Time step, needed without times [s].
     name : str, optional
-        For titles and messages.
+        Name for titles and messages.
 
     Returns
     -------
@@ -202,14 +202,14 @@ def from_frame(
     UnitsError
         `unit` is not an acceleration, or `time_step` not a time.
     ComponentError
-        No frame, no such column or several, no times and no time step, times that
-        contradict it or are uneven (see :meth:`from_times`), or samples that are no
+        Not a data frame; no such column or several; neither times nor a time step; times that
+        contradict the time step or are uneven (see :meth:`from_times`); or samples that are not
         finite numbers.
 
     Warns
     -----
     RecordWarning
-        Times with an unusual step, as those in milliseconds have.
+        The times have an unusual step, for example because they are in milliseconds.
 
     Examples
     --------
@@ -264,7 +264,7 @@ def _column(frame: Any, label: object, owner: str, argument: str) -> Array:
         raise ComponentError(msg)
     values = np.asarray(frame[label])
     if values.ndim != 1 or values.dtype.kind not in "fiu" or not np.isfinite(values).all():
-        msg = f"{owner}: the column {label!r} must hold finite numbers, and no gaps"
+        msg = f"{owner}: the column {label!r} must hold finite numbers, without gaps"
         raise ComponentError(msg)
     return values.astype(np.float64)
 
@@ -286,7 +286,7 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
     times = relative_seconds(axis, "s")
     if times is None:
         if requested is None:
-            msg = f"{owner}: the frame holds no times; give time, or time_step='0.01 s'"
+            msg = f"{owner}: the frame has no times; give time, or time_step='0.01 s'"
             raise ComponentError(msg)
         return requested
     printed = [repr(one) for one in cast("list[float]", times.tolist())]
@@ -324,30 +324,29 @@ def from_trace(
     Parameters
     ----------
     trace : obspy.Trace or obspy.Stream
-        Of accelerations: with the response of the instrument removed.
+        Accelerations, after removal of the instrument response.
     unit : str, optional
-        Unit of the samples, which ObsPy does not know: ``"m/s^2"``, ``"gal"``, ... Not
-        needed for a trace of gmprocess, which states it.
+        Unit of the samples, which ObsPy does not have: ``"m/s^2"``, ``"gal"``, ... Not needed
+        for a trace of gmprocess, which states it.
     component : str or pair of str, optional
-        As for :meth:`read`; needed where a stream has more than one horizontal
-        component.
+        As for :meth:`read`; needed for a stream with more than one horizontal component.
     name : str, optional
-        For titles and messages; the codes of the channel unless given.
+        Name for titles and messages; the codes of the channel unless given.
 
     Returns
     -------
     GroundMotion
-        Its metadata hold network, station, location, component and start.
+        Its metadata have network, station, location, component and start.
 
     Raises
     ------
     RecordError
-        No unit, a gap or an overlap, samples that are not finite, or no such component;
-        the message lists those that there are.
+        No unit, a gap or an overlap, samples that are not finite, or no such component; the
+        message lists the components.
     UnitsError
         `unit` is not an acceleration.
     ComponentError
-        No trace and no stream, or `component` is neither a name nor a pair of names.
+        Not a trace or stream, or `component` is neither a name nor a pair of names.
 
     Warns
     -----
@@ -357,8 +356,8 @@ def from_trace(
 
     Notes
     -----
-    ObsPy itself is not imported: whatever has ``id``, ``data`` and ``stats`` as its traces
-    do is read.
+    ObsPy is not imported: any object with the attributes ``id``, ``data`` and ``stats`` of its
+    traces can be read.
 
     Examples
     --------

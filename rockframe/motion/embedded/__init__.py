@@ -1,1 +1,1 @@
-"""Records that come with the package, as published, and where they are from."""
+"""Records in the package, as published, and their sources."""

@@ -1,1 +1,1 @@
-"""Spectral matching in time: wavelets added to a motion until its spectrum is the target's."""
+"""Spectral matching in the time domain by wavelets that are added to a motion."""

@@ -1,4 +1,4 @@
-"""One adjustment of a motion: wavelets that bring the peaks of its oscillators to the target."""
+"""One adjustment of a motion: wavelets that move the peaks of oscillators to the target."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ WIDTH: Final = 1.178
 """Width of the taper at a period of one second [s] (Al Atik and Abrahamson 2010)."""
 
 WIDTH_POWER: Final = 0.93
-"""Power of the period with which it grows [1] (the same)."""
+"""Exponent of the period in this width [1] (Al Atik and Abrahamson 2010)."""
 
 REACH: Final = 4.0
-"""Widths after which a wavelet is taken for over: 10^-7 of its height are left [1]."""
+"""Half the length of a wavelet over its width; there it has 10^-7 of its height [1]."""
 
 _ROOM: Final = 3.0
-"""Widths for which there must be room before the end of the motion; else it is narrower [1]."""
+"""Least distance of the wavelet from both ends over its width, which is reduced if needed [1]."""
 
 _NARROWEST: Final = 0.5
-"""Least width over the period, at which the wavelet still swings once to both sides [1]."""
+"""Least width over the period, with which the wavelet still has a full cycle [1]."""
 
 _FADE: Final = 0.25
-"""Share of the period in which what reaches an end of the motion fades [1]."""
+"""Duration over the period in which a wavelet fades at an end of the motion [1]."""
 
 
 class Wavelet(NamedTuple):
     """A wavelet at the samples of a motion."""
 
-    first: int  # the sample at which it begins
-    values: Array  # from there on; zero elsewhere [1]
+    first: int  # index of its first sample
+    values: Array  # values from there on; zero elsewhere [1]
 
     @property
     def samples(self) -> slice:
@@ -49,7 +49,10 @@ def width_of(period: float) -> float:
 
 
 def lead_of(period: float, damping_ratio: float) -> float:
-    """Compute how long before the oscillator the wavelet peaks, :eq:`eq-wavelet-lead` [s]."""
+    """Compute the time from the peak of the wavelet to that of the oscillator.
+
+    It is :eq:`eq-wavelet-lead` [s].
+    """
     share = math.sqrt(1.0 - damping_ratio**2)
     return math.atan2(share, damping_ratio) * period / (2.0 * math.pi * share)
 
@@ -57,7 +60,10 @@ def lead_of(period: float, damping_ratio: float) -> float:
 def wavelet_at(
     peak_time: float, period: float, damping_ratio: float, *, time_step: float, count: int
 ) -> Wavelet:
-    """Make the wavelet under which an oscillator peaks at a time, :eq:`eq-tapered-cosine`."""
+    """Make the wavelet to which an oscillator responds with a peak at a given time.
+
+    It is :eq:`eq-tapered-cosine`.
+    """
     duration = (count - 1) * time_step
     edge = _NARROWEST * period
     centre = min(max(peak_time - lead_of(period, damping_ratio), edge), duration - edge)
@@ -81,26 +87,26 @@ def wavelet_at(
 
 
 _RIVAL: Final = 0.75
-"""Share of the greatest peak from which on others may come to exceed it [1]."""
+"""Ratio to the greatest peak from which on other peaks may come to exceed it [1]."""
 
 _FEW: Final = 3
-"""Peaks of an oscillator that are looked at in any case."""
+"""Number of peaks of an oscillator that are always considered."""
 
 _MOST: Final = 10
-"""Peaks of an oscillator that are looked at if they exceed its target."""
+"""Number of peaks of an oscillator that are considered if they exceed its target."""
 
 
 class OscillatorPeaks(NamedTuple):
     """The greatest peaks of oscillators."""
 
-    oscillators: NDArray[np.intp]  # which oscillator peaks
+    oscillators: NDArray[np.intp]  # index of the oscillator
     values: Array  # pseudo-acceleration, with its sign [m s^-2]
-    times: Array  # from the first sample [s]
-    ranks: NDArray[np.intp]  # zero of the greatest of its oscillator, one of the next
+    times: Array  # time from the first sample [s]
+    ranks: NDArray[np.intp]  # zero for the greatest of its oscillator, one for the next
 
     @property
     def greatest(self) -> NDArray[np.bool_]:
-        """Whether it is the greatest of its oscillator, shape (m,)."""
+        """Whether each peak is the greatest of its oscillator, shape (m,)."""
         return self.ranks == 0
 
     @property
@@ -118,7 +124,7 @@ class OscillatorPeaks(NamedTuple):
 
 
 class Oscillators:
-    """Linear oscillators on ground that moves along straight lines from sample to sample."""
+    """Linear oscillators under a ground acceleration that is linear between samples."""
 
     def __init__(self, periods: Array, damping_ratio: float, time_step: float) -> None:
         self.periods = periods
@@ -127,11 +133,11 @@ class Oscillators:
         self._intervals = np.array(
             [interval_matrix(time_step, period, damping_ratio, 2) for period in periods.tolist()]
         )
-        # as response spectra do: the free vibration in a period after the motion
+        # one period of free vibration after the motion, as for response spectra
         self._after = math.ceil(float(periods.max()) / time_step) + 2
 
     def histories(self, samples: Array) -> Array:
-        """Follow all oscillators from rest, through the motion and after it."""
+        """Compute the pseudo-accelerations of all oscillators, from rest, also after the motion."""
         from scipy import signal as module
 
         signal: Any = module
@@ -141,7 +147,7 @@ class Oscillators:
             zip(self._intervals.tolist(), self.periods.tolist(), strict=True)
         ):
             (uu, uv, up, uq), (vu, vv, vp, vq) = interval
-            # Cayley and Hamilton: the displacement alone obeys an equation of second order
+            # by the Cayley-Hamilton theorem the displacement alone obeys a recurrence of order 2
             driven = up * start + uq * rise
             driven[1:] += (uv * vp - vv * up) * start[:-1] + (uv * vq - vv * uq) * rise[:-1]
             history = signal.lfilter([1.0], [1.0, -(uu + vv), uu * vv - uv * vu], driven)
@@ -149,12 +155,12 @@ class Oscillators:
         return found
 
     def peaks(self, samples: Array, histories: Array) -> OscillatorPeaks:
-        """Find the greatest peaks of all oscillators, between the samples too."""
+        """Find the greatest peaks of all oscillators, also between the samples."""
         size = np.abs(histories)
         top = size.max(axis=1, keepdims=True)
         inner = size[:, 1:-2]
         turns = (inner >= size[:, :-3]) & (inner > size[:, 2:-1]) & (inner >= _RIVAL * top)
-        lost = np.flatnonzero(~turns.any(axis=1))  # still moving away when last seen
+        lost = np.flatnonzero(~turns.any(axis=1))  # greatest at the end of the history
         turns[lost, np.clip(size[lost].argmax(axis=1) - 1, 0, turns.shape[1] - 1)] = True
         which, places = np.nonzero(turns)
         values, times = self._turns(samples, histories, which, places + 1)
@@ -166,7 +172,7 @@ class Oscillators:
         return OscillatorPeaks(which[kept], values[kept], times[kept], rank[few])
 
     def influences(self, peaks: OscillatorPeaks, count: int) -> Array:
-        """Compute what every sample adds to the peaks, :eq:`eq-sample-influence`."""
+        """Compute the contribution of each sample to each peak, :eq:`eq-sample-influence`."""
         found = np.zeros((peaks.values.size, count))
         for place, period in enumerate(self.periods.tolist()):
             rows = np.flatnonzero(peaks.oscillators == place)
@@ -180,7 +186,7 @@ class Oscillators:
         frequency = 2.0 * math.pi / period
         damped = frequency * math.sqrt(1.0 - damping**2)
         root = complex(-damping * frequency, damped)
-        # displacement under ground whose acceleration rises with slope one, but for its line
+        # complex amplitude of the oscillation under a ramp of unit slope; `line` is added below
         swing = 1j / (root**2 * damped)
         whole = np.floor(times / step).astype(int)
         decays = np.exp(root * step * np.arange(whole.max() + 1))
@@ -193,7 +199,7 @@ class Oscillators:
 
         found = np.zeros((times.size, count))
         for row, (knot, time) in enumerate(zip(whole.tolist(), times.tolist(), strict=True)):
-            early = min(knot, count)  # samples whose hats are over before the peak
+            early = min(knot, count)  # samples whose hat functions end before the peak
             offset = np.exp(root * (time - knot * step))
             found[row, :early] = np.real(kink * offset * decays[knot : knot - early : -1])
             ramps = under_a_ramp(time - (knot + np.arange(-1, 3)) * step)
@@ -203,7 +209,7 @@ class Oscillators:
         return found
 
     def _lines(self, samples: Array) -> tuple[Array, Array]:
-        """Give where the lines between the samples start and how they rise, and still ground."""
+        """Give start and rise of the lines between the samples, and of zeros after the motion."""
         still = np.zeros(self._after)
         return np.append(samples[:-1], still), np.append(np.diff(samples), still)
 
@@ -214,7 +220,7 @@ class Oscillators:
         which: NDArray[np.intp],
         knots: NDArray[np.intp],
     ) -> tuple[Array, Array]:
-        """Find values and times of the extrema next to some knots of some oscillators."""
+        """Find values and times of the extrema next to given samples of given oscillators."""
         start, rise = self._lines(samples)
         (uu, uv, up, uq), _ = self._intervals[which].transpose(1, 2, 0)
         kappa = 2.0 * math.pi * self.time_step / self.periods[which]
@@ -237,25 +243,24 @@ class Oscillators:
 
 
 _ROUNDS: Final = 4
-"""Rounds in which rivals of the greatest peaks come to be held down."""
+"""Iterations in which lesser peaks that exceed the target are constrained, too."""
 
 _EXCESS: Final = 0.005
-"""Share of the target by which a rival may exceed it before it is held down [1]."""
+"""Relative excess of a lesser peak over the target up to which it is not constrained [1]."""
 
 _LEAST_WEIGHT: Final = 0.02
-"""Of a peak that is on the target, beside the misfits, which are the weights of the others [1]."""
+"""Weight of a peak without misfit; each misfit is added to it [1]."""
 
 
 class Adjustment(NamedTuple):
-    """Wavelets, and what each of them does to each peak."""
+    """Wavelets, and the effect of each of them on each peak."""
 
-    # one for each peak, of the height that adds its target to the peak that it moves most [m s^-2]
+    # one for each peak, scaled so that its greatest effect is 1 [m s^-2]
     wavelets: Array
-    # what a wavelet, by column, adds to a peak, by row, over its target and in the peak's own
-    # direction [1]
+    # change of a peak (row) by a wavelet (column), over its target, positive if the peak grows [1]
     effects: Array
-    missing: Array  # what the peaks lack, over their targets [1]
-    greatest: NDArray[np.bool_]  # peaks that are to come to the target; others are not to exceed it
+    missing: Array  # target less peak, over the target [1]
+    greatest: NDArray[np.bool_]  # peaks to bring to the target; others must not exceed it
 
     def amplitudes(self, regularisation: float) -> Array:
         """Compute the amplitudes of all wavelets, :eq:`eq-matching-step`."""
@@ -269,7 +274,7 @@ class Adjustment(NamedTuple):
         found = np.zeros(self.missing.size)
         for _ in range(_ROUNDS):
             rows = weights[held, None] * self.effects[held]
-            # as many equations as peaks that are held: no more than there are wavelets
+            # one equation for each constrained peak, which are no more than wavelets
             square = rows @ rows.T
             square[np.diag_indices_from(square)] += regularisation
             driven = weights[held] * self.missing[held]
@@ -284,7 +289,7 @@ class Adjustment(NamedTuple):
 def adjustment_of(
     oscillators: Oscillators, peaks: OscillatorPeaks, targets: Array, count: int
 ) -> Adjustment:
-    """Make the wavelets of all peaks, and the matrix of what they do, :eq:`eq-matching-matrix`."""
+    """Make the wavelets of all peaks, and the matrix of their effects, :eq:`eq-matching-matrix`."""
     wanted = targets[peaks.oscillators]
     scaled = oscillators.influences(peaks, count) * (np.sign(peaks.values) / wanted)[:, None]
     periods = oscillators.periods[peaks.oscillators]

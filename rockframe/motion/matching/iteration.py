@@ -1,4 +1,4 @@
-"""Adjustments one after the other, until the spectrum of a motion is the target's; what changed."""
+"""Iteration of adjustments until the spectrum matches the target, and a comparison of motions."""
 
 from __future__ import annotations
 
@@ -28,60 +28,60 @@ _SPACING: Final = 0.5
 
 _CLOSEST: Final = 0.0125
 _WIDEST: Final = 0.05
-"""Between these the relative distance of matched periods is kept [1]."""
+"""Limits of the relative distance of matched periods [1]."""
 
 _BETWEEN: Final = 8
-"""Periods at which the spectrum is checked for one at which it is matched."""
+"""Number of periods of the checked spectrum for each matched period."""
 
 _PASS: Final = 0.45
-"""Decades of periods that are brought in together."""
+"""Range of periods that each pass adds, in decades."""
 
 _STEPS_OF_A_PASS: Final = 10
-"""Adjustments after which the next periods are brought in, whatever was reached."""
+"""Most adjustments in a pass."""
 
 _STEPS_BETWEEN_CHECKS: Final = 6
 _CHECKS: Final = 12
-"""Adjustments from one check of the whole spectrum to the next, and checks before giving up."""
+"""Adjustments between checks of the whole spectrum, and most checks."""
 
 _PATIENCE: Final = 3
 _GAIN: Final = 0.95
-"""Checks in a row that do not lessen the greatest misfit by this factor before giving up."""
+"""The iteration ends after this number of checks that do not reduce the misfit by this factor."""
 
 _AIM: Final = 0.6
-"""Share of the tolerance that is aimed at where periods are matched [1]."""
+"""Misfit to reach at matched periods, over the tolerance [1]."""
 
 _MARGIN: Final = 0.95
-"""Share of the tolerance that is aimed at where the spectrum is checked: it has cusps [1]."""
+"""Misfit to reach in the checked spectrum, which has cusps, over the tolerance [1]."""
 
 _BROUGHT_IN: Final = 0.8
-"""Share of the tolerance above which a period between is matched too [1]."""
+"""Misfit over the tolerance above which a checked period is added to the matched ones [1]."""
 
 _FIRST_REGULARISATION: Final = 1e-2
 _LEAST_REGULARISATION: Final = 1e-5
-"""At the first adjustment of a pass, and the least [1]."""
+"""Regularisation of the first adjustment of a pass, and its least value [1]."""
 
 _STRONGER: Final = 5.0
 _EASIER: Final = 0.3
-"""Factors of the regularisation after an adjustment that failed, and after a full one [1]."""
+"""Factors of the regularisation after a failed and after a full adjustment [1]."""
 
 _STEP_LENGTHS: Final = (1.0, 0.5, 0.25)
-"""Shares of an adjustment that are tried."""
+"""Fractions of an adjustment that are tried."""
 
 _TRIALS: Final = 4
-"""Regularisations that are tried before a pass is given up."""
+"""Most regularisations that are tried before a pass ends."""
 
 _POWER: Final = 4.0
-"""Of the misfits in the measure that every adjustment lessens: large ones count most."""
+"""Exponent of the misfits in the norm that every adjustment reduces; large ones dominate."""
 
 
 class Goal(NamedTuple):
-    """What a motion is matched to."""
+    """Target, range and tolerance of matching."""
 
     spectrum: Callable[[Array], Array]  # pseudo-accelerations [m s^-2] at periods [s]
-    shortest: float  # periods between which it is to be reached [s]
+    shortest: float  # range of matched periods [s]
     longest: float
-    damping_ratio: float  # of the oscillators [1]
-    tolerance: float  # greatest misfit that is aimed at, over the target [1]
+    damping_ratio: float  # damping ratio of the oscillators [1]
+    tolerance: float  # greatest misfit, over the target [1]
 
     @property
     def matched(self) -> Array:
@@ -97,19 +97,19 @@ class Goal(NamedTuple):
         return np.geomspace(self.shortest, self.longest, count)
 
     def ratios(self, signal: Signal) -> Array:
-        """Give the spectrum over the target where it is checked, shape (c,) [1]."""
+        """Give the spectrum over the target at the checked periods, shape (c,) [1]."""
         periods = self.checked
         displacement = spectral_peaks(signal, periods, self.damping_ratio)[:, 0]
         return pseudo_spectra(signal, periods, displacement)[1] / self.spectrum(periods)
 
 
 class Matched(NamedTuple):
-    """A motion whose spectrum is the target's, or as close to it as was reached."""
+    """The best motion found, with its spectrum."""
 
     signal: Signal  # the motion
-    scale_factor: float  # by which it was multiplied before wavelets were added [1]
-    ratios: Array  # its spectrum over the target, where it was checked [1]
-    steps: int  # adjustments that were made
+    scale_factor: float  # factor applied before wavelets were added [1]
+    ratios: Array  # spectrum over the target at the checked periods [1]
+    steps: int  # number of adjustments
 
     @property
     def misfit(self) -> float:
@@ -118,7 +118,7 @@ class Matched(NamedTuple):
 
 
 def match(signal: Signal, goal: Goal) -> Matched:
-    """Scale a motion, and add wavelets until its spectrum is the target's."""
+    """Scale a motion, and add wavelets until its spectrum matches the target."""
     best = Matched(signal, 1.0, goal.ratios(signal), 0)
     if best.misfit <= goal.tolerance:
         return best
@@ -157,7 +157,7 @@ def _checked(goal: Goal, signal: Signal, samples: Array, factor: float, steps: i
 
 
 class _Run:
-    """A motion on its way, and the oscillators that it is matched by."""
+    """State of the iteration: the motion, and the response of oscillators to it."""
 
     def __init__(
         self, time_step: float, samples: Array, goal: Goal, periods: Array, steps: int = 0
@@ -172,11 +172,11 @@ class _Run:
         self._peaks = self._oscillators.peaks(samples, self._histories)
 
     def begin_again(self) -> None:
-        """Forget how strongly the last adjustment was regularised."""
+        """Reset the regularisation."""
         self._regularisation = _FIRST_REGULARISATION
 
     def improve(self, chosen: NDArray[np.bool_], most: int) -> bool:
-        """Make adjustments for some oscillators; tell whether more of them would not help."""
+        """Make adjustments for some oscillators; tell whether further ones would not help."""
         for _ in range(most):
             misfits = np.abs(self._peaks.spectrum[chosen] / self._targets[chosen] - 1.0)
             if misfits.max() <= self._aim:
@@ -186,7 +186,7 @@ class _Run:
         return False
 
     def _step(self, chosen: NDArray[np.bool_]) -> bool:
-        """Make the first adjustment that lessens the misfit; tell whether there was one."""
+        """Make the first adjustment that reduces the misfit; tell whether there was one."""
         count = self.samples.size
         looked_at = self._peaks.looked_at(chosen, self._targets)
         made = adjustment_of(self._oscillators, looked_at, self._targets, count)
@@ -209,21 +209,21 @@ class _Run:
         return False
 
     def _size(self, peaks: OscillatorPeaks, chosen: NDArray[np.bool_]) -> float:
-        """Give the mean fourth power of the logarithms of the spectrum over the target."""
+        """Give the mean fourth power of ln(spectrum / target)."""
         logarithms = np.log(peaks.spectrum[chosen] / self._targets[chosen])
         return float((np.abs(logarithms) ** _POWER).mean())
 
 
 LARGEST_USUAL: Final = 1.5
-"""Growth beyond which a warning is due [1]: half as much again."""
+"""Growth factor above which a warning is issued [1]."""
 
 _BEYOND: Final = 5.0
 _PERIODS: Final = 24
-"""How far beyond the range the spectrum is looked at, times its end, and at how many periods."""
+"""Last period beyond the range, over the longest in it [1], and number of periods up to it."""
 
 _LEAST_STEPS: Final = 4.0
 _PULSES: Final = (0.25, 15.0)
-"""Time steps in the shortest period; periods between which pulses are looked for [s]."""
+"""Fewest time steps in the shortest period of a pulse; range of these periods [s]."""
 
 PEAKS: Final = tuple(f"peak_ground_{what}" for what in ("acceleration", "velocity", "displacement"))
 INDICATOR: Final = "pulse_indicator"
@@ -247,7 +247,7 @@ def changes(before: Signal, after: Signal, goal: Goal) -> dict[str, float]:
 
 
 def unusual(found: dict[str, float]) -> list[str]:
-    """Say what has grown more than is usual, or has become a pulse."""
+    """Say which peaks have grown unusually, and whether the motion has become a pulse."""
     words: list[str] = []
     for name in PEAKS:
         old, new = (found[f"{name}_{when}_matching"] for when in ("before", "after"))

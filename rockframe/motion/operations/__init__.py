@@ -1,1 +1,1 @@
-"""What may be done to a ground motion; each step returns a new one and says what it did."""
+"""Operations on ground motions; each returns a new motion and adds a sentence to its history."""

@@ -1,4 +1,4 @@
-"""Joining components of a ground motion."""
+"""Combination of the components of ground motions."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from rockframe.units import ANGLE, QuantityLike, to_si
 if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
-_RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degrees; agencies round azimuths to whole ones
+_RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
 _ROUNDING: Final = 1e-15
 
 
 @hinted()
 def with_vertical(motion: Made, other: MotionValue | None) -> Made:
-    """Add a vertical motion: the horizontal component of another one, upwards.
+    """Add a vertical component: the horizontal component of another motion, positive upwards.
 
     Parameters
     ----------
     other : GroundMotion or None
-        Of the same time step; the shorter of the two is padded with zeros. One that its
-        file calls positive downwards (``metadata["positive"]``, as of a component ``DWN``)
-        is turned over. None leaves the vertical component out.
+        Motion of the same time step; the shorter of the two is padded with zeros. If its file
+        calls it positive downwards (``metadata["positive"]``, as for a component ``DWN``), its
+        sign is reversed. None removes the vertical component.
 
     Returns
     -------
@@ -51,8 +51,8 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     Warns
     -----
     RecordWarning
-        The file of `other` does not say whether it is positive upwards or downwards; or the
-        files tell of other starts.
+        The file of `other` does not state whether it is positive upwards or downwards; or the
+        files state different starts.
 
     Examples
     --------
@@ -116,32 +116,32 @@ def rotated(
     Parameters
     ----------
     other : GroundMotion
-        The horizontal component at a right angle to this one, of the same time
-        step; the shorter of the two is padded with zeros.
+        The horizontal component at a right angle to this one, of the same time step; the shorter
+        of the two is padded with zeros.
     angle : str or Quantity, optional
-        From this component towards the other one [rad].
+        Angle from this component towards the other one [rad].
     azimuth : str or Quantity, optional
-        Instead of `angle`: clockwise from north, for components whose
-        metadata tell their own ``azimuth`` [rad].
+        Azimuth instead of `angle`, clockwise from north, for components with an ``azimuth`` in
+        their metadata [rad].
 
     Returns
     -------
     GroundMotion
-        With this motion's vertical component, if it has one.
+        With the vertical component of this motion, if it has one.
 
     Raises
     ------
     UnitsError
         Not an angle.
     ComponentError
-        Both or neither of `angle` and `azimuth` given; not a motion, or another time
-        step; an azimuth that a component lacks, or components that are not at a right
-        angle.
+        Both or neither of `angle` and `azimuth` given; not a motion, or another time step;
+        `azimuth` given, but missing in the metadata of a component; or components that are not
+        at a right angle.
 
     Warns
     -----
     RecordWarning
-        The files of both tell of other starts.
+        The files state different starts.
 
     Notes
     -----
@@ -168,7 +168,7 @@ def rotated(
     else:
         target = to_si(azimuth, ANGLE, owner=owner, name="azimuth")
         if math.isnan(own):
-            msg = f"{owner}: the metadata of both components must tell their azimuth; give angle"
+            msg = f"{owner}: the metadata of both components must have an azimuth; give angle"
             raise ComponentError(msg)
         turn = clockwise * (target - math.radians(own))
     metadata["azimuth"] = None if math.isnan(own) else math.degrees(target) % 360.0
@@ -200,9 +200,9 @@ def rotated(
 
 
 def _azimuths(motion: MotionValue, other: MotionValue, owner: str) -> tuple[float, float]:
-    """Give the azimuth [degrees], and 1 where the other component is clockwise from it, else -1.
+    """Give the azimuth [degree], and 1 if the other component is clockwise from it, else -1.
 
-    NaN where a component does not tell its own.
+    The azimuth is NaN if that of a component is not known.
     """
     known = [one.metadata.get("azimuth") for one in (motion, other)]
     degrees = [float(value) for value in known if isinstance(value, int | float)]
@@ -218,7 +218,7 @@ def _azimuths(motion: MotionValue, other: MotionValue, owner: str) -> tuple[floa
 
 
 def _direction(turn: float) -> tuple[float, float]:
-    """Give cosine and sine, exact at the right angles."""
+    """Give cosine and sine, exact at multiples of a right angle."""
     quarters = turn / (0.5 * math.pi)
     nearest = round(quarters)
     if abs(quarters - nearest) <= _ROUNDING:

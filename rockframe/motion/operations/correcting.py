@@ -1,4 +1,4 @@
-"""Taking out of a ground motion what is not the ground's."""
+"""Filters and baseline correction of ground motions."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _HIGHEST_DEGREE: Final = 20
 
 
 class Baseline(StrEnum):
-    """What a baseline is fitted to."""
+    """The history to which a baseline is fitted."""
 
     ACCELERATION = "acceleration"
     VELOCITY = "velocity"
@@ -45,24 +45,24 @@ def filtered(
     causal: bool = False,
     keep_padding: bool = False,
 ) -> Made:
-    """Apply a Butterworth filter, zero-phase unless told otherwise.
+    """Apply a Butterworth filter, zero-phase by default.
 
     Parameters
     ----------
     low : str or Quantity, optional
-        Frequencies below are taken out [Hz].
+        Corner of the high-pass filter, below which frequencies are removed [Hz].
     high : str or Quantity, optional
-        Frequencies above are taken out [Hz].
+        Corner of the low-pass filter, above which frequencies are removed [Hz].
     order : int, optional
-        Of each pass; after the two of a zero-phase filter, forwards and backwards,
-        the amplitude at a corner is halved.
+        Order of each pass. A zero-phase filter has two passes, forwards and backwards, and halves
+        the amplitude at a corner.
     causal : bool, optional
-        Run the filter forwards only: nothing moves before its time, but phases are
-        shifted; the amplitude at a corner is divided by the square root of 2.
+        Run the filter forwards only: it has no precursors, but shifts phases, and divides the
+        amplitude at a corner by the square root of 2.
     keep_padding : bool, optional
-        Keep what the filter makes of the still ground before and after the motion, which is
-        longer then. Needed where velocity or displacement matter: a filter spreads the motion
-        beyond both ends, and without these tails the ground does not come back to rest.
+        Keep the filtered zeros before and after the motion, which becomes longer. This is needed
+        where velocity or displacement matter: a filter extends the motion beyond both ends, and
+        without these tails the ground does not return to rest.
 
     Returns
     -------
@@ -73,18 +73,17 @@ def filtered(
     UnitsError
         Not a frequency.
     ComponentError
-        No corner, corners in the wrong order or beyond the Nyquist
-        frequency, an order outside 1 to 12, or `causal` or `keep_padding` neither True nor
-        False.
+        No corner, corners in the wrong order or beyond the Nyquist frequency, an order outside
+        1 to 12, or `causal` or `keep_padding` is neither True nor False.
 
     Notes
     -----
-    For a zero-phase filter the motion is padded with zeros at both ends, 1.5 order/f
-    of the lowest corner f, and cut back to its length afterwards unless `keep_padding`. A
-    causal filter starts from rest, as if zeros had gone before; its padding is at the end.
+    For a zero-phase filter the motion is padded with zeros at both ends, 1.5 order/f for the
+    lowest corner f, and afterwards cut to its length unless `keep_padding` is set. A causal
+    filter starts from rest; its padding is one zero before the motion and the rest after it.
 
-    Integrated, a motion that was cut back drifts after ``low``: velocity and displacement of
-    the tails are missing. With the padding both return to zero.
+    After a filter with ``low``, the velocity and displacement of a motion that was cut have a
+    drift, as the tails are missing. With the padding both return to zero.
 
     Examples
     --------
@@ -154,16 +153,16 @@ def filtered(
 def baseline_corrected(
     motion: Made, order: int = 1, *, fit: Baseline | str = Baseline.ACCELERATION
 ) -> Made:
-    """Subtract the polynomial that fits the acceleration, or the velocity, best.
+    """Subtract a polynomial baseline, fitted to the acceleration or the velocity.
 
     Parameters
     ----------
     order : int, optional
-        Degree. Of the acceleration 0 takes the mean away, 1 a straight line; a
-        polynomial of the velocity is zero at the start, so its degree is 1 or more.
+        Degree of the polynomial. For the acceleration, 0 subtracts the mean and 1 a straight
+        line. A polynomial of the velocity is zero at the start, so its degree is 1 or more.
     fit : {"acceleration", "velocity"}, optional
-        What the polynomial is fitted to (least squares); of the velocity's its slope is
-        subtracted from the acceleration.
+        History to which the polynomial is fitted by least squares. The derivative of a polynomial
+        of the velocity is subtracted from the acceleration.
 
     Returns
     -------
@@ -172,8 +171,8 @@ def baseline_corrected(
     Raises
     ------
     ComponentError
-        Not a whole number up to 20, or not below the number of samples; or
-        another `fit`.
+        `order` is not a whole number up to 20, or not below the number of samples; or another
+        `fit`.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What the operations share: the motion that follows, and the motion that another is joined to."""
+"""Functions that the operations share: the resulting motion, and checks of a second motion."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
 SAME_STEP: Final = 1e-9
-"""Relative difference up to which two time steps are the same."""
+"""Relative difference up to which two time steps count as equal [1]."""
 
 _OF_ITS_SPECTRUM: Final = (
     "spectral_misfit", "largest_spectral_misfit", "mean_spectral_misfit", "target_reached",
 )  # fmt: skip
-"""Metadata that tell how far a spectrum is from its target, and of no other spectrum."""
+"""Metadata on the misfit of a spectrum, which operations that change the spectrum drop."""
 
 _START: Final = "record_time"
 
@@ -38,7 +38,7 @@ def following(
     metadata: Mapping[str, Any] | None = None,
     same_spectrum: bool = False,
 ) -> Made:
-    """Give the motion that an operation leads to; metadata that are None are left out."""
+    """Give the result of an operation as a motion; metadata that are None are left out."""
     recipe = None
     if motion.recipe is not None and operation is not None:
         done = [*motion.recipe.get("operations", ()), dict(operation)]
@@ -56,14 +56,14 @@ def following(
 
 
 def lost_pieces(si: Motion) -> tuple[str, ...]:
-    """Say, where it has analytic pieces, that processing the samples loses them."""
+    """Give the sentence that processing drops the analytic pieces, if there are any."""
     return (_DROPPED,) if si.analytic else ()
 
 
 def with_samples(
     si: Motion, change: Callable[[Signal], Array], time_step: float | None = None
 ) -> Motion:
-    """Change the samples of both components alike; analytic pieces between them are dropped."""
+    """Change the samples of both components; analytic pieces between them are dropped."""
     step = si.time_step if time_step is None else time_step
 
     def changed(signal: Signal) -> Signal:
@@ -73,7 +73,7 @@ def with_samples(
 
 
 def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
-    """Check the motion that another one is to be combined with."""
+    """Check a second motion that is to be combined with the first."""
     if not isinstance(other, MotionValue):
         msg = f"{owner}: other needs a GroundMotion, got {type(other).__name__}"
         raise ComponentError(msg)
@@ -88,17 +88,17 @@ def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
 
 
 def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | None]:
-    """Give the times of the first sample, where they are known, after one that is so much later."""
+    """Give the known start times in the metadata, moved by some seconds."""
     known = [key for key in (_START, f"vertical_{_START}") if key in motion.metadata]
     return {key: time_after(motion.metadata[key], seconds) for key in known if seconds != 0.0}
 
 
 def say_other_start(motion: MotionValue, other: MotionValue, owner: str) -> None:
-    """Warn of a motion beside another one that its file says was recorded at another time."""
+    """Warn if the files of two motions state different starts."""
     starts = motion.metadata.get(_START), other.metadata.get(_START)
     if not same_start(*starts, motion.si.time_step):
         words = (
             f"{owner}: {motion.name} starts at {starts[0]}, {other.name} at {starts[1]}; their "
-            "first samples are set beside one another: cut both with window() to one start"
+            "first samples are taken as simultaneous: cut both with window() to one start"
         )
         warn(words, RecordWarning)

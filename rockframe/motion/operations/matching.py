@@ -1,4 +1,4 @@
-"""Changing a ground motion until its response spectrum is that of a target."""
+"""Matching of the response spectrum of a ground motion to a target."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 USUAL_PERIODS: Final = ("0.1 s", "2 s")
 USUAL_TOLERANCE: Final = 0.05
-"""Between which periods, and how closely, a motion is matched unless told otherwise."""
+"""Default range of periods, and default tolerance [1], of matching."""
 
 _TOLERANCE: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
 _DAMPING: Final = Condition("from 0.01 to 0.5", lambda value: 0.01 <= value <= 0.5)
-"""Spectra of less damping need too many wavelets; with more there is no resonance to use."""
+"""Spectra of less damping need too many wavelets; with more damping there is no resonance."""
 
 _LEAST_STEPS: Final = 4
-"""Time steps in the shortest period: a wavelet of fewer samples is not one."""
+"""Fewest time steps in the shortest period: fewer samples do not represent a wavelet."""
 
 _LEAST_PERIODS: Final = 3
-"""Longest periods in the motion: there must be room for a wavelet."""
+"""Least duration of the motion over the longest period, so that a wavelet fits in [1]."""
 
 _MOST_NUMBERS: Final = 5_000_000
-"""Samples times periods beyond which matching would take minutes and gigabytes."""
+"""Largest product of samples and periods; beyond it matching takes minutes and gigabytes."""
 
 _ROUNDING: Final = 1e-9
 _EXAMPLE: Final = "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
@@ -45,16 +45,16 @@ _EXAMPLE: Final = "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
 
 @runtime_checkable
 class Target(Protocol):
-    """What a motion can be matched to, such as a :class:`rockframe.TargetSpectrum`."""
+    """A target spectrum for matching, such as a :class:`rockframe.TargetSpectrum`."""
 
     @property
     def name(self) -> str:
-        """For titles and messages."""
+        """Name for titles and messages."""
         ...
 
     @property
     def damping_ratio(self) -> float:
-        """Of the oscillators [1]."""
+        """Damping ratio of the oscillators [1]."""
         ...
 
     def at_seconds(self, seconds: Array, *, owner: str) -> Array:
@@ -70,55 +70,54 @@ def matched(
     periods: Sequence[QuantityLike] = USUAL_PERIODS,
     tolerance: RatioLike = USUAL_TOLERANCE,
 ) -> Made:
-    """Match the response spectrum to a target by wavelets added in time.
+    """Match the response spectrum to a target by wavelets that are added in the time domain.
 
     Parameters
     ----------
     target : TargetSpectrum
-        What is aimed at; its damping ratio, from 0.01 to 0.5, is that of the oscillators.
+        Target; its damping ratio, from 0.01 to 0.5, is that of the oscillators.
     periods : sequence of two str or Quantity, optional
-        Shortest and longest period of the range in which the spectrum is to be the target's.
-        The shortest is four time steps or more, the longest no more than a third of the
-        motion's length [s].
+        Shortest and longest period of the range in which the spectrum is matched. The shortest
+        is at least four time steps, the longest at most a third of the duration [s].
     tolerance : float, optional
-        Greatest distance of the pseudo-spectral acceleration from the target, over the target,
-        anywhere in the range; from 0.01 to 0.5 [1].
+        Greatest misfit of the pseudo-spectral acceleration in the range, over the target; from
+        0.01 to 0.5 [1].
 
     Returns
     -------
     GroundMotion
-        Of the same length. The horizontal component is scaled and then changed, the vertical
-        one is neither. The metadata tell what was reached: ``largest_spectral_misfit`` and
+        Motion of the same length. The horizontal component is scaled and then matched; the
+        vertical one is unchanged. The metadata state the result: ``largest_spectral_misfit`` and
         ``mean_spectral_misfit`` over the target, ``spectral_misfit``
         (:eq:`eq-spectral-misfit`), ``scale_factor``, ``matching_steps``, and ``target_reached``,
-        1 or 0; and what became of the scaled motion, each as ``..._before_matching`` and
+        1 or 0. They state the changes of the scaled motion, each as ``..._before_matching`` and
         ``..._after_matching``: ``peak_ground_acceleration``, ``peak_ground_velocity``,
-        ``peak_ground_displacement`` and ``pulse_indicator`` (:eq:`eq-pulse-indicator`); with
-        ``spectral_growth_beyond_range`` at ``period_of_spectral_growth``, where the spectrum
-        grew most beyond the longest period, up to five times as long. A motion that is within
-        the tolerance already is not changed.
+        ``peak_ground_displacement`` and ``pulse_indicator`` (:eq:`eq-pulse-indicator`).
+        ``spectral_growth_beyond_range`` is the greatest growth of the spectrum between the
+        longest period and five times that, at ``period_of_spectral_growth``. A motion within
+        the tolerance is not changed.
 
     Raises
     ------
     UnitsError
-        Periods without a unit, or with one of another kind; a tolerance that is no ratio.
+        Periods without a unit, or with one of another kind; a tolerance that is not a ratio.
     ComponentError
-        Not a target, or one that is unknown or not above zero somewhere in the range; a damping
-        ratio, range or tolerance out of bounds; still ground; a motion that is too short, or
-        so long that it would take minutes.
+        Not a target, or one that is undefined or not above zero somewhere in the range; a damping
+        ratio, range or tolerance out of bounds; a motion without acceleration, one that is too
+        short, or one so long that matching would take minutes.
 
     Warns
     -----
     RecordWarning
-        The tolerance is not reached: the best motion that was found is returned. Or the
-        shortest period is less than ten time steps. Or a peak, or the spectrum beyond the range,
-        has grown to more than 1.5 times, or the motion has become a pulse (indicator above 0.85).
+        The tolerance is not reached, and the best motion found is returned. Or the shortest
+        period is less than ten time steps. Or a peak, or the spectrum beyond the range, has grown
+        by a factor above 1.5, or the motion has become pulse-like (indicator above 0.85).
 
     Notes
     -----
-    After Al Atik and Abrahamson (2010): improved tapered cosine wavelets, which leave velocity
-    and displacement at the end as they are, at the times when the oscillators peak. Groups of
-    periods come in from the shortest to the longest.
+    The method is that of Al Atik and Abrahamson (2010). Improved tapered cosine wavelets, which
+    keep velocity and displacement at the end, are added at the times of the peaks of the
+    oscillators. Groups of periods are included from the shortest to the longest.
 
     Examples
     --------
@@ -145,7 +144,7 @@ def matched(
         worst = float(goal.checked[np.abs(found.ratios - 1.0).argmax()])
         msg = (
             f"{owner}: {motion.name!r} is {100.0 * found.misfit:.3g} % from {target.name!r} at "
-            f"{worst:.3g} s, and {100.0 * float(np.abs(found.ratios - 1.0).mean()):.2g} % on the "
+            f"{worst:.3g} s, and {100.0 * float(np.abs(found.ratios - 1.0).mean()):.2g} % on "
             f"average; {100.0 * goal.tolerance:.3g} % was not reached in {found.steps} steps. "
             "Another record, a narrower range of periods or a wider tolerance may help"
         )
@@ -153,7 +152,7 @@ def matched(
     grown = unusual(changed)
     if grown:
         msg = (
-            f"{owner}: the wavelets have changed {motion.name!r} besides its spectrum: "
+            f"{owner}: the wavelets have changed {motion.name!r} beyond its spectrum: "
             f"{', '.join(grown)}. Such a motion may overturn what the scaled one does not: take a "
             "record whose spectrum is closer to the target, or a narrower range of periods"
         )
@@ -197,7 +196,7 @@ def _goal(target: object, periods: object, tolerance: RatioLike, owner: str) -> 
 
 def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
     if not np.any(signal.pieces):
-        msg = f"{owner}: {motion.name!r} stands still; nothing brings it to a target"
+        msg = f"{owner}: {motion.name!r} has no acceleration; it cannot be matched"
         raise ComponentError(msg)
     step, shortest, longest = signal.time_step, goal.shortest, goal.longest
     if shortest < _LEAST_STEPS * step * (1.0 - _ROUNDING):
@@ -209,8 +208,8 @@ def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
         raise ComponentError(msg)
     if signal.duration < _LEAST_PERIODS * longest:
         msg = (
-            f"{owner}: the longest period, {longest:.4g} s, must be {_LEAST_PERIODS} times in the "
-            f"motion, which is {signal.duration:.4g} s long"
+            f"{owner}: the motion must be {_LEAST_PERIODS} times as long as the longest period, "
+            f"{longest:.4g} s; it is {signal.duration:.4g} s long"
         )
         raise ComponentError(msg)
     check_cost(signal, goal.checked, owner=owner)

@@ -1,4 +1,4 @@
-"""Finding the velocity pulse of a ground motion."""
+"""The velocity pulse of a ground motion."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 SHORTEST: Final = "0.25 s"
 LONGEST: Final = "15 s"
-"""Periods between which a pulse is looked for unless told otherwise (Shahi and Baker 2014)."""
+"""Default range of periods of the search for a pulse (Shahi and Baker 2014)."""
 
 _STEPS_PER_PERIOD: Final = 4.0
 
@@ -37,12 +37,12 @@ def velocity_pulse(
     shortest_period: QuantityLike = SHORTEST,
     longest_period: QuantityLike = LONGEST,
 ) -> VelocityPulse[Made]:
-    """Find the strongest pulse in the velocity, extract it, and judge it (Baker 2007).
+    """Find the strongest pulse in the velocity, extract it, and classify it (Baker 2007).
 
     Parameters
     ----------
     shortest_period, longest_period : str or Quantity, optional
-        Between which periods it is looked for [s].
+        Range of periods of the search [s].
 
     Returns
     -------
@@ -52,16 +52,16 @@ def velocity_pulse(
     Raises
     ------
     UnitsError
-        A period that is no time.
+        A period is not a time.
     ComponentError
-        The ground stands still; or the shortest period is not below the longest, or shorter
+        The motion has no velocity; or the shortest period is not below the longest, or shorter
         than four time steps.
 
     Notes
     -----
-    Of the horizontal component as it is, from rest and not corrected: a record that drifts has
-    a pulse as long as itself. The criteria are those for components normal to the fault; of
-    other components, look with :meth:`HorizontalPair.velocity_pulse` for the direction of the
+    The velocity is that of the horizontal component, from rest and without correction: in a record
+    with drift the pulse is as long as the record. The criteria are those for fault-normal
+    components; for other ones, :meth:`HorizontalPair.velocity_pulse` finds the direction of the
     pulse first.
 
     Examples
@@ -76,19 +76,19 @@ def velocity_pulse(
     periods = searched(shortest_period, longest_period, dt, owner=owner)
     velocity = velocity_of(si.horizontal)
     if not np.any(velocity):
-        msg = f"{owner}: {motion.name!r} stands still; it has no pulse"
+        msg = f"{owner}: {motion.name!r} has no velocity, and so no pulse"
         raise ComponentError(msg)
     place = velocity_pulses.strongest(velocity[None, :], dt, periods)
     wavelets = velocity_pulses.extracted(velocity, dt, place)
     wavelet = velocity_pulses.wavelet_of(place.period, dt)
     within = velocity_pulses.sum_of(wavelets, wavelet, 0, velocity.size)
     found = velocity_pulses.measures(velocity, within, dt)
-    # still ground before and after, so that all wavelets begin and end at rest
+    # zeros before and after the motion, so that all wavelets begin and end at rest
     reach = wavelet.size // 2 + 1
     before = max(0, reach - min(middle for middle, _ in wavelets))
     after = max(0, reach + max(middle for middle, _ in wavelets) + 1 - velocity.size)
     whole = velocity_pulses.sum_of(wavelets, wavelet, -before, before + velocity.size + after)
-    # central differences, whose sums by the trapezoidal rule end where they began
+    # central differences: their integral by the trapezoidal rule is zero over the whole pulse
     pulse = np.gradient(whole, dt)
     rest = _padded(si.horizontal.samples, before, after)
     upwards = None if si.vertical is None else _padded(si.vertical.samples, before, after)
@@ -118,7 +118,7 @@ def velocity_pulse(
 
 
 def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner: str) -> Array:
-    """Read the arguments between which periods a pulse is looked for."""
+    """Read the range of periods, and give the periods of the search [s]."""
     first, last = (
         to_si(value, PERIOD, owner=owner, name=name, condition=POSITIVE)
         for name, value in (("shortest_period", shortest), ("longest_period", longest))
@@ -134,7 +134,7 @@ def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner:
 
 
 def velocity_of(signal: Signal) -> Array:
-    """Give the velocity of ground that starts from rest, at the samples [m s^-1]."""
+    """Give the velocity of the ground at the samples, from rest [m s^-1]."""
     return knots_of(ground_path(signal)[0])
 
 

@@ -1,4 +1,4 @@
-"""Scaling a ground motion."""
+"""Scaling of ground motions."""
 
 from __future__ import annotations
 
@@ -56,25 +56,24 @@ def scaled(
     period: QuantityLike | None = None,
     damping_ratio: RatioLike | None = None,
 ) -> Made:
-    """Multiply the motion, both components alike.
+    """Multiply both components of the motion by a factor.
 
     Give one of `factor`, `peak`, `peak_velocity` and `spectral_acceleration`.
 
     Parameters
     ----------
     factor : float, optional
-        Factor; negative mirrors the motion [1].
+        Factor; a negative one reverses the motion [1].
     peak : str or Quantity, optional
-        The peak horizontal acceleration to reach [m s^-2].
+        Peak horizontal acceleration of the scaled motion [m s^-2].
     peak_velocity : str or Quantity, optional
-        The peak horizontal velocity to reach, from rest at the start [m s^-1].
+        Peak horizontal velocity of the scaled motion, from rest at the start [m s^-1].
     spectral_acceleration : str or Quantity, optional
-        The pseudo-spectral acceleration to reach at `period`, horizontally
-        [m s^-2].
+        Horizontal pseudo-spectral acceleration of the scaled motion at `period` [m s^-2].
     period : str or Quantity, optional
-        Of the oscillator of `spectral_acceleration` [s].
+        Period of the oscillator for `spectral_acceleration` [s].
     damping_ratio : float, optional
-        Of that oscillator; 0.05 unless given [1].
+        Damping ratio of this oscillator; 0.05 unless given [1].
 
     Returns
     -------
@@ -85,9 +84,9 @@ def scaled(
     UnitsError
         Not a ratio, an acceleration, a velocity or a time.
     ComponentError
-        None or several given, `period` or `damping_ratio` without
-        `spectral_acceleration` or the other way round, a value out of range, or a motion
-        without any acceleration, which nothing can scale to a target.
+        None or several given; `period` or `damping_ratio` without `spectral_acceleration`, or
+        that without `period`; a value out of range; or a motion without acceleration, which
+        cannot be scaled to a target.
 
     Warns
     -----
@@ -115,7 +114,7 @@ def scaled(
     if (period is None) != (spectral_acceleration is None) or (
         damping_ratio is not None and spectral_acceleration is None
     ):
-        msg = f"{owner}: spectral_acceleration and period go together (and damping_ratio)"
+        msg = f"{owner}: give spectral_acceleration and period together (damping_ratio is optional)"
         raise ComponentError(msg)
     if factor is not None:
         ratio = to_ratio(factor, owner=owner, name="factor", example="2")
@@ -140,7 +139,7 @@ def scaled(
         words += f" at {seconds:.9g} s, damping ratio {damping:.9g}"
         arguments |= {"period": f"{seconds!r} {TIME.unit}", "damping_ratio": damping}
     if present <= 0.0:
-        msg = f"{owner}: the motion has no horizontal acceleration, so nothing to scale"
+        msg = f"{owner}: the motion has no horizontal acceleration that could be scaled"
         raise ComponentError(msg)
     ratio = wanted / present
     return _times(motion, ratio, f"scaled by {ratio!r} to {words}", arguments)
@@ -159,14 +158,19 @@ def times(signal: Signal, ratio: float) -> Signal:
 
 
 def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
-    added: dict[str, str | float] = {}
-    sense, azimuth = motion.metadata.get(SENSE), motion.metadata.get("azimuth")
-    if ratio < 0.0 and sense in _OPPOSITE:  # mirrored: what was positive upwards is so downwards
+    added: dict[str, str | float] = {"scale_factor": ratio}
+    known = motion.metadata
+    sense, azimuth, component = (known.get(key) for key in (SENSE, "azimuth", "component"))
+    # a negative factor reverses the positive direction
+    if ratio < 0.0 and sense in _OPPOSITE:
         added[SENSE] = _OPPOSITE[str(sense)]
-    if ratio < 0.0 and isinstance(azimuth, int | float):  # and what was so to the north, southwards
+    if ratio < 0.0 and isinstance(azimuth, int | float):
         added["azimuth"] = (azimuth + 180.0) % 360.0
+    if ratio < 0.0 and component is not None:  # no name from which the old direction is read
+        name = str(component)
+        added["component"] = name[1:] if name.startswith("-") else f"-{name}"
     for name in ("scale_factor", "vertical_scale_factor"):
-        factor = motion.metadata.get(name)
+        factor = known.get(name)
         if isinstance(factor, int | float):
             added[name] = factor * ratio
     return following(

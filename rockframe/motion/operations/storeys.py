@@ -1,4 +1,4 @@
-"""The motion of a floor of a building, instead of the ground's."""
+"""The motion of a floor of an elastic building on the ground."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
     _Read: TypeAlias = tuple[Array, Array, str, dict[str, Any]]
-    """Periods and participations of the modes, the building in words, and its arguments."""
+    """Periods and participations of the modes, a description of the building, its arguments."""
 
 _MOST_STOREYS: Final = 1000
 _WAYS: Final = (
-    # (what has to be given, what may be given with it)
+    # (required arguments, optional arguments)
     (("periods",), ("floor_participations",)),
     (("storeys", "period", "floor"), ("modes",)),
     (("masses", "stiffnesses", "floor"), ("modes",)),
@@ -65,7 +65,7 @@ _WAYS: Final = (
 def _read_building(
     given: Mapping[str, Any], damping_ratio: object, owner: str
 ) -> tuple[FloorModes, str, dict[str, Any]]:
-    """Give a building's modes, what it is in words, and the arguments that describe it."""
+    """Give the modes of a building, its description in words, and its arguments."""
     values = {name: value for name, value in given.items() if value is not None}
     ways = [set(needed) <= set(values) <= {*needed, *more} for needed, more in _WAYS]
     if True not in ways:
@@ -97,7 +97,7 @@ def _of_modes(values: Mapping[str, Any], owner: str) -> _Read:
     given = values.get("floor_participations")
     if given is None and periods.size > 1:
         msg = (
-            f"{owner}: {periods.size} periods need floor_participations, of each mode its "
+            f"{owner}: {periods.size} periods need floor_participations, for each mode the "
             "participation factor times the displacement of the floor in the mode shape"
         )
         raise ComponentError(msg)
@@ -186,11 +186,11 @@ def _written(values: Array, measure: Measure) -> list[str]:
 _SNAP: Final = 1e-9
 _MODES_LISTED: Final = 10
 _COARSE: Final = 0.02
-"""Deviation between samples, as a share of the peak, beyond which there is a warning."""
+"""Interpolation error between samples, over the peak, that causes a warning [1]."""
 
 
 class VerticalComponent(StrEnum):
-    """What becomes of the vertical component on the way up."""
+    """Treatment of the vertical component."""
 
     UNCHANGED = "unchanged"
     OMITTED = "omitted"
@@ -213,7 +213,7 @@ def through_storeys(
     time_step: QuantityLike | None = None,
     vertical: VerticalComponent | str = VerticalComponent.UNCHANGED,
 ) -> Made:
-    """Give the motion of a floor of an elastic building that stands on the ground.
+    """Give the motion of a floor of an elastic building on the ground.
 
     Describe the building by `periods` (one for a single oscillator, several with
     `floor_participations`), by `storeys`, `period` and `floor` for equal storeys, or by
@@ -222,34 +222,34 @@ def through_storeys(
     Parameters
     ----------
     periods : (sequence, unit), Quantity or sequence of str, optional
-        Undamped periods of the modes; zero is rigid [s].
+        Undamped periods of the modes; zero for a rigid mode [s].
     damping_ratio : float, or sequence of float, optional
-        Share of critical damping, from 0 to 1, of all modes or of each [1].
+        Damping ratio, from 0 to 1, of all modes or of each [1].
     floor_participations : sequence of float, optional
-        Of each mode, its participation factor times the displacement of the floor in the
-        mode shape; 1 unless given, if there is one period [1].
+        Participation factor times the displacement of the floor in the mode shape, for each
+        mode; 1 for a single period unless given [1].
     storeys : int, optional
         Number of equal storeys.
     period : str or Quantity, optional
         First period of the building of equal storeys [s].
     masses : (sequence, unit), Quantity or sequence of str, shape (n,), optional
-        Of the floors, from the lowest up [kg].
+        Masses of the floors, from the lowest up [kg].
     stiffnesses : (sequence, unit), Quantity or sequence of str, shape (n,), optional
-        Of the storeys under them against shear [N m^-1].
+        Shear stiffnesses of the storeys below them [N m^-1].
     floor : int, optional
-        The floor on which the object stands: 1 is on top of the lowest storey, the number
-        of storeys is the roof.
+        Floor on which the object stands: 1 is on top of the lowest storey, the number of storeys
+        is the roof.
     modes : int, optional
-        How many modes of the storeys to keep, from the longest period down; all unless given.
+        Number of modes of the storeys to keep, those of the longest periods; all unless given.
     free_vibration : str or Quantity, optional
-        How long the motion goes on after the ground has come to rest; until every mode has
-        decayed to a hundredth of its amplitude unless given [s].
+        Duration of free vibration after the ground motion; unless given, until every mode has
+        decayed to a hundredth of its amplitude [s].
     time_step : str or Quantity, optional
-        The greatest admitted between samples of the floor's motion: the motion's own is
-        divided into equal parts. The motion's own unless given [s].
+        Greatest time step of the floor motion: that of the ground motion is divided into equal
+        parts. That of the ground motion unless given [s].
     vertical : {"unchanged", "omitted"}, optional
-        What becomes of the vertical component. Columns and walls are stiff along their
-        length: the floor has the ground's.
+        Treatment of the vertical component. Columns and walls are axially stiff, so the floor has
+        that of the ground.
 
     Returns
     -------
@@ -261,23 +261,23 @@ def through_storeys(
     UnitsError
         A value without a unit, or of another kind.
     ComponentError
-        No building, or several; a value out of range, or another number of values than
-        of modes; no `free_vibration` where a mode is undamped; periods too short or a
-        motion too long to be sampled.
+        No building, or several; a value out of range; a number of values other than that of
+        modes; no `free_vibration` for an undamped mode; periods too short or a motion too long to
+        be sampled.
 
     Warns
     -----
     RecordWarning
-        Between its samples the floor's acceleration departs from straight lines by more
-        than 2 % of its peak: a shorter `time_step` is needed.
+        Between its samples the floor acceleration departs from straight lines by more than 2 %
+        of its peak, so that a shorter `time_step` is needed.
 
     Notes
     -----
-    The sum over the modes, :eq:`eq-floor-acceleration`, from rest. What participations lack
-    to 1 moves with the ground: so do the modes that are left out. The acceleration is
-    exact at the samples for the ground as it is, straight or polynomial between its samples;
-    between its own samples the floor's is straight. The object does not act back on the
-    building.
+    The acceleration is the sum over the modes, :eq:`eq-floor-acceleration`, from rest. If the
+    participations do not add up to 1, the rest moves with the ground; so do modes that are left
+    out. At the samples the acceleration is exact, for ground motion that is linear or polynomial
+    between its samples. Between the samples the floor acceleration is linear. The building does
+    not interact with the object.
 
     Examples
     --------
@@ -324,7 +324,7 @@ def through_storeys(
         warn(msg, RecordWarning)
     steps = [
         f"absolute acceleration of a floor, {what}: {_modes_words(building)}",
-        f"followed for {zeros * si.time_step:.9g} s after the ground's motion",
+        f"with {zeros * si.time_step:.9g} s of free vibration after the ground motion",
     ]
     if parts > 1:
         steps.append(f"time step divided by {parts}, to {result.time_step!r} s")
@@ -347,7 +347,7 @@ def through_storeys(
 
 
 def _floor(ground: Signal, modes: FloorModes, parts: int) -> tuple[Signal, float]:
-    """Give the floor's acceleration, and how far it departs from straight lines, over its peak."""
+    """Give the floor acceleration, and its deviation from straight lines over its peak."""
     halves = divided_signal(ground, 2 * parts)
     rigid = modes.rigid_share * divided_signal(ground, parts).samples
     added = passed_on(halves.pieces, halves.time_step, modes.moving)
@@ -366,8 +366,8 @@ def _still_time(given: QuantityLike | None, moving: FloorModes, owner: str) -> f
     if math.isfinite(needed):
         return needed
     msg = (
-        f"{owner}: a mode without damping never comes to rest; give free_vibration, how long "
-        "it is followed, for example free_vibration='20 s'"
+        f"{owner}: a mode without damping never comes to rest; give the duration of its free "
+        "vibration, for example free_vibration='20 s'"
     )
     raise ComponentError(msg)
 
@@ -378,7 +378,7 @@ def _parts(given: QuantityLike | None, own: float, owner: str) -> int:
     step = to_si(given, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     if step > own * (1.0 + _SNAP):
         msg = (
-            f"{owner}: time_step = {step:.6g} s is longer than the motion's own, {own:.6g} s; "
+            f"{owner}: time_step = {step:.6g} s is longer than that of the motion, {own:.6g} s; "
             "leave it out, and use resampled afterwards"
         )
         raise ComponentError(msg)
@@ -395,7 +395,7 @@ def _check_size(si: Motion, moving: FloorModes, still: float, parts: int, owner:
     shortest = si.time_step / MAXIMUM_PARTS
     if (moving.periods < shortest).any():
         msg = (
-            f"{owner}: a period of {moving.periods.min():.6g} s is too short beside the time "
+            f"{owner}: a period of {moving.periods.min():.6g} s is too short for the time "
             f"step, {si.time_step:.6g} s; a rigid mode has the period '0 s'"
         )
         raise ComponentError(msg)

@@ -1,4 +1,4 @@
-"""Cutting and resampling a ground motion."""
+"""Windows and resampling of ground motions."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _SNAP: Final = 1e-6
 
 
 class Interpolation(StrEnum):
-    """What a record is taken to be between its samples, when it is sampled more finely."""
+    """Interpolation between the samples of a record, for a finer time step."""
 
     BAND_LIMITED = "band-limited"
     LINEAR = "linear"
@@ -57,15 +57,16 @@ def window(
     *,
     taper: QuantityLike | None = None,
 ) -> Made:
-    """Cut a part out, and let it begin and end smoothly; its time starts at zero.
+    """Cut out a part of the motion, optionally with tapers; its time starts at zero.
 
     Parameters
     ----------
     start, end : str or Quantity, optional
-        Snapped to the nearest samples; the motion's own unless given [s].
+        Start and end of the part, rounded to the nearest samples; those of the motion unless
+        given [s].
     taper : str or Quantity, optional
-        Length over which the acceleration grows from zero at the start, and fades
-        to zero at the end, along half a cosine [s].
+        Duration of the cosine tapers at both ends, over which the acceleration grows from zero
+        and decays to zero [s].
 
     Returns
     -------
@@ -76,8 +77,8 @@ def window(
     UnitsError
         Not a time.
     ComponentError
-        Outside the motion, fewer than two samples, or tapers that are not positive or
-        longer than the part.
+        `start` or `end` is outside the motion, the part has fewer than two samples, or both
+        tapers are not positive or longer than the part.
 
     Examples
     --------
@@ -93,7 +94,7 @@ def window(
     last = len(motion) - 1
     places = {name: value / si.time_step for name, value in ends.items()}
     for name, place in places.items():
-        # some records count their length as n dt, one step beyond the last sample
+        # the length of some records is n dt, one step beyond the last sample
         if place < -_SNAP or place > last + 1.0 + _SNAP:
             msg = (
                 f"{owner}: {name} = {ends[name]:.6g} s is outside the motion, "
@@ -129,7 +130,7 @@ def window(
 
 
 def _between(signal: Signal, first: int, final: int) -> Signal:
-    """Cut out what lies between two samples, both included."""
+    """Cut out the part between two samples, both included."""
     pieces = None if signal.polynomials is None else signal.polynomials[first:final]
     return replace(signal, samples=signal.samples[first : final + 1], polynomials=pieces)
 
@@ -143,17 +144,17 @@ def resampled(
 ) -> Made:
     """Change the time step.
 
-    Finer: the motion that has these samples and nothing beyond their Nyquist
-    frequency, or the straight lines between them; an analytic motion is read off
-    as it stands. Coarser: after a zero-phase low-pass filter against aliasing.
+    A finer motion is interpolated: band-limited, without frequencies beyond the Nyquist frequency
+    of the samples, or linearly; an analytic motion is evaluated. For a coarser motion a zero-phase
+    low-pass filter prevents aliasing.
 
     Parameters
     ----------
     time_step : str or Quantity
         New time step [s].
     interpolation : {"band-limited", "linear"}, optional
-        Between the samples of a record, for a finer time step. Straight lines are what
-        a simulation sees in any case: ``"linear"`` changes no result.
+        Interpolation between the samples of a record, for a finer time step. Simulations
+        interpolate linearly, so ``"linear"`` does not change their results.
 
     Returns
     -------
@@ -164,7 +165,7 @@ def resampled(
     UnitsError
         Not a time.
     ComponentError
-        Not positive, longer than the motion, too short to be meant, or another
+        The time step is not positive, longer than the motion or too short, or another
         interpolation.
 
     Examples
@@ -196,8 +197,8 @@ def resampled(
         if not signal.analytic and between is Interpolation.BAND_LIMITED:
             if divisions(si.time_step / step) > MOST_DIVISIONS:
                 msg = (
-                    f"{owner}: time_step = {step:.6g} s is too short beside the record's own, "
-                    f"{si.time_step:.6g} s; interpolation='linear' needs no filter"
+                    f"{owner}: time_step = {step:.6g} s is too short compared with that of the "
+                    f"record, {si.time_step:.6g} s; interpolation='linear' needs no filter"
                 )
                 raise ComponentError(msg)
             return band_limited(si.time_step, signal.samples, step)

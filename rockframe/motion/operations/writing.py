@@ -1,4 +1,4 @@
-"""Writing a ground motion to a file that other programs read."""
+"""Export of ground motions to files for other programs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _USUAL_DECIMALS: Final = 4
 
 
 class WrittenComponent(StrEnum):
-    """Which component of a motion is written."""
+    """The component of a motion to write."""
 
     HORIZONTAL = "horizontal"
     VERTICAL = "vertical"
@@ -42,27 +42,27 @@ def to_at2(
     Parameters
     ----------
     path : str or path-like
-        File; its name ends in ``.AT2``. One that this method wrote is replaced.
+        File, with a name that ends in ``.AT2``. A file that this method wrote is replaced.
     component : {"horizontal", "vertical"}, optional
-        Which component; the vertical one is written positive upwards.
+        Component to write; the vertical one is positive upwards.
     overwrite : bool, optional
-        Whether a file that is there is replaced whoever wrote it; never the one that the motion
-        was read from.
+        Whether an existing file of another origin is replaced; the file from which the motion
+        was read never is.
 
     Raises
     ------
     ComponentError
         Another component, or the motion has no vertical one.
     FileError
-        The file cannot be written, or its name has another ending, or it is there already and
-        none that this method wrote.
+        The file cannot be written, its name has another ending, or it exists already and this
+        method did not write it.
 
     Notes
     -----
-    Four lines above the numbers: a title; event, station and component; the unit; number
-    of samples and time step. Then the samples in g, five in a line, with eight digits: read
-    back they differ by 5e-8 of themselves at most. The time step is written with all its digits. Of
-    an analytic motion the samples are written, not the function between them.
+    Four header lines have a title; event, station and component; the unit; number of samples and
+    time step. The samples follow in g, five in a line, with eight digits, so that their relative
+    rounding error is at most 5e-8. The time step has all its digits. For an analytic motion the
+    samples are written, without the polynomials between them.
 
     Examples
     --------
@@ -108,7 +108,7 @@ def to_at2(
 
 
 def _is_source(motion: MotionValue, path: str | os.PathLike[str], content: bytes) -> bool:
-    """Whether a file is the one that a motion was read from, and would be changed."""
+    """Whether a motion was read from this file, and writing would change it."""
     digest = motion.metadata.get("source_sha256")
     place = Path(path).expanduser()
     if digest is None or not place.is_file():
@@ -118,5 +118,5 @@ def _is_source(motion: MotionValue, path: str | os.PathLike[str], content: bytes
 
 
 def _as_ascii(text: str) -> str:
-    """Keep what every program reads: printable ASCII."""
+    """Replace characters outside ASCII, which not every program reads."""
     return text.encode("ascii", "replace").decode("ascii")

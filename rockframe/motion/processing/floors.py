@@ -1,4 +1,4 @@
-"""The acceleration of a floor: what the modes of a building make of the ground's."""
+"""The acceleration of a floor by superposition of the modes of a building."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ from rockframe.signals.arrays import Array
 from rockframe.signals.oscillator import STEPS_PER_PERIOD, fill_step
 
 DECAYED: Final = 0.01
-"""Share of its amplitude to which a free vibration is followed unless told otherwise."""
+"""Ratio to its initial amplitude at which a free vibration ends by default [1]."""
 
 
 class FloorModes(NamedTuple):
-    """Modes of vibration of a building, as one of its floors feels them."""
+    """Modes of vibration of a building, with their participation at one floor."""
 
-    periods: Array  # undamped periods; that of a rigid mode is zero [s]
-    damping_ratios: Array  # shares of critical damping, from 0 to 1 [1]
+    periods: Array  # undamped periods; zero for a rigid mode [s]
+    damping_ratios: Array  # damping ratios, from 0 to 1 [1]
     # participation factors times the displacement of the floor in the mode shape [1]
     participations: Array
 
     @property
     def moving(self) -> FloorModes:
-        """Those that are not rigid and that the floor feels."""
+        """The modes that are not rigid and have a participation at the floor."""
         kept = (self.periods > 0.0) & (self.participations != 0.0)
         return FloorModes(*(values[kept] for values in self))
 
     @property
     def rigid_share(self) -> float:
-        """What of the floor moves with the ground [1]."""
+        """Participation of the rigid motion with the ground [1]."""
         return 1.0 - math.fsum(self.moving.participations)
 
 
 def interval_matrix(time_step: float, period: float, damping: float, powers: int) -> Array:
-    """Compute what an interval makes of an oscillator's state, :eq:`eq-interval-matrix`."""
+    """Compute the transition matrix of an oscillator over an interval, :eq:`eq-interval-matrix`."""
     from scipy import linalg as module
 
     linalg: Any = module
@@ -56,7 +56,7 @@ def interval_matrix(time_step: float, period: float, damping: float, powers: int
 
 
 def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
-    """Compute what the modes add to a floor's acceleration, :eq:`eq-floor-acceleration`."""
+    """Compute the sum of the modes in the floor acceleration, :eq:`eq-floor-acceleration`."""
     total = np.zeros(len(pieces) + 1)
     for period, damping, participation in np.column_stack(modes).tolist():
         total += participation * _oscillator(pieces, time_step, period, damping)
@@ -64,7 +64,7 @@ def passed_on(pieces: Array, time_step: float, modes: FloorModes) -> Array:
 
 
 def decay_time(modes: FloorModes) -> float:
-    """Give the time in which all modes come to rest, :eq:`eq-floor-decay`."""
+    """Give the time in which all modes decay, :eq:`eq-floor-decay` [s]."""
     with np.errstate(divide="ignore"):
         periods = 1.0 - math.log(DECAYED) / (2.0 * math.pi * modes.damping_ratios)
     return max((modes.periods * periods).tolist(), default=0.0)
@@ -81,7 +81,7 @@ def _oscillator(pieces: Array, time_step: float, period: float, damping: float) 
         return uu * u + uv * v + force[0], vu * u + vv * v + force[1]
 
     forces = zip(*driven.tolist(), strict=True)
-    # one line of the state at a time, as a filter, would lose digits for long periods
+    # the displacement alone, by a recursive filter, would lose digits for long periods
     states = accumulate(forces, following, initial=(0.0, 0.0))
     numbers = np.fromiter(chain.from_iterable(states), np.float64, 2 * len(pieces) + 2)
     frequency = 2.0 * math.pi / period
@@ -97,7 +97,7 @@ def uniform_modes(storeys: int, floor: int, period: float) -> tuple[Array, Array
 
 
 def building_modes(masses: Array, stiffnesses: Array, floor: int) -> tuple[Array, Array]:
-    """Compute the modes of any storeys, :eq:`eq-shear-building`."""
+    """Compute the modes of a shear building, :eq:`eq-shear-building`."""
     from scipy import linalg as module
 
     linalg: Any = module

@@ -1,6 +1,6 @@
-"""What changes the samples of a motion: other steps, filters, baselines, tapers.
+"""Processing of the samples of a motion: resampling, filters, baselines and tapers.
 
-Also whether the steps are short enough for what is asked of them.
+Also a check whether time steps are short enough for given periods.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from rockframe.signals.arrays import Array
 
 _INTEGER_RATIO: Final = 1e-9
-_ANTI_ALIAS_ORDER: Final = 9  # of even order it would take 0.1 dB from the slowest motion
+_ANTI_ALIAS_ORDER: Final = 9  # an even order would lower low frequencies by 0.1 dB
 _ANTI_ALIAS_RIPPLE: Final = 0.05
 _ANTI_ALIAS_EDGE: Final = 0.8
 _SINC_REACH: Final = 64
 MOST_DIVISIONS: Final = 200_000
-"""Parts of a time step beyond which the filter alone would take gigabytes."""
+"""Most parts of a time step; with more the filter alone would take gigabytes."""
 _SINC_WINDOW: Final = 12.0
 _OVERSAMPLING: Final = 8
 
@@ -37,7 +37,7 @@ def sample_count(duration: float, time_step: float) -> int:
 
 
 def whole_ratio(ratio: float) -> int | None:
-    """Give the whole number that a ratio of time steps is, or None."""
+    """Give a ratio of time steps as a whole number; None if it is not whole."""
     times = round(ratio)
     return times if abs(ratio - times) <= _INTEGER_RATIO * ratio else None
 
@@ -48,7 +48,7 @@ def instants_of(duration: float, time_step: float) -> Array:
 
 
 def refined(signal: Signal, time_step: float) -> Array:
-    """Sample the same function of time more finely."""
+    """Sample the same function of time, linear or polynomial between samples, more finely."""
     place = instants_of(signal.duration, time_step) / signal.time_step
     if signal.analytic:
         return signal.at_place(place)
@@ -64,12 +64,12 @@ def refined(signal: Signal, time_step: float) -> Array:
 
 
 def band_limited(dt: float, samples: Array, time_step: float) -> Array:
-    """Sample more finely the motion without frequencies beyond the old Nyquist frequency.
+    """Sample more finely, by band-limited interpolation up to the old Nyquist frequency.
 
-    A sinc of 64 old samples to each side under a Kaiser window, whose zeros fall on the old
-    samples. Beyond its ends the motion is taken to go on along the straight line
-    through its first and last sample, from which it differs by nothing there. A ratio that
-    is no integer is read off a quintic spline through samples at least eight times finer.
+    The interpolation kernel is a sinc function with a Kaiser window, over 64 old samples to each
+    side; its zeros are at the old samples. Beyond both ends the motion is continued by the
+    straight line through its first and last sample. For a ratio that is not an integer, a quintic
+    spline through samples at least eight times finer is evaluated.
     """
     from scipy import signal as module
 
@@ -78,7 +78,7 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
     times = divisions(dt / time_step)
     sinc = np.sinc(np.arange(-_SINC_REACH * times, _SINC_REACH * times + 1) / times)
     taps = sinc * signal.windows.kaiser(sinc.size, _SINC_WINDOW)
-    # without division by the sum, so that the old samples stay as they are
+    # not divided by the sum of the coefficients, so that the old samples do not change
     fine: Array = signal.resample_poly(samples, times, 1, window=taps / times, padtype="line")
     fine = fine[: (samples.size - 1) * times + 1]
     if whole is not None:
@@ -89,7 +89,7 @@ def band_limited(dt: float, samples: Array, time_step: float) -> Array:
 
 
 def _spline(samples: Array, time_step: float, instants: Array, degree: int) -> Array:
-    """Read off the spline of a degree through samples."""
+    """Evaluate the spline of a degree through samples."""
     from scipy import interpolate as module
 
     splines: Any = module
@@ -105,9 +105,9 @@ def divisions(ratio: float) -> int:
 def coarsened(dt: float, samples: Array, time_step: float) -> Array:
     """Sample more coarsely, after a zero-phase low-pass filter against aliasing.
 
-    Chebyshev filter of order 9 and 0.05 dB ripple up to 0.8 of the new Nyquist
-    frequency, run forwards and backwards; a ratio that is not an integer is
-    then read off a cubic spline.
+    The filter is a Chebyshev filter of order 9 with a ripple of 0.05 dB up to 0.8 of the new
+    Nyquist frequency, run forwards and backwards. For a ratio that is not an integer, a cubic
+    spline is then evaluated.
     """
     from scipy import signal as module
 
@@ -124,7 +124,7 @@ def coarsened(dt: float, samples: Array, time_step: float) -> Array:
 
 
 def padded(signal: Signal, count: int) -> Signal:
-    """Append zeros (a still ground) up to `count` samples."""
+    """Append zeros up to `count` samples."""
     missing = count - signal.samples.size
     if missing == 0:
         return signal
@@ -161,7 +161,7 @@ def butterworth(
     causal: bool = False,
     keep_padding: bool = False,
 ) -> Array:
-    """Run a Butterworth filter over the zero-padded samples."""
+    """Apply a Butterworth filter to the zero-padded samples."""
     from scipy import signal as module
 
     signal: Any = module
@@ -176,8 +176,8 @@ def butterworth(
     lowest = min(corner for corner in (low, high) if corner is not None)
     padding = padding_samples(dt, lowest, order)
     rest = np.zeros(padding)
-    if causal:  # at rest before the motion, which zeros would not change
-        # but for one of them: a motion that starts with a jump rises to it from there
+    if causal:
+        # at rest before the motion; one zero shows the rise to a first sample that is not zero
         once: Array = signal.sosfilt(sos, np.concatenate([[0.0], samples, rest]))
         return once if keep_padding else once[1 : samples.size + 1]
     padded = np.concatenate([rest, samples, rest])
@@ -201,7 +201,7 @@ def without_baseline(samples: Array, order: int) -> Array:
 def without_drift(dt: float, samples: Array, order: int) -> Array:
     """Subtract the slope of the polynomial that fits the velocity best (least squares)."""
     slopes = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, samples.size), order - 1)
-    # integrated like the motion, so that a drift that is a polynomial goes entirely
+    # integrated like the motion, so that a polynomial drift is removed exactly
     together = np.column_stack([slopes, samples])
     steps = 0.5 * dt * (together[1:] + together[:-1])
     path = np.concatenate([np.zeros((1, order + 1)), np.cumsum(steps, axis=0)])
@@ -210,7 +210,7 @@ def without_drift(dt: float, samples: Array, order: int) -> Array:
 
 
 def tapered(samples: Array, intervals: float) -> Array:
-    """Let a motion grow from zero and fade to zero along half a cosine."""
+    """Apply cosine tapers at both ends."""
     place = np.arange(samples.size)
     from_end = np.minimum(place, samples.size - 1 - place)
     share = np.minimum(from_end / intervals, 1.0)
@@ -218,7 +218,7 @@ def tapered(samples: Array, intervals: float) -> Array:
 
 
 FEWEST: Final = 10
-"""Samples per period below which straight lines lower an ordinate by more than 3 %."""
+"""Samples per period below which linear interpolation lowers an ordinate by more than 3 %."""
 
 _ROUNDING: Final = 1e-9
 
@@ -226,7 +226,7 @@ _ROUNDING: Final = 1e-9
 def say_coarse(
     signals: Iterable[Signal], shortest: float, *, owner: str, remedy: str | None = None
 ) -> None:
-    """Warn of records that are too coarse for the shortest of the periods asked for."""
+    """Warn of records that are sampled too coarsely for the shortest period."""
     steps = [one.time_step for one in signals if not one.analytic]
     coarse = [step for step in steps if shortest < FEWEST * step * (1.0 - _ROUNDING)]
     if not coarse:
@@ -244,5 +244,5 @@ def say_coarse(
 
 
 def finer(time_step: float, shortest: float) -> float:
-    """Give the whole part of a time step that is fine enough for a period [s]."""
+    """Give a time step, divided into equal parts, that is short enough for a period [s]."""
     return time_step / math.ceil(FEWEST * time_step / shortest * (1.0 - _ROUNDING))

@@ -1,4 +1,4 @@
-"""The strongest pulse in a velocity: found, extracted and judged (Baker 2007)."""
+"""The strongest pulse in a velocity history: search, extraction, classification (Baker 2007)."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import numpy as np
 from rockframe.signals.arrays import Array
 
 SUPPORT: Final = 7
-"""Length of the wavelet, outside of which it is zero [1]."""
+"""Length of the support of the wavelet [1]."""
 
 CENTRE_FREQUENCY: Final = 5.0 / 7.0
-"""Cycles over unit length where the Fourier amplitude is greatest, in steps of one cycle over
-the support: the pseudo-period is the scale over it, :eq:`eq-pseudo-period` [1]."""
+"""Frequency of the greatest Fourier amplitude, in cycles per unit length, rounded to a multiple of
+one cycle over the support. The pseudo-period is the scale over it, :eq:`eq-pseudo-period` [1]."""
 
 _MOMENTS: Final = 4
 _LEVELS: Final = 12
@@ -34,7 +34,7 @@ def scaling_filter() -> Array:
     binomials = [math.comb(_MOMENTS - 1 + k, k) for k in range(_MOMENTS)]
     taps = np.array([1.0])
     for root in np.roots(binomials[::-1]):
-        # 2 - z - 1/z = 4 y: of the two zeros z the one within the circle
+        # 2 - z - 1/z = 4 y: of the two zeros z the one inside the unit circle
         pair = np.roots([1.0, 4.0 * root - 2.0, 1.0])
         taps = np.convolve(taps, [1.0, -pair[np.argmin(np.abs(pair))]])
     for _ in range(_MOMENTS):
@@ -45,10 +45,10 @@ def scaling_filter() -> Array:
 
 @cache
 def _table() -> tuple[Array, Array]:
-    """Give the wavelet at dyadic points, exactly: at whole numbers, at their halves, and on."""
+    """Give exact values of the wavelet at dyadic points: integers, halves, quarters and so on."""
     taps = math.sqrt(2.0) * scaling_filter()
     size = taps.size
-    # at whole numbers the values are an eigenvector of the two-scale equation
+    # the values at integers are an eigenvector of the two-scale equation
     inner = np.arange(1, size - 1)
     index = 2 * inner[:, None] - inner[None, :]
     matrix = np.where((index >= 0) & (index < size), taps[np.clip(index, 0, size - 1)], 0.0)
@@ -70,7 +70,7 @@ def _table() -> tuple[Array, Array]:
 
 
 def _refined(values: Array, taps: Array, level: int) -> Array:
-    """Halve the distance of points: phi(x) = sum of h_k phi(2 x - k)."""
+    """Halve the distance of points by phi(x) = sum of h_k phi(2 x - k)."""
     spacing = 2**level
     count = (values.size - 1) * 2 + 1
     fine = np.zeros(count)
@@ -84,46 +84,47 @@ def _refined(values: Array, taps: Array, level: int) -> Array:
 
 
 PERIOD_RATIO: Final = 1.02
-"""From one period of the wavelet transform to the next [1]."""
+"""Ratio of successive periods of the wavelet transform [1]."""
 
 WAVELETS: Final = 10
-"""Wavelets that a pulse is made of (Baker 2007)."""
+"""Number of wavelets in a pulse (Baker 2007)."""
 
 REACH: Final = 0.4
-"""How far they lie from the first one, over their scale [1] (Shahi and Baker 2014)."""
+"""Greatest distance of wavelets from the first one, over their scale [1] (Shahi and Baker 2014)."""
 
 INDICATOR: Final = (-23.3, 14.6, 20.5)
-"""Constant, and factors of the ratios of peak velocities and energies [1] (Baker 2007)."""
+"""Constant, and coefficients of the ratios of peak velocities and energies [1] (Baker 2007)."""
 
 PULSE_SHARE: Final = 0.1
 MOTION_SHARE: Final = 0.2
-"""Shares of the squared velocities of pulse and motion that mark their starts (Baker 2007)."""
+"""Fractions of the cumulative squared velocity that define the starts of pulse and motion (Baker
+2007)."""
 
 _REFINEMENT: Final = 10
 
 
 class WaveletPeak(NamedTuple):
-    """Where the wavelet transform is greatest."""
+    """The wavelet with the greatest coefficient."""
 
     period: float  # pseudo-period of the wavelet [s]
-    sample: int  # its middle
-    direction: float  # from the first of two components towards the second; zero of one [rad]
+    sample: int  # index of the sample at its middle
+    direction: float  # from the first component towards the second; zero for one component [rad]
 
 
 class Measures(NamedTuple):
-    """What tells whether a motion is that of a pulse."""
+    """Quantities by which a motion is classified as pulse-like or not."""
 
-    # peak and sum of squares of what the pulse leaves of the velocity, over those of the whole [1]
+    # peak and sum of squares of the residual velocity, over those of the motion [1]
     peak_ratio: float
     energy_ratio: float
     indicator: float  # from 0, no pulse, to 1 [1]
-    # when a tenth of the squares of the pulse is reached, and a fifth of those of the whole [s]
+    # times of a tenth of the cumulative squares of the pulse, and of a fifth of the motion [s]
     pulse_start: float
     motion_start: float
 
 
 def periods_between(shortest: float, longest: float) -> Array:
-    """Give the periods at which a pulse is looked for [s]."""
+    """Give the periods of the search for a pulse [s]."""
     count = math.ceil(math.log(longest / shortest) / math.log(PERIOD_RATIO)) + 1
     return np.geomspace(shortest, longest, max(count, 2))
 
@@ -141,7 +142,7 @@ def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
         wavelet = wavelet_of(one, dt)
         transform = np.conj(np.fft.rfft(wavelet, size))
         products = np.fft.irfft(transforms * transform, size)
-        # nothing moves before and after; a wavelet may reach beyond both ends
+        # the velocity is zero before and after; a wavelet may extend beyond both ends
         coefficients = np.roll(products, wavelet.size // 2, axis=1)[:, :count]
         squares: Array = np.sum(coefficients**2, axis=0)
         top = int(np.argmax(squares))
@@ -156,7 +157,7 @@ def strongest(velocities: Array, dt: float, periods: Array) -> WaveletPeak:
 
 
 def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int, float]]:
-    """Take the strongest wavelets about a place out of a velocity, :eq:`eq-extracted-pulse`."""
+    """Extract the strongest wavelets near a place from a velocity, :eq:`eq-extracted-pulse`."""
     wavelet = wavelet_of(place.period, dt)
     reach = math.ceil(REACH * place.period * CENTRE_FREQUENCY / dt)
     around = range(max(0, place.sample - reach), min(velocity.size - 1, place.sample + reach) + 1)
@@ -171,7 +172,7 @@ def extracted(velocity: Array, dt: float, place: WaveletPeak) -> list[tuple[int,
 
 
 def sum_of(wavelets: list[tuple[int, float]], wavelet: Array, start: int, count: int) -> Array:
-    """Add wavelets."""
+    """Give the sum of wavelets at some samples."""
     total = np.zeros(count)
     for middle, coefficient in wavelets:
         begin = middle - wavelet.size // 2 - start
@@ -181,7 +182,7 @@ def sum_of(wavelets: list[tuple[int, float]], wavelet: Array, start: int, count:
 
 
 def measures(velocity: Array, pulse: Array, dt: float) -> Measures:
-    """Compare what the pulse leaves with the whole, :eq:`eq-pulse-indicator`."""
+    """Compare the residual velocity with the velocity, :eq:`eq-pulse-indicator`."""
     left = velocity - pulse
     peak_ratio = float(np.abs(left).max() / np.abs(velocity).max())
     energy_ratio = float(left @ left / (velocity @ velocity))
@@ -197,7 +198,7 @@ def measures(velocity: Array, pulse: Array, dt: float) -> Measures:
 
 
 def wavelet_of(period: float, dt: float) -> Array:
-    """Sample the wavelet of a period, :eq:`eq-pseudo-period`, about its middle."""
+    """Sample the wavelet of a period, :eq:`eq-pseudo-period`, symmetrically to its middle."""
     scale = period * CENTRE_FREQUENCY / dt
     half = math.ceil(0.5 * SUPPORT * scale)
     wavelet = mother_wavelet(np.arange(-half, half + 1) / scale + 0.5 * SUPPORT)
@@ -205,13 +206,13 @@ def wavelet_of(period: float, dt: float) -> Array:
 
 
 def _reached(velocity: Array, share: float) -> int:
-    """Count the samples until the sum of squares has reached a share of the whole."""
+    """Count the samples until the sum of squares has reached a fraction of the total."""
     grown = np.cumsum(velocity**2)
     return int(np.searchsorted(grown, share * grown[-1]))
 
 
 def _coefficients_about(velocity: Array, samples: range, wavelet: Array) -> Array:
-    """Give the coefficients of a wavelet about some samples that follow one another."""
+    """Give the coefficients of a wavelet centred at consecutive samples."""
     from scipy import signal as module
 
     signal: Any = module
@@ -222,7 +223,7 @@ def _coefficients_about(velocity: Array, samples: range, wavelet: Array) -> Arra
 
 
 def _at(velocities: Array, sample: int, wavelet: Array) -> Array:
-    """Give the coefficient of a wavelet about a sample, of each component."""
+    """Give the coefficient of a wavelet centred at a sample, for each component."""
     return np.array(
         [_coefficients_about(one, range(sample, sample + 1), wavelet)[0] for one in velocities]
     )

@@ -202,8 +202,8 @@ class SystemScene:
         for part in parts:
             if any(parameter in one.varied() for one in _made_of(part)):
                 return (
-                    f"axis {name!r} is a parameter of a part of the {type(part).__name__}; give in "
-                    "the place of the system a function of the axis that returns the System"
+                    f"axis {name!r} is a parameter of a part of the {type(part).__name__}; "
+                    "instead of the system give a function of the axis that returns a System"
                 )
         question = suggestion(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"

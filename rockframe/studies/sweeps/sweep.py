@@ -189,7 +189,10 @@ def sweep(
         others = [known] if isinstance(known, PathLike) else several(
             known, owner=OWNER, name="known", of="folders"
         )  # fmt: skip
-        return run_study(study, bar, store=store, executor=executor, chunk=chunk, known=others)
+        dataset, _ = run_study(
+            study, bar, store=store, executor=executor, chunk=chunk, known=others
+        )
+        return dataset
 
 
 @hinted()
@@ -245,8 +248,11 @@ def run_study(
     executor: Executor | None = None,
     chunk: int | None = None,
     known: Sequence[str | PathLike[str]] = (),
-) -> xr.Dataset:
-    """Run the cases of a study that are not kept yet, and label all of them."""
+) -> tuple[xr.Dataset, bool]:
+    """Run the cases of a study that are not kept yet, and label all of them.
+
+    Tell, too, whether it went to its end. An interrupt may come when all cases have been run.
+    """
     workers = workers_of(executor)
     as_python = not COMPILED
     if chunk is None:
@@ -268,7 +274,7 @@ def run_study(
         dataset = not_screened(dataset) if study.handed_over else dataset
         kept = study.histories
         say_what_is_missing(dataset, () if kept is None else kept.names or ())
-    return dataset
+    return dataset, not unfinished
 
 
 def _say_how_long(study: Study, workers: int, *, as_python: bool, kept: bool) -> None:

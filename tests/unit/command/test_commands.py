@@ -182,10 +182,10 @@ def test_an_interrupted_study_tells_the_command_that_goes_on(typed, folder, monk
     assert code == 130
     assert "have not been run" in told
     if store is None:
-        assert "has to be run again; with one it could go on: rockframe study" in problem
+        assert "has to be run again; with a store it could continue: rockframe study" in problem
         assert problem.endswith("study.toml --csv runs.csv --store study\n")
     else:
-        again = problem.splitlines()[-1].partition("goes on with it: ")[2]
+        again = problem.splitlines()[-1].partition("command continues it: ")[2]
         assert shlex.split(again) == ["rockframe", *words]
         files = [path for path in (folder / store).iterdir() if path.is_file()]
         kept = {path: path.stat().st_mtime_ns for path in files}
@@ -302,7 +302,7 @@ def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, fol
     (folder / "study.toml").write_text(own)
     assert "All towers" in read_study("study.toml").project
     (folder / "study.toml").write_text(f"{own}[run]\naccuracy = 'fast'\n")
-    assert "stands in [sweep]" in typed("study", "study.toml")[2]
+    assert "belong in [sweep]" in typed("study", "study.toml")[2]
     asked = 'checks = ["circolare_2019 confidence_factor=1.2", "asce_7_22 spectral_acceleration=1"]'
     (folder / "scene.toml").write_text(f"{scene}\n{project}{asked}\n")
     assert typed("run", "scene.toml", "-o", "out.nc")[0] == 0
@@ -313,7 +313,7 @@ def test_the_file_of_a_scene_says_what_its_reports_say_of_the_project(typed, fol
     with xr.open_dataset("out.nc") as kept:
         rf.report(kept, "python.html", certify=False)
     text = (folder / "python.html").read_text()
-    assert "Not checked</strong>Asked for: circolare_2019 confidence_factor=1.2; asce_7_22" in text
+    assert "Not checked</strong>Requested: circolare_2019 confidence_factor=1.2; asce_7_22" in text
     for wrong, said in (
         ("circolare", "there is no 'circolare'"),
         ("circolare_2019 factor=1", "circolare_2019 has no 'factor'"),
@@ -467,7 +467,7 @@ def test_a_report_of_a_case_names_each_axis_once(typed, folder):
     code, _, problem = typed(*given, "scale=1", "motions=2")
     assert (code, "there is no axis 'motions'" in problem) == (2, True)
     code, _, problem = typed("report", "runs.nc", "--motion", "record.AT2")
-    assert (code, "those of a study are motions=" in problem) == (2, True)
+    assert (code, "a study takes motions=" in problem) == (2, True)
 
 
 @pytest.mark.usefixtures("no_pictures")

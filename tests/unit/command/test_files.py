@@ -285,7 +285,7 @@ def test_rows_longer_than_their_head_are_refused(file):
     # the first value of each would be a label, and the others those of the columns before
     file("width [m],scale\n0.7,1,9\n0.8,2,9\n", "rows.csv")
     found = faults(read_study, file(f'cases = "rows.csv"\n{BLOCK}'))
-    assert "its rows have 3 values, below 2 heads" in found[1]
+    assert "its rows have 3 values, but there are 2 heads" in found[1]
 
 
 def test_motions_of_a_table_are_found_by_their_names(file, tmp_path):

@@ -48,17 +48,17 @@ VALUES = {
     "critical scene.toml --intensity PGAA": "was 'PGA'",
     "critical scene.toml --intensity SA": "needs a period, for example --period '0.5 s'",
     "critical scene.toml --period '1 s' --intensity PGA": "has no period",
-    "fragility scene.toml record.AT2 --scales 1:2": "from, to and step",
-    "fragility scene.toml record.AT2 --scales 1:2:0": "from, to and step",
+    "fragility scene.toml record.AT2 --scales 1:2": "as from:to:step",
+    "fragility scene.toml record.AT2 --scales 1:2:0": "as from:to:step",
     "fragility scene.toml record.AT2 --scales '1,2 m'": "without a unit",
     "fragility scene.toml record.AT2 --limits peak_slop=1": "was 'peak_slip'",
     "ida scene.toml --limits uplift,0.x": "got '0.x'",
     "ida scene.toml --limits peak_slip": "'peak_slip=5 cm'",
-    "map scene.toml --amplitude 1,2 --frequency '1 Hz'": "with their unit behind them",
+    "map scene.toml --amplitude 1,2 --frequency '1 Hz'": "followed by their unit",
     "map scene.toml --amplitude '1,2 m' --frequency '1 Hz'": "--amplitude '9.81 m/s^2'",
     "map scene.toml --amplitude '1 g' --frequency '1 Hz' --pulse sine_puls": "was 'sine_pulse'",
     "animate scene.toml -o x.gif --window 1 2": "--window '20 s'",
-    "animate scene.toml -o x.html --speed 2": "--speed is that of a film",
+    "animate scene.toml -o x.html --speed 2": "--speed is for films",
     "motion record.AT2 --unit furlong": "furlong",
 }
 FILES = {
@@ -74,13 +74,13 @@ FILES = {
     "animate record.nc -o x.html": "needs the result of one run",
     "animate scene.toml -o x.avi": "ends in .html or .gif or .mp4",
     "animate run.nc -o x.html --scale 2": "this is a result, which has run",
-    "convert record.AT2 -o x.xyz": "the name of the file does not tell a format",
+    "convert record.AT2 -o x.xyz": "the ending gives no format",
     "convert record.AT2 --to csv -o none/deep": "this folder cannot be made",
     "convert scene.toml -o x.AT2": "no format recognises",
     "critical scene.toml -o run.nc": "not the result of a critical scale that rockframe wrote",
     "critical scene.toml --picture x.txt": "ends in .png or .svg or .pdf",
     "run scene.toml -o x.nc -m scene.toml": "no format recognises",
-    "report run.nc --motions record.AT2": "found motions=, which are those of a study",
+    "report run.nc --motions record.AT2": "found motions=, which is for a study",
     "report run.nc --case scale=1": "expected a study, which has axes",
     "plot run.nc -o scene.toml": "ends in .png or .svg or .pdf",
     "run scene.toml -o shut/x.nc": "shut",
@@ -90,7 +90,7 @@ STREAMS = {
     "run - -m -": "a scene is read from it already",
     "run - --json -o -": "the answer in JSON goes to the standard output already",
     "critical - -o - --picture -": "another file goes to the standard output already",
-    "convert record.AT2 -o -": "or name the format, --to at2",
+    "convert record.AT2 -o -": "a format such as --to at2",
     "plot - -o x.png": "this is no netCDF file",
     "motion -": "standard input: found no horizontal component",
     "report -": "name the report with -o report.html",
@@ -217,7 +217,7 @@ def test_files_of_other_editors_are_read(typed):
     Path("other.toml").write_text(text, encoding="latin-1")
     code, told, err = typed("run", "other.toml")
     assert code == 0
-    assert "other.toml, line 1: found '\u00e9' in the encoding of old Windows" in err
+    assert "other.toml, line 1: found '\u00e9' in the old encoding of Windows" in err
     for encoding in ("utf-8-sig", "utf-16", "utf-8"):
         wrong = text.replace('"3.2 m"', '"3.2 s"')
         Path("other.toml").write_text(wrong, encoding=encoding, newline="\r\n")

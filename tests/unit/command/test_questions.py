@@ -89,7 +89,7 @@ def test_a_fragility_is_fitted_to_what_was_run_before(typed, records):
         assert states == ["uplift", "rotation 0.5", "overturning"]
     assert len(verdicts) == 1
     code, _, problem = typed("fragility", "runs.nc", "records")
-    assert (code, "its runs have been made" in problem) == (2, True)
+    assert (code, "its runs are finished" in problem) == (2, True)
 
 
 def test_a_dynamic_analysis_tells_the_capacity_under_each_record(typed, records):

@@ -1,5 +1,6 @@
 """Small made-up files of the formats that are not text, and StationXML to go with them."""
 
+import itertools
 import json
 import struct
 from pathlib import Path
@@ -69,14 +70,15 @@ def asdf(
     tag: str = "made_default",
     rate: float = 100.0,
     channels=(("HNE", "E"), ("HNN", "N"), ("HNZ", "U")),
+    pieces: int = 1,
 ) -> bytes:
     """The workspace of an event as gmprocess lays it out: groups and arrays of HDF5."""
     path = folder / "made.h5"
     with netCDF4.Dataset(path, "w") as file:
         file.setncatts({"file_format": "ASDF", "file_format_version": "1.0.3"})
         group = file.createGroup("Waveforms").createGroup("XX.MADE")
-        for code, key in channels:
-            times = "2018-01-24T10:51:00__2018-01-24T10:51:01"
+        for (code, key), piece in itertools.product(channels, range(1, pieces + 1)):
+            times = f"2018-01-24T10:51:00__2018-01-24T10:51:0{piece}"
             _array(group, f"XX.MADE.--.{code}__{times}__{tag}", VALUES[key]).setncatts(
                 {"sampling_rate": rate, "starttime": np.int64(1516791060 * 10**9)}
             )

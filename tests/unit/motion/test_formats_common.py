@@ -105,6 +105,7 @@ def test_another_unit_than_its_own_is_used_and_warned_about(sample, tmp_path):
     assert ratios[0] > 5.0
 
 
+@pytest.mark.filterwarnings("ignore:.*the file ends inside what line")
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.8, 0.95])
 def test_of_a_part_of_it_nothing_wrong_is_read(sample, share, tmp_path):
     path = tmp_path / sample.name

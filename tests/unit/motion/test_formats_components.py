@@ -152,7 +152,7 @@ def test_two_of_one_name_are_told_apart_by_their_numbers(write):
     text = cosmos_block("acceleration", VALUES["N"], chan="  4: 360 Deg")
     text += cosmos_block("acceleration", VALUES["E"], chan="  7: 360 Deg")
     path = write(text, "r.V2c")
-    with pytest.raises(RecordError, match=r"2 components that answer to 'N'.*channel number"):
+    with pytest.raises(RecordError, match=r"2 components that match 'N'.*channel number"):
         GroundMotion.read(path, component="N")
     with pytest.raises(RecordError, match="such as component='channel 4'"):
         GroundMotion.read(path)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from unit.motion.dialect_samples import pairs
 from unit.motion.format_samples import VALUES, csmip, csmip_channel
 from unit.motion.motion_files import G
 
@@ -101,6 +102,27 @@ def test_a_unit_in_tenths_of_g_can_be_named(write):
 def test_a_smc_file_is_not_taken_for_one(write):
     with pytest.raises(RecordError):
         read(write, "2 CORRECTED ACCELEROGRAM   CHAN\n" + csmip(2))
+
+
+@pytest.mark.parametrize("channel", [1, 2, 3])
+def test_a_channel_whose_data_are_not_announced_is_not_passed_over(write, channel):
+    parts = csmip(1).split("UNCORRECTED")
+    parts[channel] = parts[channel].replace("POINTS OF ACCEL", "POINTS")
+    text = "UNCORRECTED".join(parts)
+    other = {1: "E", 2: "N", 3: "N"}[channel]
+    assert read(write, text, "r.V1", component=other).si.peak > 0.0
+    with pytest.raises(RecordError, match="found 3 components"):
+        read(write, text, "r.V1")
+    with pytest.raises(RecordError, match="no evenly sampled accelerations below"):
+        read(write, text, "r.V1", component=f"channel {channel}")
+
+
+def test_a_channel_of_pairs_without_their_number_is_not_passed_over(write):
+    text = pairs().replace("NO. OF POINTS =", "NO. OF", 1)
+    with pytest.raises(RecordError, match="found 3 components"):
+        read(write, text, "r.v1")
+    with pytest.raises(RecordError, match="no evenly sampled accelerations below"):
+        read(write, text, "r.v1", component="channel 1")
 
 
 def test_more_channels_than_any_building_has(write):

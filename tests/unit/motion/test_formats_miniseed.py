@@ -1,6 +1,7 @@
 """miniSEED: refused with advice without ObsPy, read with the response if it is there."""
 
 import importlib.util
+import io
 import itertools
 import subprocess
 import sys
@@ -12,12 +13,23 @@ from processor_time import processor_time
 from unit.motion.binary_samples import miniseed, station_xml
 from unit.motion.format_samples import COUNT, COUNTS
 
-from rockframe.errors import RecordError
+from rockframe.errors import RecordError, RecordWarning
 from rockframe.motion import GroundMotion
 
 needs_obspy = pytest.mark.skipif(
     importlib.util.find_spec("obspy") is None, reason="ObsPy is not installed"
 )
+
+
+def compressed(counts, channel: str) -> bytes:
+    """Records of 512 bytes of one channel, as ObsPy writes them."""
+    from obspy import Trace
+
+    header = {"network": "XX", "station": "MADE", "channel": channel, "sampling_rate": 100.0}
+    file = io.BytesIO()
+    trace = Trace(np.asarray(counts, dtype=np.int32), header)
+    trace.write(file, format="MSEED", encoding="STEIM2", reclen=512)
+    return file.getvalue()
 
 
 @pytest.mark.parametrize("name", ["r.mseed", "r.txt", "r"])
@@ -255,6 +267,22 @@ class TestWithObspy:
         path = write(miniseed(), "r.mseed")
         motion = GroundMotion.read(path, response=write(xml, "given.xml"))
         assert motion.metadata["sensitivity"] == 1e3
+
+    def test_compressed_samples_that_miss_the_value_at_their_end(self, write):
+        # a wrong difference shifts all samples behind it
+        data = bytearray(compressed(np.arange(400) // 3, "HNE") + compressed(np.arange(400), "HNN"))
+        data[103] ^= 1
+        path = write(bytes(data), "r.mseed")
+        with pytest.raises(RecordError, match=r"Steim2 samples of XX\.MADE\.\.HNE that end at"):
+            GroundMotion.read(path, component="HNE", unit="mgal")
+        other = GroundMotion.read(path, component="HNN", unit="mgal")
+        np.testing.assert_allclose(other.si.horizontal.samples, 1e-5 * np.arange(400))
+
+    @pytest.mark.filterwarnings("ignore:.*lie around an offset")
+    def test_what_is_no_record_is_told(self, write):
+        data = miniseed() + b"?" * 512
+        with pytest.warns(RecordWarning, match=r"\b512 bytes that are no miniSEED record are not"):
+            GroundMotion.read(write(data, "r.mseed"), unit="mgal")
 
     def test_an_output_in_volts_is_refused(self, write):
         xml = station_xml().replace("COUNTS", "V")

@@ -162,7 +162,7 @@ def test_strings_are_no_accelerations(tmp_path):
         file.createDimension("time", 10**6)
         for name in ("time", "acceleration"):
             file.createVariable(name, str, ("time",), chunksizes=(1000,))
-    with pytest.raises(RecordError, match="a variable 'time' that holds no numbers"):
+    with pytest.raises(RecordError, match="a variable 'time' without numbers"):
         GroundMotion.read(path)
 
 

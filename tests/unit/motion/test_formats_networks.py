@@ -82,7 +82,8 @@ class TestKnet:
         np.testing.assert_allclose(motion.si.horizontal.samples, expected, rtol=1e-12, atol=1e-15)
         assert abs(motion.si.horizontal.samples.mean()) < 1e-15
         assert motion.metadata["offset_removed"] == pytest.approx(COUNTS.mean())
-        assert motion.metadata["scale_factor"] == GAL_PER_COUNT
+        assert motion.metadata["gal_per_count"] == GAL_PER_COUNT
+        assert "scale_factor" not in motion.metadata  # that of motions that were scaled
         sentence = motion.history[1]
         assert "scale factor 3920(gal)/6182761" in sentence
         assert f"less their mean of {COUNTS.mean():.9g} counts" in sentence
@@ -206,16 +207,20 @@ class TestGeonet:
     @pytest.mark.parametrize("place", [4, 5])
     def test_absurd_numbers_of_what_is_skipped(self, write, place):
         lines = geonet().split("\n")
-        for number in (99999999, -1):
+        for number, words in ((99999999, "end of the file in component 1"), (-1, "none or more")):
             changed = list(lines)
             row = changed[19]
             changed[19] = row[: 8 * place] + f"{number:8d}" + row[8 * place + 8 :]
-            try:
-                motion = self.read(write, "\n".join(changed), component="S16W")
-            except RecordError:
-                assert number < 0
-            else:  # nothing after the first component is looked for then
-                assert len(motion) == COUNT
+            with pytest.raises(RecordError, match=words):
+                self.read(write, "\n".join(changed), component="S16W")
+
+    @pytest.mark.parametrize("from_end", [4, 5])
+    def test_a_line_that_is_missing_in_the_last_component(self, write, from_end):
+        # the velocities that follow would take the place of its last accelerations
+        lines = geonet().rstrip("\n").split("\n")
+        del lines[-from_end - 1]
+        with pytest.raises(RecordError, match=r"found the end of the file in component 3"):
+            self.read(write, "\n".join(lines) + "\n", component="Up")
 
     def test_a_vertical_axis_of_another_name(self, write):
         text = geonet().replace("Component Up    Some", "Component Vert. Vertical")

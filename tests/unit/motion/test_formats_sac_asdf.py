@@ -68,7 +68,7 @@ class TestSac:
 
     def test_more_than_announced(self, write):
         own = read_sac(write)
-        with pytest.warns(RecordWarning, match="8 bytes behind the last sample are not read"):
+        with pytest.warns(RecordWarning, match="8 bytes after the last sample are not read"):
             more = GroundMotion.read(write(sac() + bytes(8), "r.sac"), unit="gal")
         assert more.sha256 == own.sha256
         GroundMotion.read(write(sac() + bytes(176), "r.sac"), unit="gal")

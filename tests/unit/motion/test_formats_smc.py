@@ -44,7 +44,7 @@ def test_other_quantities_are_refused(write, kind, given):
 
 
 def test_a_kind_that_the_file_does_not_tell_is_taken_for_an_accelerogram_with_a_warning(write):
-    with pytest.warns(RecordWarning, match="line 1: the file does not say what it holds"):
+    with pytest.warns(RecordWarning, match="line 1: the file does not state its quantity"):
         motion = read(write, smc(kind="0 UNKNOWN"))
     np.testing.assert_allclose(motion.si.horizontal.samples, NORTH * 0.01, rtol=1e-13)
 

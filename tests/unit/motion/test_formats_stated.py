@@ -129,8 +129,40 @@ def test_rows_behind_the_announced_samples_are_said_to_be_left_out(text, mark, g
     # the last full row of the samples, once more and twice
     extra = [lines[end - 2]] * 2
     path = write("\n".join([*lines[:end], *extra, *lines[end:]]) + "\n", "record")
-    with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers behind"):
+    with pytest.warns(RecordWarning, match=rf"line {end + 1}: 2 rows of numbers after"):
         assert GroundMotion.read(path, **given).sha256 == own.sha256
+
+
+@pytest.mark.parametrize("text", [formats.smc() * 2, made.resorce() * 2], ids=["smc", "resorce"])
+def test_a_second_record_behind_the_first_is_said_to_be_left_out(text, write):
+    with pytest.warns(RecordWarning, match="rows of numbers after the last sample"):
+        GroundMotion.read(write(text, "record"))
+
+
+@pytest.mark.parametrize(
+    ("text", "mark", "words"),
+    [
+        (formats.cosmos(), "(Format v", "acceleration pts.*the second in this block"),
+        (made.bhrc(), "* VOL", "'COMP T3', the second below one first line"),
+    ],
+    ids=["cosmos", "bhrc"],
+)
+def test_a_component_whose_first_line_is_damaged_is_not_passed_over(text, mark, words, write):
+    before, _, behind = text.rpartition(mark)
+    with pytest.raises(RecordError, match=words):
+        GroundMotion.read(write(before + behind, "record"))
+
+
+@pytest.mark.parametrize(
+    ("text", "rows"),
+    [(formats.cosmos(), -1), (formats.cosmos(), 5), (formats.csmip(2), 0), (formats.csmip(2), 5)],
+)
+def test_a_file_that_ends_inside_a_velocity_is_told(text, rows, write):
+    lines = text.split("\n")
+    announced = [k for k, line in enumerate(lines) if "velocity pts" in line or "of vel" in line]
+    path = write("\n".join([*lines[: announced[0] + 1 + rows], ""]), "record")
+    with pytest.warns(RecordWarning, match="the file ends inside what line .* announces"):
+        GroundMotion.read(path)
 
 
 def column(values, unit="gal") -> str:
@@ -141,7 +173,7 @@ RANDOM = np.random.default_rng(3)
 SHAKING = 200.0 * np.exp(-(((np.arange(2000) - 700.0) / 300.0) ** 2)) * RANDOM.standard_normal(2000)
 
 
-@pytest.mark.parametrize("mark", [-999.0, 9999.0, -99999.0, -12345.0, -999999.0])
+@pytest.mark.parametrize("mark", [-999.0, 9999.0, -99999.0, -12345.0, -999999.0, -999.9, 9999.99])
 @pytest.mark.parametrize("places", [[400], [0], [1999], [50, 51, 52], [10, 900]])
 def test_marks_of_missing_samples_are_refused(write, mark, places):
     values = 0.5 * SHAKING

@@ -287,7 +287,7 @@ def test_a_subclass_may_have_its_own_constructor():
         (GroundMotion, "write GroundMotion.read(path), GroundMotion.from_arrays("),
         (
             lambda: GroundMotion(acceleration=[0.0, 1.0], time_step="0.01 s"),
-            "GroundMotion: it is not built by calling it; write GroundMotion.read(path)",
+            "GroundMotion: it is not built by calling the class; write GroundMotion.read(path)",
         ),
         (
             lambda: GroundMotion.stochastic(6.5, "5 km"),
@@ -401,7 +401,7 @@ def test_description_of_a_record_asks_for_the_record():
         "name": "test",
         "sha256": made.sha256,
     }
-    with pytest.raises(SchemaError, match=f"test.*{made.sha256}.*supply the record"):
+    with pytest.raises(SchemaError, match=f"test.*{made.sha256}.*read the record"):
         GroundMotion.from_dict(description)
 
 
@@ -427,7 +427,7 @@ def test_a_record_described_with_its_samples_is_built_again(made):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"time_step": 0.02}, "samples that differ from those 'sha256' was written for"),
+        ({"time_step": 0.02}, "samples that differ from those of the digest 'sha256'"),
         ({"time_step": None}, "holds no ground motion"),
         ({"horizontal": None}, "holds no ground motion"),
         ({"horizontal": {}}, "holds no ground motion"),

@@ -196,6 +196,8 @@ def test_refining_never_changes_the_function(values, times):
 
 def test_a_step_for_which_the_filter_alone_would_fill_the_memory_is_refused():
     record = GroundMotion.from_arrays(([0.0, 1.0, -1.0], "m/s^2"), time_step="0.01 s")
-    with pytest.raises(ComponentError, match=r"too short beside the record's own, 0\.01 s"):
+    with pytest.raises(
+        ComponentError, match=r"too short compared with that of the record, 0\.01 s"
+    ):
         record.resampled("1e-9 s")
     assert len(record.resampled("1e-6 s", interpolation="linear")) == 20_001

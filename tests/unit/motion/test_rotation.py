@@ -114,7 +114,7 @@ def test_a_pulse_and_a_record_share_their_pieces():
         ({}, ComponentError, "give either angle or azimuth"),
         ({"angle": "1 rad", "azimuth": "1 rad"}, ComponentError, "give either angle or azimuth"),
         ({"angle": 30}, UnitsError, "angle needs an angle"),
-        ({"azimuth": "30 deg"}, ComponentError, "must tell their azimuth"),
+        ({"azimuth": "30 deg"}, ComponentError, "must have an azimuth"),
     ],
 )
 def test_rotations_that_are_refused(arguments, error, words):

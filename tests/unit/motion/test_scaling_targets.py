@@ -47,9 +47,9 @@ def test_the_spectral_acceleration_is_reached(period, damping_ratio):
     [
         ({"peak_velocity": "0 m/s"}, ComponentError, "peak_velocity must be greater than zero"),
         ({"peak_velocity": "1 m"}, UnitsError, "peak_velocity needs a velocity"),
-        ({"spectral_acceleration": "1 m/s^2"}, ComponentError, "and period go together"),
-        ({"period": "1 s", "peak": "1 m/s^2"}, ComponentError, "and period go together"),
-        ({"damping_ratio": 0.1, "factor": 2}, ComponentError, "and period go together"),
+        ({"spectral_acceleration": "1 m/s^2"}, ComponentError, "and period together"),
+        ({"period": "1 s", "peak": "1 m/s^2"}, ComponentError, "and period together"),
+        ({"damping_ratio": 0.1, "factor": 2}, ComponentError, "and period together"),
         (
             {"spectral_acceleration": "1 m/s^2", "period": "1 Hz"},
             UnitsError,

@@ -163,7 +163,7 @@ def test_bad_seed(seed):
         ({"time_step": "0.1 s"}, "time_step must be from 0.0005 s to 0.02 s"),
         ({"time_step": "1 us"}, "time_step must be from 0.0005 s to 0.02 s"),
         ({"site": "swamp"}, "site must be 'rock 760' or 'rock 620', got 'swamp'"),
-        ({"stress_drop": "1 mPa"}, "out of proportion"),
+        ({"stress_drop": "1 mPa"}, "implausible"),
     ],
 )
 def test_values_out_of_range(arguments, words):

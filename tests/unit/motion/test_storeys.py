@@ -59,7 +59,7 @@ def test_what_is_done_is_told_and_can_be_repeated():
 def test_a_motion_from_rest_goes_on_after_the_ground_has_stopped():
     floor = motion().through_storeys(["0.5 s"], free_vibration="1.234 s")
     assert len(floor) == 300 + 124
-    assert floor.history[2] == "followed for 1.24 s after the ground's motion"
+    assert floor.history[2] == "with 1.24 s of free vibration after the ground motion"
     assert floor.acceleration[0].magnitude == 0.0
     # 4.61/(2 pi 0.05) periods for a hundredth, and one more
     assert len(motion().through_storeys(["0.5 s"])) == 300 + 783
@@ -67,7 +67,9 @@ def test_a_motion_from_rest_goes_on_after_the_ground_has_stopped():
         ["0.5 s", "2 s", "9 s"], [0.05, 0.5, 0.05], floor_participations=[1, 0.3, 0]
     )
     assert len(softest) == 300 + 783
-    with pytest.raises(ComponentError, match="without damping never comes to rest; give free"):
+    with pytest.raises(
+        ComponentError, match="without damping never comes to rest; give the duration"
+    ):
         motion().through_storeys(["0.5 s"], 0)
     cut = motion().through_storeys(["0.5 s"], 0, free_vibration="0 s")
     assert len(cut) == 300
@@ -152,11 +154,11 @@ def test_what_is_no_building_is_refused():
         ({**uniform, "free_vibration": "-1 s"}, "free_vibration must be zero or more"),
         ({**uniform, "free_vibration": "1e9 s"}, "are more than .* samples; give a shorter"),
         ({**uniform, "damping_ratio": 1e-9}, "are more than .* samples; give a shorter"),
-        ({**uniform, "time_step": "0.02 s"}, "longer than the motion's own, 0.01 s"),
+        ({**uniform, "time_step": "0.02 s"}, "longer than that of the motion, 0.01 s"),
         ({**uniform, "time_step": "1e-300 s"}, "more than .* samples"),
         ({**uniform, "time_step": "0 s"}, "time_step must be greater than zero"),
         ({**uniform, "vertical": "kept"}, "vertical must be 'unchanged' or 'omitted'"),
-        ({"periods": ["1e-9 s"]}, "too short beside the time step, 0.01 s; a rigid mode has"),
+        ({"periods": ["1e-9 s"]}, "too short for the time step, 0.01 s; a rigid mode has"),
     )
     for given, words in cases:
         with pytest.raises(ComponentError, match=f"GroundMotion.through_storeys: .*{words}"):

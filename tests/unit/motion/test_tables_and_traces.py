@@ -92,17 +92,17 @@ class TestFromTimes:
         np.testing.assert_allclose(motion.si.horizontal.samples, VALUES, atol=1e-6)
 
     def test_a_longer_step_than_between_the_times_is_warned_about(self):
-        with pytest.warns(RecordWarning, match="longer than the times are apart"):
+        with pytest.warns(RecordWarning, match="longer than the intervals"):
             GroundMotion.from_times((TIMES, "s"), (VALUES, "m/s^2"), "0.02 s")
 
     @pytest.mark.parametrize(
         ("times", "values", "step", "words"),
         [
-            (TIMES[::-1], VALUES, "0.01 s", "rise from each to the next"),
+            (TIMES[::-1], VALUES, "0.01 s", "in increasing order"),
             ([0.0], [1.0], "0.01 s", "two or more"),
             ([0.0, np.nan], [1.0, 1.0], "0.01 s", "finite times"),
             (TIMES, VALUES[:-1], "0.01 s", "199 samples at 200 times"),
-            (TIMES, [np.nan, *VALUES[1:]], "0.01 s", "finite ones"),
+            (TIMES, [np.nan, *VALUES[1:]], "0.01 s", "one finite sample for each time"),
             (TIMES, VALUES, "1e-9 s", "must give 2 to"),
             (TIMES, VALUES, "3 s", "must give 2 to"),
         ],
@@ -152,7 +152,7 @@ class TestFromFrame:
         assert GroundMotion.from_frame(only, "g").si.time_step == STEP
         counted = pd.DataFrame({"acc": VALUES})
         assert GroundMotion.from_frame(counted, "g", time_step="0.02 s").si.time_step == 0.02
-        with pytest.raises(ComponentError, match="holds no times"):
+        with pytest.raises(ComponentError, match="the frame has no times"):
             GroundMotion.from_frame(counted, "g")
         with pytest.raises(ComponentError, match=r"step 0\.01 s, but time_step is 0\.02 s"):
             GroundMotion.from_frame(only, "g", time_step="0.02 s")

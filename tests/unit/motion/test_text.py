@@ -104,6 +104,17 @@ def test_unknown_unit_of_the_header(write):
     expect(GroundMotion.read(path, unit="g"))
 
 
+@pytest.mark.parametrize("unit", ["V", "counts", "mm/s^9"])
+def test_unknown_unit_beside_a_known_one(write, unit):
+    path = write(table(header=f"# made from (gal)\ntime [s],acceleration [{unit}]\n"), "r.csv")
+    with pytest.raises(RecordError, match="the unknown unit") as caught:
+        GroundMotion.read(path)
+    assert caught.value.line == 2
+    expect(GroundMotion.read(path, unit="g"))
+    for header in ("# units: g\ntime, acc (corrected)\n", "# units: V/g\ntime [s],acc [g]\n"):
+        expect(GroundMotion.read(write(table(header=header), "r.csv")))
+
+
 def test_two_units_of_the_header(write):
     path = write(table(header="# from (gal)\ntime [s],acceleration [g]\n"), "r.csv")
     with pytest.raises(RecordError, match=r"the units 'g' and 'gal' \(line 1\)") as caught:

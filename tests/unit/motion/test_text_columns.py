@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from unit.motion.motion_files import G, numbers
 
+import rockframe as rf
 from rockframe.errors import RecordError, RecordWarning
 from rockframe.motion import GroundMotion
 
@@ -83,10 +84,69 @@ class TestStatedSteps:
         with pytest.raises(RecordError, match=r"line \d: .*expected the 0\.03 s asked for"):
             read(write, column(head), time_step="0.03 s")
 
+    @pytest.mark.parametrize("head", ["# dt = 1/200 s\n", "# sampling rate = 0.2 kHz\n"])
+    def test_that_is_written_in_another_way_is_not_read_in_part(self, write, head):
+        with pytest.raises(RecordError, match="no times"):
+            read(write, column(head), unit="g")
+
     def test_times_that_differ_from_it_are_used_with_a_warning(self, write):
         text = table("# dt = 0.005 s\ntime (s),acc (g)\n", [VALUES])
         with pytest.warns(RecordWarning, match=r"line 1: .* 0\.005 s, but the times are 0\.01 s"):
             assert read(write, text).si.time_step == 0.01
+
+
+class TestNames:
+    @pytest.mark.parametrize("head", [",time (s),acc (g)\n", "No,t (s),acc (g)\n"])
+    def test_times_behind_another_column_are_no_accelerations(self, write, head):
+        text = head + "".join(f"{k},{0.01 * k:.2f},{a:.7f}\n" for k, a in enumerate(VALUES))
+        for given in ({}, {"time_step": "0.02 s"}, {"time_step": "0.01 s", "component": "acc"}):
+            with pytest.raises(RecordError, match=r"line 1: found the times 't.* after"):
+                read(write, text, **given)
+
+    def test_velocity_and_displacement_by_their_letters_are_not_vertical(self, write):
+        path = write(table("t,a,v,d\n", [VALUES, 2.0 * VALUES, 3.0 * VALUES]), "r.csv")
+        suite = rf.read_suite(path, unit="g")
+        assert (list(suite), len(suite.verticals)) == (["r"], 0)
+        with pytest.raises(RecordError, match="expected the component 'v'"):
+            GroundMotion.read(path, unit="g", component="v")
+        assert read(write, table("t,h,v\n", [VALUES] * 2), unit="g", component="v").si.peak > 0.0
+
+    @pytest.mark.parametrize("unit", ["V", "mm/s^9", "cm//s^2"])
+    def test_an_unknown_unit_is_not_that_of_another_column(self, write, unit):
+        path = write(table(f"time (s),N ({unit}),E (g)\n", [VALUES, VALUES]), "r.csv")
+        with pytest.raises(RecordError, match="the unknown unit"):
+            GroundMotion.read(path, component="N")
+        assert GroundMotion.read(path, component="E").si.peak == pytest.approx(G * VALUES.max())
+        assert GroundMotion.read(path, component="N", unit="gal").metadata["unit_as_read"] == "gal"
+
+    @pytest.mark.parametrize("head", ["time (s),N (g)\n", "t,N,E,vN (cm/s)\n", "time,N,E,U,\n"])
+    def test_as_many_as_there_are_columns(self, write, head):
+        path = write(table(head, [VALUES, VALUES]), "r.csv")
+        with pytest.raises(RecordError, match=r"line 1: found \d names .* expected 3, as there"):
+            rf.read_suite(path, unit="g")
+        assert len(rf.read_suite(write(table("time,N,E\n", [VALUES] * 2), "r.csv"), unit="g")) == 2
+
+
+class TestBreaks:
+    @pytest.mark.parametrize("between", ["# a second record\n", "\n", "\n\n# more\n"])
+    @pytest.mark.parametrize("columns", [1, 2])
+    def test_lines_that_part_samples_without_times_are_told(self, write, between, columns):
+        row = "".join(f"{value:.7f} " * columns + "\n" for value in VALUES)
+        names = "# dt = 0.01 s\n" + "NS EW\n" * (columns == 2)
+        given = {"unit": "g", "component": "NS" if columns == 2 else None}
+        assert len(read(write, names + row, **given)) == COUNT
+        first = names.count("\n") + COUNT + 1
+        with pytest.warns(RecordWarning, match=rf"line {first}: .* among the numbers, in 1 places"):
+            assert len(read(write, names + row + between + row, **given)) == 2 * COUNT
+
+    def test_lines_that_are_all_two_apart_are_one_record(self, write):
+        assert len(read(write, column().replace("\n", "\n\n"), unit="g", time_step="0.02 s"))
+
+    def test_times_tell_where_a_record_ends(self, write):
+        text = table("time (s),acc (g)\n", [VALUES])
+        assert len(read(write, text.replace("0.30,", "# here\n0.30,"))) == COUNT
+        with pytest.raises(RecordError, match=r"the time 0\.00 after 0\.63"):
+            read(write, text + "# again\n" + text.split("\n", 1)[1])
 
 
 class TestFirstLines:

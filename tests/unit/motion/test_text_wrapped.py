@@ -8,7 +8,7 @@ from records import record_path
 from unit.motion.motion_files import G, rows
 
 import rockframe as rf
-from rockframe.errors import RecordError
+from rockframe.errors import RecordError, RecordWarning
 from rockframe.motion import GroundMotion
 from rockframe.records.files import read_source
 from rockframe.records.read import read_components
@@ -55,6 +55,17 @@ class TestWrapped:
         path = write(rows(WRAPPED, 5), "wrapped.dat")
         with pytest.raises(RecordError, match=r"2998 samples, 5 to a line.*component='row by row'"):
             GroundMotion.read(path, component="column 1", **ASKED)
+
+    def test_a_first_line_that_is_cut_is_no_header(self, write):
+        cut = rows(WRAPPED, 5)[37:]  # "...E+00" and two numbers
+        with pytest.raises(RecordError, match=r"line 1: found .* expected numbers"):
+            GroundMotion.read(write(cut.replace("E", "E-", 1), "wrapped.dat"), **ASKED)
+
+    def test_a_blank_line_between_its_lines_is_told(self, write):
+        text = rows(WRAPPED, 5)
+        path = write(text[: 76 * 100] + "\n" + text[76 * 100 :], "wrapped.dat")
+        with pytest.warns(RecordWarning, match="line 101: a blank line among the numbers"):
+            assert len(GroundMotion.read(path, **ASKED)) == 2998
 
     def test_that_ends_inside_a_number_is_refused(self, write):
         path = write(rows(WRAPPED, 5)[:-5], "wrapped.dat")

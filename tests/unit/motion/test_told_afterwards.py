@@ -97,6 +97,33 @@ def test_other_starts_are_warned_about():
             joined(other.window("1 s"))
 
 
+def test_every_scaling_counts():
+    once = motion(NORTH).scaled(2.0)
+    assert once.metadata["scale_factor"] == 2.0
+    assert once.scaled(peak="1 g_0").scaled(-3.0).metadata["scale_factor"] == pytest.approx(
+        -3.0 * 9.80665 / np.abs(NORTH).max()
+    )
+    target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
+    scaled = rf.MotionSuite({"a": once}).scaled_to(target, bounds=None)["a"]
+    factor = scaled.metadata["scale_factor"]
+    assert scaled.si.horizontal.samples == pytest.approx(factor * NORTH)
+
+
+@pytest.mark.parametrize(
+    ("component", "known"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
+)
+def test_a_mirrored_component_is_not_read_as_the_one_before(tmp_path, component, known):
+    before = motion(NORTH, component=component, **known)
+    mirrored = before.scaled(-1)
+    assert mirrored.metadata["component"] == f"-{component}"
+    assert mirrored.scaled(-2).metadata["component"] == component
+    mirrored.to_at2(tmp_path / "mirrored.AT2")
+    read = rf.GroundMotion.read(tmp_path / "mirrored.AT2", component=f"-{component}")
+    assert read.si.horizontal.samples == pytest.approx(-NORTH, rel=1e-6, abs=1e-12)
+    assert read.metadata.get("azimuth") != 0.0
+    assert read.metadata.get("positive") != "down"
+
+
 def test_scaling_and_misfit():
     target = rf.TargetSpectrum.eurocode_8("0.2 g_0")
     scaled = rf.MotionSuite({"a": motion(NORTH)}).scaled_to(target, bounds=None)["a"]

@@ -174,7 +174,7 @@ def test_arguments_are_checked():
     with pytest.raises(UnitsError):
         motion.velocity_pulse(longest_period=15)
     still = GroundMotion.from_arrays((np.zeros(100), "m/s^2"), "0.01 s", name="still")
-    with pytest.raises(ComponentError, match="'still' stands still"):
+    with pytest.raises(ComponentError, match="'still' has no velocity"):
         still.velocity_pulse()
 
 

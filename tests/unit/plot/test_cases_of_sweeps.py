@@ -28,6 +28,28 @@ def test_a_case_is_drawn_up_to_its_end(fallen, draw):
     figure.canvas.draw()
 
 
+def test_a_case_is_entitled_with_what_became_of_it_not_of_the_sweep(fallen):
+    time = fallen.overturning_time.item()
+    expected = f"{{}}scale 1.6: overturned at {time:.4g} s"
+    of_motion = f"motion {fallen.motion.item()}, "
+    drawn = rf.plot.response(fallen, panels="rotation")
+    assert drawn.figure.get_suptitle() == expected.format(of_motion)
+    assert expected.format(of_motion) in rf.plot.player(fallen).to_html()
+    runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.3, 0.5], outputs=[], **QUIET)
+    stands = runs.isel(scale=1, motion=0)
+    share, peak = stands.peak_relative_rotation.item(), stands.peak_rotation.item()
+    title = rf.plot.phase(stands).figure.get_suptitle()
+    assert " ".join(title.split()) == (
+        f"{of_motion}scale 0.5: did not overturn, peak rotation {peak:.4g} rad, "
+        f"{100 * share:.3g} % of the overturning angle"
+    )
+    (legend,) = [
+        axes.get_legend()
+        for axes in rf.plot.phase([stands, runs.isel(scale=0, motion=0)]).figure.axes
+    ]
+    assert [text.get_text().split("scale ")[1] for text in legend.get_texts()] == ["0.5", "0.3"]
+
+
 def test_a_case_plays_up_to_its_end(fallen):
     end = float(fallen.time[fallen.rotation.notnull()][-1])
     assert f"player of {end:.1f} s" in repr(rf.plot.player(fallen))

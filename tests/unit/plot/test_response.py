@@ -130,3 +130,60 @@ def test_a_history_is_drawn_of_those_runs_that_hold_it():
     assert [line.get_label() for line in slip.get_lines()][:1] == ["slides"]
     with pytest.raises(ComponentError, match=r"They hold .*'slip'"):
         rf.plot.response(runs, panels=["slipp"])
+
+
+def words_of(axes):
+    legend = axes.get_legend()
+    return [] if legend is None else [text.get_text() for text in legend.get_texts()]
+
+
+def test_of_a_stack_events_are_said_to_be_of_all_bodies_and_no_uplift_line_is_drawn():
+    block = rf.Block(width="1 m", height="1.5 m", mass="1 t")
+    joint = rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1)
+    system = rf.System(rf.Stack(block, block, interfaces=[joint]), joint)
+    run = system.simulate(rf.GroundMotion.sine_pulse("8 m/s^2", "1 Hz"))
+    assert 2 in run.event_body.to_numpy()
+    rotation, strip = rf.plot.response(run, panels=("rotation", "contact"), events=True)
+    assert words_of(rotation)[0] == "body 1"
+    assert rotation.get_legend().get_title().get_text() == "events of all bodies"
+    # uplift is at a rotation on the base, what is drawn is that from the upright
+    assert "uplift" not in [line.get_label() for line in rotation.get_lines()]
+    assert strip.get_ylabel() == "body 1"
+    assert "rotation of body 1 [" in rf.plot.player(run).to_html()
+
+
+def test_the_vertical_ground_is_drawn_of_those_runs_that_have_one():
+    system = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
+    across = rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz")
+    runs = {
+        name: system.simulate(
+            across.with_vertical(rf.GroundMotion.sine_pulse(size, "1 Hz")) if size else across
+        )
+        for name, size in (("up", "1 m/s^2"), ("more", "2 m/s^2"), ("none", ""))
+    }
+    (ground,) = rf.plot.response(runs, panels="ground")
+    upwards = [line for line in ground.get_lines() if line.get_linestyle() == ":"]
+    assert [np.abs(line.get_ydata()).max().round(6) for line in upwards] == [1.0, 2.0]
+    assert upwards[0].get_color() != upwards[1].get_color()
+
+
+def test_small_rotations_are_seen_beside_limits_that_are_far():
+    block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+    system = rf.System(block, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1))
+    small = system.simulate(rf.GroundMotion.sine_pulse("1e-5 m/s^2", "1 Hz"))
+    peak = small.peak_relative_rotation.item()
+    (rotation,) = rf.plot.response(small, panels="rotation")
+    assert rotation.get_ylim()[1] < 2.0 * peak
+    assert rf.plot.phase(small).get_xlim()[1] < 1.2 * peak
+    large = system.simulate(rf.GroundMotion.sine_pulse("2 m/s^2", "1 Hz"))
+    (rotation,) = rf.plot.response(large, panels="rotation")
+    assert "uplift" in words_of(rotation)
+    assert rf.plot.phase(large).get_xlim()[1] > 1.0
+
+
+def test_a_block_before_a_wall_is_held_to_the_other_side():
+    block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        axes = rf.plot.moment_rotation(rf.System(block, rf.RearWall(side=side)))
+        angles = sign * axes.get_lines()[0].get_xdata()
+        assert (angles.min(), angles.max()) == pytest.approx((0.0, 1.2 * 11.3099), abs=1e-3)

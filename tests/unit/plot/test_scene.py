@@ -9,6 +9,7 @@ from matplotlib.patches import Polygon
 import rockframe as rf
 from rockframe.errors import ComponentError, FileError, UnitsError
 from rockframe.plot._artists import Drawer
+from rockframe.plot._runs import runs_of
 from rockframe.plot._scene import Moving
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.system.geometry import geometry_of
@@ -215,3 +216,75 @@ def test_a_tendon_goes_through_its_body():
     stack = rf.System(rf.Stack(upper, EVEN, interfaces=[rf.RigidGround()]), PADS, tendon)
     for system, ends in ((alone, [(0.3, 8.0), (0.3, -2.0)]), (stack, [(0.3, 11.0), (0.3, 6.0)])):
         assert geometry_of(system.assembly).ties[0].points == pytest.approx(np.array(ends))
+
+
+TIE = rf.Restrainer(
+    on=("-0.4 m", "3 m"), to=("-1.5 m", "3 m"), stiffness="2 MN/m", strength="2 kN", name="$tie$"
+)
+SLIM = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+
+
+def test_a_restrainer_is_drawn_until_it_breaks():
+    run = rf.System(SLIM, TIE).simulate(PULSE, free_vibration="1 s")
+    kinds = dict(zip(run.event_kind.flag_meanings.split(), run.event_kind.flag_values, strict=True))
+    (broke,) = run.event_time.to_numpy()[run.event_kind.to_numpy() == kinds["restrainer_fracture"]]
+    moving = Moving(run, "state", 1.0)
+    for place in range(0, run.sizes["time"], 9):
+        (tie,) = moving.drawer.lay_out(moving.at(place)).ties
+        assert np.isnan(tie).all() == (run.time[place].item() >= broke)
+    # it stays broken in a window that begins later
+    (drawn,) = runs_of(run, "animation", (f"{broke + 0.1} s", None))
+    later = Moving(drawn.dataset, "animation", 1.0, whole=run)
+    assert np.isnan(later.drawer.lay_out(later.at(0)).ties[0]).all()
+    rf.plot.player(run, window=(f"{broke - 0.1} s", None))
+
+
+def test_a_restrainer_without_a_length_is_seen():
+    anchor = rf.Restrainer(on=("0.4 m", "0 m"), to=("0.4 m", "0 m"), stiffness="1 MN/m")
+    axes = rf.plot.scene(rf.System(SLIM, anchor))
+    (line,) = [one for one in axes.lines if len(one.get_xdata()) == 2 and one.get_marker() == "."]
+    np.testing.assert_allclose(line.get_xydata(), [(0.4, 0.0), (0.4, 0.0)], atol=1e-12)
+
+
+def test_walls_points_and_the_block_at_rest_are_within_the_drawing():
+    far = rf.RearWall(side="right", stiffness="2 MN/m", damping="10 kN*s/m", gap="1.5 m")
+    wall = rf.plot.scene(rf.System(SLIM, far))
+    assert wall.get_xlim()[1] > 0.4 + 1.5 + 0.8
+    axes = rf.plot.scene(rf.System(SLIM), points={"lamp": ("2 m", "7 m")})
+    assert axes.get_xlim()[1] > 2.0
+    assert axes.get_ylim()[1] > 7.0
+    pulse = rf.GroundMotion.sine_pulse("6 m/s^2", "1 Hz")
+    flat = rf.System(SLIM).simulate(pulse, free_vibration="4 s", overturning="continue")
+    lies = rf.plot.state(flat)
+    assert lies.get_ylim()[1] > 4.0
+    assert lies.figure.get_suptitle().endswith(f"90°, {9000 / 11.3099:.3g} % of overturning")
+
+
+def test_the_legend_tells_bases_loads_and_restrainers_with_their_numbers():
+    def told(*parts, **options):
+        axes = rf.plot.scene(rf.System(*parts), **options)
+        figure = axes.figure
+        figure.canvas.draw()
+        assert axes.get_legend().get_window_extent().x1 <= figure.bbox.width
+        assert axes.get_tightbbox().x0 >= 0.0
+        return "\n".join(text.get_text() for text in axes.get_legend().get_texts())
+
+    load = rf.Load(at=("0.2 m", "4 m"), vertical="5 kN", name="floor")
+    words = told(SLIM, TIE, load)
+    for one in (r"\$tie\$", "stiffness 2 MN m⁻¹", "strength 2 kN", "floor, at (0.2, 4.0) m"):
+        assert one in words
+    assert "friction 0.3" in told(SLIM, rf.RigidGround(friction=0.3))
+    joint = rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1)
+    words = told(rf.Stack(SLIM, SLIM, interfaces=[rf.RigidGround(friction=0.4)]), joint)
+    assert "rigid ground" not in words
+    for one in ("body 2: Block", "on RigidGround, friction 0.4", "TwoSpringSupport\n   stiffness"):
+        assert one in words
+    in_units = told(SLIM, units={"length": "cm", "mass": "kg"})
+    assert "width 80 cm\n   height 400 cm\n   mass 2000 kg" in in_units
+
+
+def test_the_title_of_a_state_has_no_sign_on_its_share_and_no_zero_for_what_is_small():
+    small = rf.System(SLIM, PADS).simulate(rf.GroundMotion.sine_pulse("1e-5 m/s^2", "1 Hz"))
+    words = rf.plot.state(small).figure.get_suptitle()
+    angle, share = np.degrees(small.peak_rotation.item()), small.peak_relative_rotation.item()
+    assert f"{angle:.3g}°, {100.0 * share:.3g} % of overturning" in words.replace(": -", ": ")

@@ -337,7 +337,7 @@ def test_heights_that_differ_by_rounding_are_one():
 @pytest.mark.parametrize(
     ("points", "words"),
     [
-        (RECTANGLE, r"beside their unit, \(points, 'm'\); got .*, bare numbers"),
+        (RECTANGLE, r"with their unit, \(points, 'm'\); got .*, bare numbers"),
         ([(0.0, 0.0), ("2 m", "0 m")], r"points\[0\]\[0\] needs a length with a unit, got 0.0"),
         (np.array(RECTANGLE), "bare numbers"),
         ([("0 m", "0 s")], r"points\[0\]\[1\] needs a length"),
@@ -379,5 +379,5 @@ def test_points_that_have_a_unit_of_their_own_have_no_other():
     points = xr.DataArray(np.array([[0, 0], [500, 0], [500, 2000], [0, 2000.0]]))
     points.attrs["units"] = "mm"
     assert rf.Block.from_outline(points, unit="mm", mass="1 t").si.width == pytest.approx(0.5)
-    with pytest.raises(UnitsError, match="points is in 'mm' itself, and 'm'"):
+    with pytest.raises(UnitsError, match="points has the unit 'mm', but 'm'"):
         rf.Block.from_outline(points, unit="m", mass="1 t")

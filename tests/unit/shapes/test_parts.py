@@ -193,7 +193,7 @@ def test_parts_that_make_no_body_are_refused(parts, words):
 @pytest.mark.parametrize(
     ("base", "words"),
     [
-        (("0.4 m", "-0.4 m"), "left end and then its right one"),
+        (("0.4 m", "-0.4 m"), "needs the left end, then the right end"),
         (("-0.4 m", "0.3 m"), "part 'case' stands on the ground at x = 0.4 m, beyond the base"),
         ("0.8 m", "base needs two lengths"),
     ],

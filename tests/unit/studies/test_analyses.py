@@ -186,7 +186,7 @@ def uninterrupted(resolution):
 
 
 @pytest.mark.parametrize("after", [0, 1, 2])
-@pytest.mark.parametrize("kind", ["in a round", "between rounds"])
+@pytest.mark.parametrize("kind", ["in a round", "between rounds", "with the last case"])
 def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, after, kind):
     # at a resolution of one brackets are narrowed at once
     some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
@@ -198,6 +198,9 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
             return run_study(study, bar, **means)
         if kind == "between rounds":
             raise KeyboardInterrupt
+
+        if kind == "with the last case":
+            return run_study(study, bar, **means)[0], False
 
         def stop(*given, **named):
             raise KeyboardInterrupt
@@ -219,7 +222,8 @@ def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, afte
         assert found.capacity_resolution.max().item() > 0.02
     else:
         apart = (found.scale_above - found.scale_below).max().item()
-        assert apart == pytest.approx(2.0 / 2**after)
+        rounds_made = after + (kind == "with the last case")
+        assert apart == pytest.approx(2.0 / 2**rounds_made)
     whole = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
     xr.testing.assert_identical(whole.drop_attrs(), uninterrupted(some["resolution"]))
     assert "interrupted" not in whole.verdict

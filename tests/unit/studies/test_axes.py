@@ -155,7 +155,7 @@ def test_one_array_has_one_unit() -> None:
     system = rf.System(rf.Block(width="0.5 m", height="3 m", mass="2 t"))
     widths = xr.DataArray([60.0, 70.0], attrs={"units": "cm"})
     percent = xr.DataArray([20.0, 70.0], attrs={"units": "%"})
-    wrong = "is in '(cm|%)' itself, and '(m|1)' is given beside it"
+    wrong = "has the unit '(cm|%)', but '(m|1)' is given with it"
     for given in (
         {"width": (widths, "m")}, {"cases": {"width [m]": widths}}, {"scale": (percent, "1")}
     ):  # fmt: skip

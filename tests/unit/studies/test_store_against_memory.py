@@ -193,11 +193,11 @@ def test_mappings_come_back_in_their_order(tmp_path):
 
 def test_names_that_are_numbers_stand_for_themselves():
     one, other = MOTIONS["weak"], MOTIONS["strong"]
-    with pytest.raises(StudyError, match="two are called '1'"):
+    with pytest.raises(StudyError, match="two entries are called '1'"):
         rf.sweep(SYSTEM, {1: one, "1": other}, scale=[1.0])
-    with pytest.raises(ComponentError, match="two are called '1'"):
+    with pytest.raises(ComponentError, match="two entries are called '1'"):
         rf.MotionSuite({1: one, "1": other})
-    with pytest.raises(ComponentError, match="two are called '1'"):
+    with pytest.raises(ComponentError, match="two entries are called '1'"):
         rf.earthquake_sequences(SYSTEM, {1: [one], "1": [other]})
     crossed = {1: one, 0: other}
     with pytest.raises(StudyError, match="0 is the name of one motion, and the place of another"):

@@ -265,11 +265,11 @@ REFUSED = [
     ),
     (
         rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[PADS]), PADS), PULSE, {"mass": ["1 t"]},
-        ["'mass' is a parameter of a part of the Stack; give in", "a function of the axis"],
+        ["'mass' is a parameter of a part of the Stack; instead", "a function of the axis"],
     ),
     (
         rf.System(rf.RockingFrame(BLOCK, columns=2, beam_mass="1 t")), PULSE, {"width": ["1 m"]},
-        ["'width' is a parameter of a part of the RockingFrame; give"],
+        ["'width' is a parameter of a part of the RockingFrame; instead"],
     ),
     (ON_PADS, PULSE, {"scale": [1.0, 2.0, 1.0]}, ["'scale' has the value 1.0 twice"]),
     (ON_PADS, PULSE, {"overturned": [1.0]}, ["'overturned' has the name of a result"]),

@@ -137,11 +137,35 @@ def test_every_sample_of_every_format(tmp_path):
     assert not files & left
 
 
-def test_labels_are_told_apart(tmp_path):
-    for place in ("a", "b"):
+TEXT = "time (s),acc (g)\n0,0\n0.01,{}\n0.02,0\n"
+
+
+def test_files_of_one_name_are_told_apart(tmp_path):
+    # of two earthquakes, as the folders tell, and so no pair
+    for place, peak in (("a", 0.1), ("b", 0.2)):
         (tmp_path / place).mkdir()
-        (tmp_path / place / "x.csv").write_text("time (s),acc (g)\n0,0\n0.01,0.1\n0.02,0\n")
-    assert list(rf.read_suite(tmp_path)) == ["x", "x (2)"]
+        (tmp_path / place / "x.csv").write_text(TEXT.format(peak))
+    suite = rf.read_suite(tmp_path)
+    assert list(suite) == ["x", "x (2)"]
+    assert [one.metadata["record"] for one in suite.values()] == ["x.csv", "x.csv (2)"]
+    assert suite.pairs == {}
+
+
+def test_bytes_without_a_name_are_no_pair():
+    suite = rf.read_suite([TEXT.format(peak).encode() for peak in (0.1, 0.2)])
+    assert len(suite) == 2
+    assert suite.pairs == {}
+
+
+def test_copies_of_a_file_are_read_once(tmp_path):
+    for name in ("x.csv", "x (1).csv"):
+        (tmp_path / name).write_text(TEXT.format(0.1))
+    for given in (tmp_path, [tmp_path / "x.csv"] * 2, [TEXT.format(0.1).encode()] * 2):
+        with pytest.warns(RecordWarning, match="1 files not read .*a copy of "):
+            suite = rf.read_suite(given)
+        assert len(suite) == 1
+        (reason,) = suite.unread.values()
+        assert "expected each record once" in reason
 
 
 def test_what_does_not_make_a_pair_is_told(tmp_path):
@@ -201,6 +225,7 @@ def test_a_table_that_is_damaged(folder):
     for changed, words in {
         good.replace("Result ID", "Result"): "no line that begins with 'Result ID'",
         good.replace(row, row[:60]): r"line 9: found \d+ fields",
+        good.replace(row, row.replace('"Station 6"', "Station 6, A")): "line 9: found 23 fields",
         good.replace("6.95", "strong"): "'strong' in the column 'magnitude'",
         good.replace("Filename", "File"): "no column with the names of files",
     }.items():

@@ -144,6 +144,14 @@ class TestWorkspace:
         with pytest.raises(RecordError, match=r"'HHE'.*no unit"):
             rf.HorizontalPair.read(path)
 
+    def test_pieces_of_a_channel_are_no_motions(self, tmp_path, channels):
+        path = tmp_path / "w.h5"
+        path.write_bytes(asdf(tmp_path, channels=channels[1:], pieces=2))
+        with pytest.raises(RecordError, match=r"2 pieces of XX\.MADE\.--\.HNE made_default"):
+            rf.read_suite(path)
+        whole = "XX.MADE.--.HNE__2018-01-24T10:51:00__2018-01-24T10:51:02__made_default"
+        assert len(rf.GroundMotion.read(path, component=whole)) == 61
+
     @pytest.mark.filterwarnings(UNUSUAL)
     def test_as_downloaded(self):
         path = record_path("more2/workspace.h5")

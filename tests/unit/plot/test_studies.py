@@ -1,0 +1,89 @@
+"""Figures of studies: what overturned, what is missing, and axes that can be read."""
+
+import numpy as np
+import pytest
+from matplotlib import pyplot
+
+import rockframe as rf
+from rockframe.plot._axes import plain_ticks
+from rockframe.results.variables.runs import RunStatus
+
+BLOCK = rf.Block(width="0.25 m", height="1 m", mass="100 kg")
+SYSTEM = rf.System(BLOCK)
+PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+QUIET = {"accuracy": "fast", "progress": False}
+COUNTS = {"intensity": ([2, 4, 8], "m/s^2"), "trials": 20}
+
+
+def crosses(axes):
+    """Give the places that are marked as overturned."""
+    found = [line for line in axes.get_lines() if line.get_label() == "overturned"]
+    return {tuple(place) for line in found for place in line.get_xydata().round(9).tolist()}
+
+
+@pytest.mark.parametrize("widths", [3, 13])  # lines, and a map
+def test_crosses_stand_where_runs_overturned_and_the_legend_says_so(widths):
+    scales, sizes = np.linspace(0.5, 3.0, 13).round(6), np.linspace(0.2, 0.4, widths).round(6)
+    runs = rf.sweep(SYSTEM, PULSE, scale=scales.tolist(), width=(sizes, "m"), **QUIET)
+    axes = rf.plot.sweep(runs, "peak_rotation")
+    fell = (runs.status == RunStatus.OVERTURNED).isel(motion=0).transpose("scale", "width")
+    assert 0 < fell.sum() < fell.size
+    peaks = runs.peak_rotation.isel(motion=0).transpose("scale", "width").to_numpy()
+    expected = {
+        (sizes[column], scales[row]) if widths > 12 else (scales[row], peaks[row, column].round(9))
+        for row, column in np.argwhere(fell.to_numpy()).tolist()
+    }
+    if widths > 12 and axes.get_xlabel().startswith("scale"):
+        expected = {(up, across) for across, up in expected}
+    assert crosses(axes) == {(float(x), float(y)) for x, y in expected}
+    assert "overturned" in [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+def test_a_sweep_says_what_has_no_result():
+    runs = rf.sweep(SYSTEM, PULSE, scale=[0.5, 0.6, 0.7], **QUIET)
+    failed = runs.copy(deep=True)
+    failed["status"][{"scale": 1}] = int(RunStatus.STEP_LIMIT)
+    del failed.attrs["verdict"]
+    assert "1 have no result" in rf.plot.sweep(failed).figure.get_suptitle()
+    assert rf.plot.sweep(runs).figure.get_suptitle() == runs.attrs["verdict"]
+
+
+def test_motions_are_not_joined_by_a_line_and_a_sequence_is_named_once():
+    motions = dict.fromkeys(("a", "b", "c"), PULSE)
+    axes = rf.plot.sweep(rf.sweep(SYSTEM, motions, **QUIET))
+    assert axes.get_lines()[0].get_linestyle() == "None"
+    axes = rf.plot.sweep(rf.earthquake_sequences(SYSTEM, [[PULSE, PULSE]], accuracy="fast"))
+    assert axes.get_legend().get_texts()[0].get_text() == "sequence 1"
+
+
+def test_rates_without_a_fragility_are_a_figure_that_says_so():
+    none = rf.fragility({**COUNTS, "exceeded": [0, 0, 0]}, "PGA")
+    hazard = {"intensity": ([0.1, 1.0, 10.0], "m/s^2"), "rate": [1.0, 1e-2, 1e-5]}
+    axes = rf.plot.annual_rate(rf.annual_rate(none, hazard))
+    assert axes.figure.get_suptitle().startswith("There is no fragility")
+
+
+def test_verdicts_that_are_alike_have_no_indices_and_the_figure_says_so():
+    spread = {"width": ("uniform", "0.24 m", "0.26 m"), "mass": ("uniform", "90 kg", "110 kg")}
+    small = {"a": PULSE.scaled(0.1), "b": PULSE.scaled(0.2)}
+    found = rf.probability_of_overturning(SYSTEM, small, spread=spread, cases=20, progress=False)
+    left, _ = rf.plot.probability(found)
+    left.figure.canvas.draw()
+    low, high = left.get_ylim()
+    names = {
+        text.get_text() for text in left.get_yticklabels() if low < text.get_position()[1] < high
+    }
+    assert names == {"width", "mass", "motion"}
+    assert [text.get_text() for text in left.texts] == ["all verdicts are alike"]
+
+
+@pytest.mark.parametrize("ends", [(0.9, 1.35), (2.0, 4.0), (1.0, 9.0), (0.02, 30.0), (1e-3, 1e3)])
+def test_logarithmic_axes_have_three_numbers_at_least(ends):
+    _, axes = pyplot.subplots()
+    axes.set(xscale="log", xlim=ends)
+    plain_ticks(axes, "x")
+    axes.figure.canvas.draw()
+    places = np.array([one for one in axes.get_xticks() if ends[0] <= one <= ends[1]])
+    assert len(places) >= 3
+    assert len({text.get_text() for text in axes.get_xticklabels() if text.get_text()}) >= 3
+    pyplot.close(axes.figure)
