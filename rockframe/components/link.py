@@ -394,8 +394,8 @@ class RearWall(Link):
     A rigid wall needs rigid ground, and touches the upright body along its whole height. The body
     rocks away from it about its front corner. When it returns, it strikes base and wall, and
     rebounds with a fraction of its angular velocity, :eq:`eq-wall-impact`. With a `stiffness` the
-    wall is elastic, and the base may be any: behind a gap, a spring and a dashpot push against the
-    rear face at a height while there is contact.
+    wall is elastic, and the base may be any: behind a gap, a spring and a dashpot act on the rear
+    face at a height while there is contact, which ends when the spring is unloaded.
 
     Raises
     ------

@@ -353,7 +353,7 @@ def slip_words(slips: Generic, *, runs: str = "runs") -> str:
     """Say in how many runs of an analysis a body slid, and how far at most."""
     slid = slips[slips > LEAST_SLIP]
     some = f"in {slid.size} of {np.isfinite(slips).sum()} {runs}"
-    return f"{some} the block slid, by {slid.max():.3g} m at most" if slid.size else ""
+    return f"{some} a body slid, by {slid.max():.3g} m at most" if slid.size else ""
 
 
 def counts_of_slides(would_slide: Generic) -> tuple[int, int]:
@@ -374,4 +374,5 @@ def _frictions(system: Assembly) -> Iterator[tuple[str, float, str]]:
     for part, name in under:
         friction = None if part is None else getattr(part.si, "friction", None)
         if friction is not None:
-            yield name, friction, "the cap" if name == _CAP else "the block"
+            body = "the frame" if parts.frame is not None else "the block"
+            yield name, friction, "the cap" if name == _CAP else body

@@ -145,8 +145,8 @@ class PlacedLink:
             given = self.part.si
             return (
                 f"behind body {self.on + 1} at ({x:.6g}, {y:.6g}) m, {given.stiffness:.6g} N/m, "
-                f"damping {given.damping or 0.0:.6g} N s/m, gap {given.gap or 0.0:.6g} m; presses "
-                "only"
+                f"damping {given.damping or 0.0:.6g} N s/m, gap {given.gap or 0.0:.6g} m; acts "
+                "while touched"
             )
         other = "the ground" if self.to < 0 else f"body {self.to + 1}"
         found = [

@@ -139,10 +139,13 @@ def _weight(given: Any, text: str, measure: Measure) -> str:
     """Say how to get the mass from a weight that was given for a mass."""
     if measure.unit not in _HEAVY:
         return ""
+    over_g = re.search(r"/\s*g$", text)  # read as the gram
     try:
-        heavy = given.is_compatible_with(f"{measure.unit} m s^-2")
+        heavy = given.is_compatible_with(f"{measure.unit} m s^-2{' g^-1' if over_g else ''}")
     except Exception:  # offset units such as degC cannot be compared
         return ""
+    if over_g:
+        return f" ('g' is the gram there; write {shown(f'{text}_0')})" if heavy else ""
     return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if heavy else ""
 
 

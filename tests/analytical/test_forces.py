@@ -437,6 +437,8 @@ def test_too_little_friction_warns_with_time_and_duration():
     assert holds.attrs["verdict"].endswith(
         f"Would not slide: needs {most:.3g} of {1.01 * most:.3g}."
     )
+    with pytest.warns(ModelWarning, match="the frame would slide from"):
+        rf.System(FRAME, ground).simulate(PULSE)
     # two numbers that look alike are told in as many digits as tell them apart
     almost = rf.RigidGround(friction=(1.0 - 1e-6) * most)
     with pytest.warns(ModelWarning, match="needs 0.33[0-9]{4,} of 0.33[0-9]{4,},"):

@@ -130,7 +130,7 @@ def test_what_is_no_elastic_wall_is_refused(given, words):
 def test_an_elastic_wall_tells_itself_and_goes_to_plain_values_and_back():
     wall = rf.RearWall(stiffness="1 MN/m", gap="1 cm", height="3 m")
     system = rf.System(BLOCK, PADS, wall)
-    assert "presses only" in system.describe()
+    assert "acts while touched" in system.describe()
     assert rf.System.from_dict(system.to_dict()) == system
     rf.plot.scene(system)
 

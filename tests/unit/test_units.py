@@ -184,6 +184,7 @@ def test_a_negative_damping_is_refused_and_a_zero_one_is_not():
     [
         (make_block, "mass", "99 kN", "'99 kN/g_0'"),
         (make_block, "mass", "88 kip", "'88 kip/g_0'"),
+        (make_block, "mass", "88 kip/g", "'g' is the gram there; write '88 kip/g_0'"),
         (make_block, "inertia", "3 kN*m^2", "'3 kN*m^2/g_0'"),
         (make_cap, "density", "25 kN/m^3", "'25 kN/m^3/g_0'"),
         (make_pulse, "amplitude", "30 gal", "Gal"),

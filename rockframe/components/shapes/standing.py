@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any, Final, TypeAlias, TypeVar
 
 import numpy as np
@@ -77,7 +78,7 @@ def read_points(given: object, *, owner: str, name: str) -> Array:
     """Read points from pairs of lengths or an array with a unit, shape (n, 2) [m]."""
     wanted = (
         f"{owner}: {name} needs pairs of lengths, such as [('0 m', '0 m'), ('1 m', '0 m'), ...], "
-        "or an array of shape (n, 2) with a unit"
+        "or numbers of shape (n, 2) with their unit, (points, 'm')"
     )
     if isinstance(given, pint.Quantity):
         whole: Any = given
@@ -90,11 +91,19 @@ def read_points(given: object, *, owner: str, name: str) -> Array:
     if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
         check_own_unit(each[0], each[1], owner=owner, name=name)
         return _array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), wanted)
-    if isinstance(given, np.ndarray):
+    if isinstance(given, np.ndarray) or _is_bare(each):
         msg = f"{wanted}; got {shown(given)}, bare numbers"
         raise UnitsError(msg)
     pairs = [read_place(one, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(each)]
     return np.array(pairs, dtype=np.float64).reshape(-1, 2)
+
+
+def _is_bare(points: list[Any]) -> bool:
+    """Whether points are pairs of numbers without a unit."""
+    return bool(points) and all(
+        isinstance(point, list | tuple) and all(isinstance(one, Real) for one in point)
+        for point in points
+    )
 
 
 def read_place(given: object, *, owner: str, name: str) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from rockframe.arguments import one_of_words
-from rockframe.components import Component, InitialState
+from rockframe.components import Component, InitialState, RockingFrame, Stack
 from rockframe.components.parameters import Choice, Count, Declared, Flag, Text
 from rockframe.errors import ModelWarning, StudyError, shown, warn
 from rockframe.motion import GroundMotion
@@ -199,8 +199,21 @@ class SystemScene:
         listed = ", ".join(dict.fromkeys(known))
         if parameter in OF_A_SWEEP:
             return f"axis {name!r} is an argument of the runs, alike in all; axes are {listed}"
+        for part in parts:
+            if any(parameter in one.varied() for one in _made_of(part)):
+                return (
+                    f"axis {name!r} is a parameter of a part of the {type(part).__name__}; "
+                    "instead of the system give a function of the axis that returns a System"
+                )
         question = suggestion(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"
+
+
+def _made_of(part: Component) -> list[Component]:
+    """Give the parts within a part, whose parameters no axis names."""
+    if isinstance(part, Stack):
+        return [*part.bodies, *part.interfaces]
+    return [part.column] if isinstance(part, RockingFrame) else []
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,7 @@ def say_what_is_missing(dataset: xr.Dataset, histories: Iterable[str]) -> None:
         (~lacking & (message != NONE), ModelWarning, "have a result to be careful with"),
     ):
         if which.any():
-            text, those = Counter(message[which].tolist()).most_common(1)[0]
+            text, those = _most_frequent(message[which].tolist())
             said = "" if text == NONE else f"; of {those} of them it is said: {text}"
             count = f"{int(which.sum())} of {len(status)} cases"
             warn(f"{OWNER}: {count} {words} (status, message){said}", kind)
@@ -147,6 +147,15 @@ def say_what_is_missing(dataset: xr.Dataset, histories: Iterable[str]) -> None:
     if absent and not lacking.all():
         named = ", ".join(map(repr, absent))
         warn(f"{OWNER}: outputs names {named}, which no scene of the cases has", ModelWarning)
+
+
+def _most_frequent(texts: Sequence[str]) -> tuple[str, int]:
+    """Give the text of most cases, those that differ in their numbers alone as one, and count."""
+    alike: dict[tuple[str, ...], Counter[str]] = {}
+    for text, count in Counter(texts).items():
+        alike.setdefault(tuple(_NUMBER.split(text)), Counter())[text] = count
+    words, counts = max(alike.items(), key=lambda one: one[1].total())
+    return _ranged(words, counts), counts.total()
 
 
 def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], Generic]:

@@ -337,7 +337,8 @@ def test_heights_that_differ_by_rounding_are_one():
 @pytest.mark.parametrize(
     ("points", "words"),
     [
-        (RECTANGLE, r"points\[0\]\[0\] needs a length with a unit, got 0.0"),
+        (RECTANGLE, r"with their unit, \(points, 'm'\); got .*, bare numbers"),
+        ([(0.0, 0.0), ("2 m", "0 m")], r"points\[0\]\[0\] needs a length with a unit, got 0.0"),
         (np.array(RECTANGLE), "bare numbers"),
         ([("0 m", "0 s")], r"points\[0\]\[1\] needs a length"),
         ((RECTANGLE, "kg"), "points needs a length"),

@@ -47,7 +47,8 @@ def test_a_run_without_histories_tells_of_friction_in_the_same_words():
 def test_cases_of_a_sweep_say_what_single_runs_say(base):
     system = rf.System(BLOCK, base, sliding="checked")
     frictions = [0.1, 0.5, 10.0]
-    with pytest.warns(ModelWarning, match=f"cases have a result to be careful with.*{SLIDES}"):
+    most = f"({SLIDES}|the run ends while)"  # on soil more cases still swing than would slide
+    with pytest.warns(ModelWarning, match=f"cases have a result to be careful with.*{most}"):
         runs = rf.sweep(system, PULSE, friction=frictions, scale=[0.5, 1.0], accuracy="standard")
     for (scale, friction), text in zip(
         [(scale, friction) for friction in frictions for scale in (0.5, 1.0)],
@@ -150,7 +151,7 @@ def test_what_slides_is_told_of_scales_that_are_tried():
     how = {"accuracy": "fast", "progress": False}
     scales = [0.5, 1.0, 1.5, 2.0]
     farthest = float(rf.sweep(slides, pulse, scale=scales, **how).peak_slip.max())
-    told = f"the block slid, by {farthest:.3g} m at most."
+    told = f"a body slid, by {farthest:.3g} m at most."
     analysis = rf.incremental_dynamic_analysis(slides, [pulse], scale=scales, resolution=1, **how)
     assert f"; in 3 of 4 runs of the scan {told}" in analysis.verdict
     found = rf.critical_scale(slides, pulse, largest=2, scales=5, runs=5, **how)

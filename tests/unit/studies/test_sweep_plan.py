@@ -263,6 +263,14 @@ REFUSED = [
         ["'widht' names no parameter; was 'width'", "width needs a length with a unit, got",
          "frequency_ratio needs a pure ratio", "'height' has no values"],
     ),
+    (
+        rf.System(rf.Stack(BLOCK, BLOCK, interfaces=[PADS]), PADS), PULSE, {"mass": ["1 t"]},
+        ["'mass' is a parameter of a part of the Stack; instead", "a function of the axis"],
+    ),
+    (
+        rf.System(rf.RockingFrame(BLOCK, columns=2, beam_mass="1 t")), PULSE, {"width": ["1 m"]},
+        ["'width' is a parameter of a part of the RockingFrame; instead"],
+    ),
     (ON_PADS, PULSE, {"scale": [1.0, 2.0, 1.0]}, ["'scale' has the value 1.0 twice"]),
     (ON_PADS, PULSE, {"overturned": [1.0]}, ["'overturned' has the name of a result"]),
     (ON_PADS, PULSE, {"rotation": ["small"]}, ["write 'System.rotation'"]),

@@ -83,11 +83,15 @@ def test_texts_of_many_cases_are_summed_up(tmp_path):
 
 
 def test_of_many_cautions_the_most_frequent_is_told():
-    texts = ["none", "slides beyond", "soft", "soft", "none"]
-    values = {"status": np.zeros(5), "peak_rotation": np.zeros(5), "message": np.array(texts)}
-    runs = xr.Dataset({name: ("case", some) for name, some in values.items()})
-    with pytest.warns(ModelWarning, match="3 of 5 cases .*; of 2 of them it is said: soft"):
-        say_what_is_missing(runs, ())
+    for texts, said in (
+        (["none", "slides beyond", "soft", "soft", "none"], "3 .*; of 2 of them it is said: soft"),
+        (["soft", "slides 3 m", "slides 1 m", "none", "soft 1"], "4 .* of 2 .* slides 1 to 3 m$"),
+        (["soft", "slides 3 m", "none", "none", "none"], "2 of 5 .* of 1 .* said: soft"),
+    ):
+        values = {"status": np.zeros(5), "peak_rotation": np.zeros(5), "message": np.array(texts)}
+        runs = xr.Dataset({name: ("case", some) for name, some in values.items()})
+        with pytest.warns(ModelWarning, match=said):
+            say_what_is_missing(runs, ())
 
 
 def test_numbers_of_texts_become_ranges_and_words_stay():
