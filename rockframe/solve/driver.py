@@ -22,11 +22,7 @@ from rockframe.solve.bookkeeping import (
     store_outputs,
 )
 from rockframe.solve.crossings import Crossing, earliest_crossing
-from rockframe.solve.equations import (
-    BoundEquations,
-    KnownMode,
-    known_mode,
-)
+from rockframe.solve.equations import BoundEquations, known_mode
 from rockframe.solve.march import (
     AT_END,
     EXHAUSTED,
@@ -41,6 +37,7 @@ from rockframe.solve.workspace import (
     BESIDE,
     TERMS,
     EventTable,
+    KnownMode,
     Output,
     Pieces,
     Progress,
