@@ -114,7 +114,15 @@ def signature_of(function: Callable[..., Any]) -> Any:
     """Give numba's signature of a function that is to be bound to a tuple, from its annotations."""
     names = list(inspect.signature(function).parameters)[1:]
     hints = get_type_hints(function, include_extras=True)
-    return KINDS[hints["return"]](*(KINDS[hints[name]] for name in names), VECTOR)
+    return _kind_of(hints["return"])(*(_kind_of(hints[name]) for name in names), VECTOR)
+
+
+def _kind_of(hint: Any) -> Any:
+    """Give numba's type of what is annotated, of a named tuple by the annotations of its fields."""
+    if hint in KINDS:
+        return KINDS[hint]
+    fields = get_type_hints(hint, include_extras=True)
+    return numba.types.BaseTuple.from_types([_kind_of(fields[name]) for name in hint._fields], hint)
 
 
 @dataclass(frozen=True)

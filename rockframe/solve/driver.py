@@ -8,7 +8,7 @@ full, and goes on when it is called again with a larger one.
 import math
 from typing import Final
 
-from rockframe.compiled import Vector, entry_at_once, inlined, kernel
+from rockframe.compiled import Vector, entry_at_once, inlined, kernel, put
 from rockframe.dynamics.events import FLIGHT
 from rockframe.dynamics.protocol import LAST_EVENT, POWERS, Ground
 from rockframe.solve import workspace as at
@@ -22,11 +22,7 @@ from rockframe.solve.bookkeeping import (
     store_outputs,
 )
 from rockframe.solve.crossings import Crossing, earliest_crossing
-from rockframe.solve.equations import (
-    BoundEquations,
-    KnownMode,
-    known_mode,
-)
+from rockframe.solve.equations import BoundEquations, known_mode
 from rockframe.solve.march import (
     AT_END,
     EXHAUSTED,
@@ -41,6 +37,7 @@ from rockframe.solve.workspace import (
     BESIDE,
     TERMS,
     EventTable,
+    KnownMode,
     Output,
     Pieces,
     Progress,
@@ -204,26 +201,17 @@ def correct_crossing(
 @kernel
 def stand_still(w: Workspace) -> None:
     """Make a step of length zero: copy its start to its end."""
-    for i in range(len(w.state)):
-        w.new[i] = w.state[i]
-    for i in range(len(w.first)):
-        w.last[i] = w.first[i]
-    for i in range(len(w.before)):
-        w.after[i] = w.before[i]
+    put(w.state, 0, w.new)
+    put(w.first, 0, w.last)
+    put(w.before, 0, w.after)
     w.works[0] = w.works[1] = 0.0
 
 
 @kernel
 def carry_out(
-    equations: BoundEquations,
-    crossed: int,
-    time: float,
-    known: KnownMode,
-    memory: Vector,
-    progress: Progress,
-    events: EventTable,
-    w: Workspace,
-) -> tuple[KnownMode, int]:
+    equations: BoundEquations, crossed: int, time: float, known: KnownMode, memory: Vector,
+    progress: Progress, events: EventTable, w: Workspace,
+) -> tuple[KnownMode, int]:  # fmt: skip
     """Carry out the event of a crossed guard; give the new mode and a status."""
     clock = progress.clock
     row = progress.counters[at.EVENTS]
@@ -258,6 +246,37 @@ def keep_start(mode: int, progress: Progress, steps: StepTable, w: Workspace) ->
 
 
 @kernel
+def take_step(
+    equations: BoundEquations, known: KnownMode, h: float, ends_at_event: bool,
+    progress: Progress, output: Output, w: Workspace,
+) -> None:  # fmt: skip
+    """Take over a step of length h, or its part up to an event; plan the next one."""
+    controls, clock, counters = progress.controls, progress.clock, progress.counters
+    mode, count, steps = known.mode, known.moving, output.steps
+    fixed = controls[at.RTOL] == at.FIXED_STEPS
+    if fixed:
+        shortest = SHORTEST * controls[at.DURATION]
+        clock[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, shortest, controls)
+    elif not ends_at_event:
+        whole, planned = clock[at.STEP], clock[at.NEXT_STEP]
+        clock[at.NEXT_STEP] = adapted(whole, planned, clock[at.EXCESS], controls)
+    span = span_of(h, progress)
+    work, ground = Work(w.works[0], w.works[1]), ground_in(1.0, span, w.ground)
+    clock[at.INTO_INTERVAL] += h
+    store_outputs(equations, time_of(progress), span, mode, count, work, progress, output, w)
+    if h > 0.0:
+        follow_peak(equations, count, h, clock, w)
+        if len(steps.codes) > 0:
+            keep_row(
+                time_of(progress), h, mode, ground, len(w.new), len(w.last) - POWERS, w.new,
+                w.last, counters, steps.values, steps.codes,
+            )  # fmt: skip
+    if known.contact == FLIGHT:
+        clock[at.FLIGHT_TIME] += h
+    accept(fixed, work, ground, clock, counters, w)
+
+
+@kernel
 def run_on(
     equations: BoundEquations,
     tolerance: Vector,
@@ -278,7 +297,6 @@ def run_on(
     index = counters[at.INTERVAL]
     counters[at.DEGREE_X] = load_interval(index, pieces.x, 0, w.ground)
     counters[at.DEGREE_Y] = load_interval(index, pieces.y, TERMS, w.ground)
-    fixed, shortest = controls[at.RTOL] == at.FIXED_STEPS, SHORTEST * controls[at.DURATION]
     crossed = counters[at.PENDING]
     stale = counters[at.STALE] == 1  # slope and guards are to be evaluated anew
     steps, anew = output.steps, False
@@ -328,41 +346,19 @@ def run_on(
             status = at.STEP_TOO_SMALL
         if happened in (AT_END, EXHAUSTED, TOO_SMALL):
             break
-        h = whole = clock[at.STEP]
+        h = clock[at.STEP]
         if happened == GUARDED:
-            h, crossed = step_to_event(
-                equations, known, whole, tolerance, pieces, progress, steps, w
-            )
-        if fixed:
-            clock[at.NEXT_STEP] = rest_of(clock[at.ASKED], h, shortest, controls)
-        elif crossed < 0:
-            clock[at.NEXT_STEP] = adapted(whole, clock[at.NEXT_STEP], clock[at.EXCESS], controls)
-        mode, count, span = known.mode, known.moving, span_of(h, progress)
-        work, ground = Work(w.works[0], w.works[1]), ground_in(1.0, span, w.ground)
-        clock[at.INTO_INTERVAL] += h
-        store_outputs(equations, time_of(progress), span, mode, count, work, progress, output, w)
-        if h > 0.0:
-            follow_peak(equations, count, h, clock, w)
-            if len(steps.codes) > 0:
-                keep_row(
-                    time_of(progress), h, mode, ground, len(w.new), len(w.last) - POWERS, w.new,
-                    w.last, counters, steps.values, steps.codes,
-                )  # fmt: skip
-        if known.contact == FLIGHT:
-            clock[at.FLIGHT_TIME] += h
-        accept(fixed, work, ground, clock, counters, w)
+            h, crossed = step_to_event(equations, known, h, tolerance, pieces, progress, steps, w)
+        take_step(equations, known, h, crossed >= 0, progress, output, w)
         half = 1 - half
         counters[at.HALF] = half
         w = swapped(w)
     if status not in (at.PAUSED, at.MORE_ROOM):
         audit(equations, known.mode, memory, clock, w)
     if half == 1:  # copy to where the caller reads it
-        for i in range(len(home.state)):
-            home.state[i] = w.state[i]
-        for i in range(len(home.first)):
-            home.first[i] = w.first[i]
-        for i in range(len(home.before)):
-            home.before[i] = w.before[i]
+        put(w.state, 0, home.state)
+        put(w.first, 0, home.first)
+        put(w.before, 0, home.before)
     counters[at.STALE] = int(stale)
     clock[at.TIME] = time_of(progress)
     counters[at.MODE] = known.mode

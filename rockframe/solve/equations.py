@@ -20,7 +20,6 @@ from rockframe.compiled import (
     part_of,
     put,
 )
-from rockframe.dynamics.events import FLIGHT
 from rockframe.dynamics.protocol import (
     CalledBySteps,
     Equations,
@@ -38,7 +37,7 @@ from rockframe.solve.march import (
     march_fixed_by_rates,
 )
 from rockframe.solve.schemes import FixedStepsByRates, StepsByTolerance
-from rockframe.solve.workspace import Pieces, Progress, StepTable, Workspace
+from rockframe.solve.workspace import KnownMode, Pieces, Progress, StepTable, Workspace
 
 
 @kernel
@@ -92,18 +91,6 @@ def powered(
     out[powers], out[powers + 1] = found
 
 
-class KnownMode(NamedTuple):
-    """A mode, and what it means for steps: unpacked when it begins.
-
-    The contact state is that of the body that the scene is about.
-    """
-
-    mode: int
-    moving: int  # leading coordinates that move
-    contact: int  # rockframe.dynamics.events.ContactState
-    longest: float  # longest fixed step that is stable for the relaxation of a constraint [s]
-
-
 class BoundEquations(NamedTuple):
     """The bound functions of a system, its numbers, and its sizes.
 
@@ -129,12 +116,7 @@ class BoundEquations(NamedTuple):
         w: Workspace,
     ) -> int:  # fmt: skip
         """Make steps until something happens, or try one; see :mod:`rockframe.solve.march`."""
-        mode, count, contact, longest = known
-        return self.stepping.call(
-            mode, count, int(contact == FLIGHT), longest, trial, pieces.x, pieces.y,
-            w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground, progress.controls,
-            progress.clock, progress.counters, steps.values, steps.codes, self.numbers,
-        )  # fmt: skip
+        return self.stepping.call(known, trial, pieces, progress, steps, w.of_steps(), self.numbers)
 
 
 class CalledEquations(BoundEquations):
@@ -148,11 +130,7 @@ class CalledEquations(BoundEquations):
         steps: StepTable, w: Workspace,
     ) -> int:  # fmt: skip
         """Make steps by a scheme, until something happens."""
-        return march(
-            scheme, Called(self), known.mode, known.moving, int(known.contact == FLIGHT), trial,
-            pieces.x, pieces.y, w.both_ends, w.stages, w.works, w.reference, w.limits, w.ground,
-            progress.controls, progress.clock, progress.counters, steps.values, steps.codes,
-        )  # fmt: skip
+        return march(scheme, Called(self), known, trial, pieces, progress, steps, w.of_steps())
 
 
 class CalledByTolerance(CalledEquations):

@@ -8,7 +8,8 @@ than motion; `schemes.py` makes a single step.
 import math
 from typing import Any, Final, NamedTuple, TypeAlias
 
-from rockframe.compiled import Integers, ReadOnlyMatrix, Vector, inlined, kernel, part_of, put
+from rockframe.compiled import Vector, inlined, kernel, part_of, put
+from rockframe.dynamics.events import FLIGHT
 from rockframe.dynamics.protocol import POWERS, Equations, Ground, Guards, Slope
 from rockframe.solve import workspace as at
 from rockframe.solve.schemes import (
@@ -21,7 +22,19 @@ from rockframe.solve.schemes import (
     next_step,
     rest_of,
 )
-from rockframe.solve.workspace import TERMS, Span, ground_in, has_no_room, keep_row, load_interval
+from rockframe.solve.workspace import (
+    TERMS,
+    KnownMode,
+    Pieces,
+    Progress,
+    Span,
+    StepArrays,
+    StepTable,
+    ground_in,
+    has_no_room,
+    keep_row,
+    load_interval,
+)
 
 LEFT_LIMIT: Final = 0
 RIGHT_LIMIT: Final = 1
@@ -243,10 +256,8 @@ def interval_length(index: int, intervals: int, controls: Vector) -> float:
 
 @inlined
 def march(
-    scheme: Scheme, system: Evaluated, mode: int, count: int, flies: int, trial: float,
-    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
-    reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
-    counters: Integers, kept: Vector, codes: Integers,
+    scheme: Scheme, system: Evaluated, known: KnownMode, trial: float, pieces: Pieces,
+    progress: Progress, steps: StepTable, arrays: StepArrays,
 ) -> int:  # fmt: skip
     """Make steps until something happens that the driver must handle.
 
@@ -256,32 +267,28 @@ def march(
         The method of a step.
     system : Evaluated
         The equations.
-    mode, count, flies : int
-        Contact mode, how many leading coordinates move in it, and whether it is flight.
+    known : KnownMode
+        The mode, and what it means.
     trial : float
         Length of a single trial step; 0 to go on with the run [s].
-    pieces_x, pieces_y : ndarray
+    pieces : Pieces
         Polynomials of the ground acceleration.
-    ends : ndarray
-        State, slope and guards with their rates at both ends of a step; ``counters[HALF]``
-        tells which half is the start.
-    stages, works : ndarray
-        Scratch for stages; the energies dissipated and put in by a step, the error of their
-        difference, and the error of each element of the state.
-    reference, limits : ndarray
-        Largest size so far of each element of the state; limits of rotations.
-    ground : ndarray
-        Coefficients of the ground motion in the interval.
-    controls, clock, counters : ndarray
-        Settings and progress, laid out in :mod:`rockframe.solve.workspace`.
-    kept, codes : ndarray
-        Table of steps, see :class:`rockframe.solve.workspace.StepTable`.
+    progress : Progress
+        Settings and progress; ``counters[HALF]`` tells which half of ``both_ends`` is the start.
+    steps : StepTable
+        Table of steps.
+    arrays : StepArrays
+        Arrays of a step.
 
     Returns
     -------
     int
         Why it ended, such as ``AT_END``.
     """
+    mode, count = known.mode, known.moving
+    controls, clock, counters = progress.controls, progress.clock, progress.counters
+    ends, stages, works, reference, limits, ground = arrays
+    kept, codes = steps.values, steps.codes
     size = system.coordinates()
     width = 2 * size + system.variables()
     slope_end = width + size + system.variables() + POWERS
@@ -289,7 +296,7 @@ def march(
     half = counters[at.HALF]
     index, tau, h_next = counters[at.INTERVAL], clock[at.INTO_INTERVAL], clock[at.NEXT_STEP]
     time_step = controls[at.TIME_STEP]
-    intervals = max(len(pieces_x), len(pieces_y))
+    intervals = max(len(pieces.x), len(pieces.y))
     fixed, shortest = controls[at.RTOL] == at.FIXED_STEPS, SHORTEST * controls[at.DURATION]
     degree_x, degree_y = counters[at.DEGREE_X], counters[at.DEGREE_Y]
     begin, length = index * time_step, interval_length(index, intervals, controls)
@@ -305,8 +312,8 @@ def march(
             index += 1
             tau = 0.0
             begin, length = index * time_step, interval_length(index, intervals, controls)
-            degree_x = load_interval(index, pieces_x, 0, ground)
-            degree_y = load_interval(index, pieces_y, TERMS, ground)
+            degree_x = load_interval(index, pieces.x, 0, ground)
+            degree_y = load_interval(index, pieces.y, TERMS, ground)
             if jumps(ground[0], clock[at.GROUND_X]) or jumps(ground[TERMS], clock[at.GROUND_Y]):
                 result = JUMPED
                 break
@@ -363,7 +370,7 @@ def march(
         clock[at.PEAK_RIGHT] = max(clock[at.PEAK_RIGHT], rotation.right)
         nearest = other_share(size, limits, new)
         clock[at.OTHER_SHARE] = max(clock[at.OTHER_SHARE], nearest)
-        if flies == 1:
+        if known.contact == FLIGHT:
             clock[at.FLIGHT_TIME] += h
         clock[at.DISSIPATED] += works[0]
         clock[at.SUPPLIED] += works[1]
@@ -380,44 +387,29 @@ def march(
 
 @kernel
 def march_fixed(
-    system: Equations, mode: int, count: int, flies: int, longest: float, trial: float,
-    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
-    reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
-    counters: Integers, kept: Vector, codes: Integers,
+    system: Equations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
+    steps: StepTable, arrays: StepArrays,
 ) -> int:  # fmt: skip
     """Make steps of fixed length, see :func:`march`."""
-    return march(
-        FixedSteps(longest), CompiledIn(system), mode, count, flies, trial, pieces_x,
-        pieces_y, ends, stages, works, reference, limits, ground, controls, clock, counters, kept,
-        codes,
-    )  # fmt: skip
+    scheme = FixedSteps(known.longest)
+    return march(scheme, CompiledIn(system), known, trial, pieces, progress, steps, arrays)
 
 
 @kernel
 def march_fixed_by_rates(
-    system: Equations, mode: int, count: int, flies: int, longest: float, trial: float,
-    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
-    reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
-    counters: Integers, kept: Vector, codes: Integers,
+    system: Equations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
+    steps: StepTable, arrays: StepArrays,
 ) -> int:  # fmt: skip
     """Make steps of fixed length of equations that give powers apart, see :func:`march`."""
-    return march(
-        FixedStepsByRates(longest), CompiledIn(system), mode, count, flies, trial, pieces_x,
-        pieces_y, ends, stages, works, reference, limits, ground, controls, clock, counters, kept,
-        codes,
-    )  # fmt: skip
+    scheme = FixedStepsByRates(known.longest)
+    return march(scheme, CompiledIn(system), known, trial, pieces, progress, steps, arrays)
 
 
 @kernel
 def march_by_tolerance(
-    system: Equations, mode: int, count: int, flies: int, longest: float, trial: float,
-    pieces_x: ReadOnlyMatrix, pieces_y: ReadOnlyMatrix, ends: Vector, stages: Vector, works: Vector,
-    reference: Vector, limits: Vector, ground: Vector, controls: Vector, clock: Vector,
-    counters: Integers, kept: Vector, codes: Integers,
+    system: Equations, known: KnownMode, trial: float, pieces: Pieces, progress: Progress,
+    steps: StepTable, arrays: StepArrays,
 ) -> int:  # fmt: skip
     """Make steps of the Dormand-Prince pair, see :func:`march`."""
-    return march(
-        StepsByTolerance(math.inf), CompiledIn(system), mode, count, flies, trial, pieces_x,
-        pieces_y, ends, stages, works, reference, limits, ground, controls, clock, counters, kept,
-        codes,
-    )  # fmt: skip
+    scheme = StepsByTolerance(math.inf)
+    return march(scheme, CompiledIn(system), known, trial, pieces, progress, steps, arrays)

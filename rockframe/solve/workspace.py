@@ -134,6 +134,18 @@ ERRORS: Final = 3
 """Index in `works` from which on the errors of the state stand."""
 
 
+class KnownMode(NamedTuple):
+    """A mode, and what it means for steps: unpacked when it begins.
+
+    The contact state is that of the body that the scene is about.
+    """
+
+    mode: int
+    moving: int  # leading coordinates that move
+    contact: int  # rockframe.dynamics.events.ContactState
+    longest: float  # longest fixed step that is stable for the relaxation of a constraint [s]
+
+
 class Pieces(NamedTuple):
     """Ground acceleration as polynomials, a row for each interval; no rows for still ground."""
 
@@ -177,6 +189,17 @@ class EventTable(NamedTuple):
     codes: IntegerMatrix
 
 
+class StepArrays(NamedTuple):
+    """Those arrays of a :class:`Workspace` that the loop of steps reads and writes."""
+
+    both_ends: Vector
+    stages: Vector
+    works: Vector
+    reference: Vector
+    limits: Vector
+    ground: Vector
+
+
 class Workspace(NamedTuple):
     """Arrays of one step.
 
@@ -200,6 +223,13 @@ class Workspace(NamedTuple):
     powers: Vector  # a slope inside the step, evaluated for its powers
     ground: Vector  # coefficients of the ground acceleration in the present interval
     answers: Vector  # scratch for a few numbers that the system gives
+
+    @inlined
+    def of_steps(self) -> StepArrays:
+        """Give those arrays that the loop of steps reads and writes."""
+        return StepArrays(
+            self.both_ends, self.stages, self.works, self.reference, self.limits, self.ground
+        )
 
 
 NO_STEPS: Final = StepTable(np.empty(0), np.empty(0, dtype=np.int64))

@@ -8,8 +8,7 @@ import pytest
 from rockframe.dynamics.events import SILENT, ContactState
 from rockframe.solve import workspace as at
 from rockframe.solve.bookkeeping import record_event
-from rockframe.solve.equations import KnownMode
-from rockframe.solve.workspace import EventTable, Progress, Status
+from rockframe.solve.workspace import EventTable, KnownMode, Progress, Status
 
 STATE = (0.1, -0.2)
 

@@ -29,6 +29,7 @@ from rockframe.dynamics.chain.slips import SlippingBodies, coefficients
 from rockframe.dynamics.chain.system import Chain
 from rockframe.dynamics.links import GUARDS as GUARDS_OF_LINK
 from rockframe.dynamics.links import SteadyForce
+from rockframe.dynamics.on_base import Mode, OnBase
 from rockframe.dynamics.pads import CORNER_GUARDS, ROUNDING
 from rockframe.dynamics.protocol import (
     BODY_COLUMNS,
@@ -273,60 +274,75 @@ class Starts(NamedTuple):
     held: Callable[[float], float] | None
 
 
+def _placed(highest: OnBase, starts: Starts, start: Start) -> list[AtRest]:
+    """Give rotations and heights of all bodies: at rest, but of the highest as `start` says."""
+    placed = list(starts.rest or [AtRest(0.0, 0.0)] * len(starts.links))
+    if start.rotation is None and start.vertical_displacement is None:
+        return placed
+    below = sum(one.rotation for one in placed[1:])
+    rotation = placed[0].rotation if start.rotation is None else start.rotation - below
+    height = start.vertical_displacement
+    if height is None and is_rigid(starts.links[0].base):
+        height = 0.0  # the contact prescribes it
+    elif height is None and starts.held is not None:
+        height = starts.held(rotation)
+    elif height is None:
+        attitude = highest.body.attitude(rotation)
+        lift = highest.body.left * attitude.sine, -highest.body.right * attitude.sine
+        height = highest.base.resting_height(*lift, ()) - attitude.rise
+    return [AtRest(rotation, height), *placed[1:]]
+
+
+def _starting_contact(part: OnBase, base: BaseNumbers, body: BodyState) -> int:
+    if not is_rigid(base):
+        return part.base.starting(part.body.base_line_at(body), ())
+    side = body.rotation or body.angular_velocity
+    return both_contacts(int(side > 0.0), int(side < 0.0))
+
+
+def _write_start(
+    system: Chain, k: int, standing: Mode, pin: float, body: BodyState, state: Vector,
+    memory: Vector,
+) -> None:  # fmt: skip
+    """Write place, velocities and held point of body `k` to state and memory."""
+    part, count = system.on_base(k), system.bodies()
+    n, i, x = DEGREES * count, BEFORE_HORIZONTAL * k, system.horizontal_of(k)
+    offset = system.number(k, at.BESIDE) if k + 1 < count else 0.0
+    state[i + ROTATION], state[i + VERTICAL] = body.rotation, body.vertical
+    state[n + i + ROTATION] = body.angular_velocity
+    state[n + i + VERTICAL] = body.vertical_velocity
+    memory[HELD_PLACE + k] = pin + offset
+    free = part.is_free(standing)
+    moves = isinstance(system, ChainLinks) or k + 1 < count
+    attitude = part.body.attitude(body.rotation)
+    if moves or free:
+        state[x] = pin + offset + part.body.about_pin(pin, attitude)
+    if moves and not free:
+        reach = part.body.reach(pin, attitude)
+        state[n + x] = reach.rate * body.angular_velocity
+
+
 def _initial(system: Chain, starts: Starts, start: Start) -> tuple[int, Vector, Vector]:
     """Give mode, state and memory at the start: all at rest but body 0, as `start` says."""
-    count, rest = len(starts.links), starts.rest
-    tied = isinstance(system, ChainLinks)
-    n = DEGREES * count
-    placed = list(rest or [AtRest(0.0, 0.0)] * count)
-    below = sum(one.rotation for one in placed[1:])
-    first, part = placed[0], system.on_base(0)
-    if start.rotation is not None or start.vertical_displacement is not None:
-        rotation = first.rotation if start.rotation is None else start.rotation - below
-        attitude = part.body.attitude(rotation)
-        height = start.vertical_displacement
-        if height is None and is_rigid(starts.links[0].base):
-            height = 0.0  # the contact prescribes it
-        elif height is None and starts.held is not None:
-            height = starts.held(rotation)
-        elif height is None:
-            lift = part.body.left * attitude.sine, -part.body.right * attitude.sine
-            height = part.base.resting_height(*lift, ()) - attitude.rise
-        placed[0] = AtRest(rotation, height)
-    state, memory = np.zeros(2 * n + system.variables()), np.zeros(len(MEMORY) + count)
-    mode = 0
+    count = len(starts.links)
+    state, memory = (
+        np.zeros(2 * DEGREES * count + system.variables()),
+        np.zeros(len(MEMORY) + count),
+    )
+    placed, mode = _placed(system.on_base(0), starts, start), 0
     for k, one in enumerate(placed):
-        part, moving = system.on_base(k), k == 0
+        moving = k == 0
         body = BodyState(
             one.rotation, one.vertical, 0.0, start.angular_velocity if moving else 0.0,
             start.vertical_velocity if moving else 0.0, 0.0,
         )  # fmt: skip
-        i, x = BEFORE_HORIZONTAL * k, system.horizontal_of(k)
-        if is_rigid(starts.links[k].base):
-            side = body.rotation or body.angular_velocity
-            contact = both_contacts(int(side > 0.0), int(side < 0.0))
-        else:
-            contact = part.base.starting(part.body.base_line_at(body), ())
         # a body at rest upright has no side yet: it takes that of the body above
         leaning = body
         if body.rotation == 0.0 and k > 0:
             leaning = body._replace(rotation=placed[k - 1].rotation)
-        standing = part.standing(contact, leaning)
-        pin = part.starting_pin(standing, leaning)
-        offset = system.number(k, at.BESIDE) if k + 1 < count else 0.0
-        state[i + ROTATION], state[i + VERTICAL] = body.rotation, body.vertical
-        state[n + i + ROTATION], state[n + i + VERTICAL] = (
-            body.angular_velocity, body.vertical_velocity,
-        )  # fmt: skip
-        memory[HELD_PLACE + k] = pin + offset
-        free = part.is_free(standing)
-        moves = tied or k + 1 < count
-        attitude = part.body.attitude(body.rotation)
-        if moves or free:
-            state[x] = pin + offset + part.body.about_pin(pin, attitude)
-        if moves and not free:
-            reach = part.body.reach(pin, attitude)
-            state[n + x] = reach.rate * body.angular_velocity
+        part = system.on_base(k)
+        standing = part.standing(_starting_contact(part, starts.links[k].base, body), leaning)
+        _write_start(system, k, standing, part.starting_pin(standing, leaning), body, state, memory)
         mode = system.with_part(mode, k, standing)
     if isinstance(system, RigidChain):
         memory = np.concatenate([memory, [1.0, 0.0, 0.0]])
