@@ -180,7 +180,7 @@ def in_each(number: Any, count: int) -> Floats:
     return np.full(count, number, dtype=np.float64)
 
 
-def plain(number: Any) -> Any:
+def python_number(number: Any) -> Any:
     """Convert a number of NumPy to one of Python."""
     return number if isinstance(number, Many) else float(number)
 

@@ -11,11 +11,11 @@ from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
     check_format,
-    given_of,
     is_result,
     read_result,
     scene_from,
     simulated,
+    typed_options,
 )
 from rockframe.command.streams import STREAM
 from rockframe.errors import ComponentError, FileError
@@ -39,14 +39,14 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         raise FileError(path, [(None, f"the name ends in {ending!r}; {words}")])
     run = _run_of(arguments, answer)
     outputs = Outputs(arguments, [arguments.dataset], answer)
-    given = given_of(arguments, "window", "magnify", "title")
+    given = typed_options(arguments, "window", "magnify", "title")
     if ending in _PAGES and arguments.speed is not None:
         msg = "--speed is for films; a page has a choice of speeds"
         raise ComponentError(msg)
     moving: Animation | Player = (
         player(run, **given)
         if ending in _PAGES
-        else animation(run, **given, **given_of(arguments, "speed"))
+        else animation(run, **given, **typed_options(arguments, "speed"))
     )
     try:
         outputs.written_by(

@@ -6,7 +6,7 @@ from textwrap import fill
 
 from rockframe.command.answer import Answer
 from rockframe.command.run import finished
-from rockframe.command.shared import RUN, Outputs, given_of, scene_from, simulated
+from rockframe.command.shared import RUN, Outputs, scene_from, simulated, typed_options
 from rockframe.errors import ComponentError
 from rockframe.simulation.run_arguments import PROVED, Certification
 
@@ -37,7 +37,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 
 def _wanted(of_file: object, arguments: argparse.Namespace) -> Certification | str:
     """Give the settings of the certificate; options replace those of the file."""
-    typed = given_of(arguments, "nudge", "reach", "runs")
+    typed = typed_options(arguments, "nudge", "reach", "runs")
     if arguments.proved and typed:
         name, value = next(iter(typed.items()))
         msg = f"--{name} {value:g} is for a certificate by further runs, which --proved replaces"

@@ -10,11 +10,11 @@ from rockframe.command.shared import (
     Outputs,
     analysed,
     analysis_kind,
-    given_of,
     in_words,
     scene_from,
     system_words,
     taken_by,
+    typed_options,
 )
 from rockframe.plot import critical_scale as draw
 from rockframe.simulation.provenance import motion_words
@@ -32,7 +32,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
     given: dict[str, Any] = {
         "intensity": _USUAL,
-        **given_of(arguments, "largest", "runs", "intensity", "period"),
+        **typed_options(arguments, "largest", "runs", "intensity", "period"),
         **taken_by(critical_scale, found.run),
     }
     if arguments.runs is not None:

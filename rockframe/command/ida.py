@@ -12,11 +12,11 @@ from rockframe.command.shared import (
     Outputs,
     analysed,
     analysis_kind,
-    given_of,
     printed,
     system_words,
     table_kind,
     taken_by,
+    typed_options,
 )
 from rockframe.errors import FileError
 from rockframe.plot import dynamic_analysis as draw
@@ -55,7 +55,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.says("Verdict", dataset.attrs["verdict"])
     answer.subject("Scene", system_words(found.system))
     fitted = fragility(dataset, dataset.attrs["intensity"], trials="capacities",
-                       **given_of(arguments, "period"))  # fmt: skip
+                       **typed_options(arguments, "period"))  # fmt: skip
     answer.says("Fit", fitted.attrs["verdict"])
     capacities = table(dataset[list(_SHOWN)].drop_vars("rotation_limit"))
     if len(capacities) <= _MOST_SHOWN:

@@ -9,12 +9,12 @@ from typing import Any, Final
 
 from rockframe.command.files.studies import AXES, DescribedStudy, read_study
 from rockframe.command.shared import (
-    given_of,
     refuse_of_record,
     run_from,
     store_from,
     suite_from,
     taken_by,
+    typed_options,
     values_of,
 )
 from rockframe.errors import ComponentError, FileError
@@ -48,7 +48,7 @@ def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
 
 def typed_intensity(arguments: argparse.Namespace, function: Callable[..., Any]) -> dict[str, Any]:
     """Give the intensity and the limit states that were typed."""
-    given = given_of(arguments, "intensity", "period")
+    given = typed_options(arguments, "intensity", "period")
     if arguments.limits is not None:
         given["limits"] = [_limit(word.strip()) for word in arguments.limits.split(",")]
     return taken_by(function, given)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rockframe.command.answer import Answer
-from rockframe.command.shared import given_of, motion_from, refuse_of_record
+from rockframe.command.shared import motion_from, refuse_of_record, typed_options
 from rockframe.command.streams import STREAM, tell
 from rockframe.errors import FileError
 from rockframe.serve import Server
@@ -33,5 +33,5 @@ def _record(arguments: argparse.Namespace) -> NamedRecord:
         words = "a scene's file names its record; give a file in the place of '-'"
         raise FileError(STREAM, [(None, words)])
     keys: dict[str, Any] = {"file": str(Path(arguments.record).expanduser().resolve())}
-    keys |= given_of(arguments, "component", "unit", "time_step")
+    keys |= typed_options(arguments, "component", "unit", "time_step")
     return NamedRecord(motion_from(arguments.record, arguments), keys)

@@ -47,7 +47,7 @@ _LONGEST_HEAD: Final = 65536
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
     """Read the file of a motion with the options for reading."""
-    given = given_of(arguments, "component", "unit", "time_step")
+    given = typed_options(arguments, "component", "unit", "time_step")
     return GroundMotion.read(opened(path, "a record"), **given)
 
 
@@ -116,7 +116,7 @@ def check_format(arguments: argparse.Namespace) -> None:
 
 def run_from(of_file: Mapping[str, Any], arguments: argparse.Namespace) -> dict[str, Any]:
     """Give the arguments of a run: those of a file, replaced by options that were typed."""
-    run = {**of_file, **given_of(arguments, "duration", "free_vibration")}
+    run = {**of_file, **typed_options(arguments, "duration", "free_vibration")}
     if arguments.accuracy is not None:
         run["accuracy"] = _accuracy(arguments.accuracy, arguments.command)
     if arguments.duration is not None and arguments.free_vibration is None:
@@ -132,7 +132,7 @@ def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, 
     return {name: value for name, value in run.items() if name in known}
 
 
-def given_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
+def typed_options(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
     """Give the options that were typed, by their names."""
     given = {name: getattr(arguments, name) for name in names}
     return {name: value for name, value in given.items() if value is not None}

@@ -53,15 +53,15 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     except StudyError as problem:
         raise found.at_lines(problem) from problem
     except KeyboardInterrupt:
-        _say_how_to_go_on(store, arguments.typed)
+        _print_how_to_continue(store, arguments.typed)
         raise
     if (runs["status"] == RunStatus.NOT_RUN).any():
-        _say_how_to_go_on(store, arguments.typed)
+        _print_how_to_continue(store, arguments.typed)
         return INTERRUPTED
     return 0 if finished(runs) else 1
 
 
-def _say_how_to_go_on(store: Path | None, typed: list[str]) -> None:
+def _print_how_to_continue(store: Path | None, typed: list[str]) -> None:
     """Print the command that continues an interrupted study."""
     words = ["rockframe", *typed]
     told = "this command continues it"

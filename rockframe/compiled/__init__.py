@@ -15,10 +15,10 @@ from rockframe.compiled.entries import compiled_within as compiled_within
 from rockframe.compiled.entries import compiling_for as compiling_for
 from rockframe.compiled.entries import entry as entry
 from rockframe.compiled.entries import entry_at_once as entry_at_once
-from rockframe.compiled.entries import say_slow as say_slow
 from rockframe.compiled.entries import seconds_as_python as seconds_as_python
 from rockframe.compiled.entries import still_taking as still_taking
 from rockframe.compiled.entries import table as table
+from rockframe.compiled.entries import warn_of_slow_run as warn_of_slow_run
 from rockframe.compiled.language import LANES as LANES
 from rockframe.compiled.language import IntegerMatrix as IntegerMatrix
 from rockframe.compiled.language import Integers as Integers

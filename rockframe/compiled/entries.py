@@ -122,7 +122,7 @@ def seconds_as_python() -> float:
     return AS_PYTHON[0] if COMPILED else perf_counter()
 
 
-def say_slow(seconds: float) -> None:
+def warn_of_slow_run(seconds: float) -> None:
     """Say once, after a long run in plain Python, why, and what machine code would do."""
     if seconds <= PATIENCE or _said_slow or (_HAS_NUMBA and not COMPILED):
         return

@@ -203,7 +203,7 @@ class Job:
             try:
                 return self._compiled(keep=True)
             except (RuntimeError, OSError) as problem:  # no place that numba could write to
-                _say_once(f"machine code is not kept on disk, and made anew each time: {problem}")
+                _warn_once(f"machine code is not kept on disk, and made anew each time: {problem}")
                 return self._compiled(keep=False)
 
     def _compiled(self, *, keep: bool) -> Any:
@@ -274,7 +274,7 @@ def called_by(function: Any, kinds: set[type]) -> set[Any]:
     return found
 
 
-def _say_once(text: str) -> None:
+def _warn_once(text: str) -> None:
     if text not in _said:
         _said.add(text)
         _logger.warning(text)

@@ -18,7 +18,7 @@ import numpy as np
 
 from rockframe.compiled import Integers, Vector, inlined, kernel
 from rockframe.errors import AssemblyError
-from rockframe.many import plain
+from rockframe.many import python_number
 
 Numbers: TypeAlias = tuple[float, ...] | Vector
 """Numbers of a system; in an array where their count is not known when it is compiled."""
@@ -384,7 +384,7 @@ class ContactModel:
 
     def rotation_in(self, state: Vector) -> float:
         """Give the block's rotation in a state [rad]."""
-        return plain(self.rotation_weights @ state[: len(self.rotation_weights)])
+        return python_number(self.rotation_weights @ state[: len(self.rotation_weights)])
 
     def other_share_in(self, state: Vector) -> float:
         """Give the largest ratio of another body's rotation to its limit; 0 without one [1]."""

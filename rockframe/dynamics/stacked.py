@@ -194,7 +194,7 @@ class Stacked(InState):
 
 
 @kernel
-def tell_of_soil(memory: Vector) -> None:
+def name_soil_event(memory: Vector) -> None:
     """Rename the last event to the kind that it has for the lower body, on soil."""
     event = int(memory[LAST_EVENT])
     if event == PIVOT_CHANGE:

@@ -16,7 +16,7 @@ from rockframe.measures.response import (
     shortest_of,
 )
 from rockframe.motion.pair import HorizontalPair, axis_and_intensities
-from rockframe.motion.processing.samples import say_coarse
+from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.results.schema import build_dataset
@@ -117,7 +117,7 @@ def rotated_spectrum(
         check_cost(one.signals[0], seconds, owner=_SPECTRUM)
     if periods is not None:
         both = [one.signals[0] for one in looked.things]
-        say_coarse(both, shortest_of(seconds), owner=_SPECTRUM)
+        warn_of_coarse_samples(both, shortest_of(seconds), owner=_SPECTRUM)
     vectors = unit_vectors(count)
     upwards = all(one.vertical is not None for one in looked.things)
 

@@ -13,7 +13,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import Inputs, build_over, read_inputs
 from rockframe.motion import GroundMotion
 from rockframe.motion.operations.timing import Interpolation
-from rockframe.motion.processing.samples import band_limited, say_coarse
+from rockframe.motion.processing.samples import band_limited, warn_of_coarse_samples
 from rockframe.motion.quantities import ArrayLike
 from rockframe.proposals import hinted
 from rockframe.signals import Signal
@@ -101,7 +101,7 @@ def response_spectrum(
     ratios = checked_ratios(damping_ratios, owner=_OWNER)
     between = one_of_words(Interpolation, interpolation, owner=_OWNER, name="interpolation")
     if between is Interpolation.LINEAR and periods is not None:
-        say_coarse(looked.things, shortest_of(seconds), owner=_OWNER, remedy=_REMEDY)
+        warn_of_coarse_samples(looked.things, shortest_of(seconds), owner=_OWNER, remedy=_REMEDY)
     return spectra_of(looked, seconds, ratios, between)
 
 

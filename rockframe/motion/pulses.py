@@ -129,7 +129,7 @@ def mavroeidis_papageorgiou(
     )
 
 
-def sine_of_turns(turns: Array) -> Array:
+def sine_of_cycles(turns: Array) -> Array:
     """Compute sin(2 pi x), exactly zero at multiples of one half."""
     rest = turns - np.round(turns)
     folded = np.where(np.abs(rest) > _QUARTER, np.copysign(_HALF, rest) - rest, rest)
@@ -149,9 +149,9 @@ def _sum_of(parts: Sequence[_Sine]) -> Shape:
 
 def _along(part: _Sine, places: Array, step: float) -> tuple[Array, Array, Array]:
     turns = part.ratio * places + part.start
-    value = part.amplitude * sine_of_turns(turns)
+    value = part.amplitude * sine_of_cycles(turns)
     angle = 2.0 * math.pi * part.ratio * step  # omega dt
-    slope = part.amplitude * sine_of_turns(turns + _QUARTER) * angle
+    slope = part.amplitude * sine_of_cycles(turns + _QUARTER) * angle
     return value, slope, -value * angle**2
 
 

@@ -15,7 +15,7 @@ from rockframe.plot._checks import RUN, above_zero, checked_run, draws
 from rockframe.plot._panels import AxesLike, Figure, Panels, sheet
 from rockframe.plot._player import KIND, Player, player
 from rockframe.plot._response import response, strips_of
-from rockframe.plot._runs import Window, runs_of, said_of
+from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving, figure_size
 from rockframe.proposals import proposing
 from rockframe.units import LENGTH
@@ -283,7 +283,7 @@ def animation(
         clock.set_text(moving.words(place))
 
     draw(0)
-    on.entitle(said_of(run, chosen.reader), title)
+    on.entitle(verdict_of_case(run, chosen.reader), title)
     if ax is None:  # the layout is computed once, not for every frame
         on.panels.figure.canvas.draw()
         on.panels.figure.set_layout_engine("none")

@@ -19,9 +19,9 @@ from rockframe.plot._axes import (
     ORANGE,
     VERMILLION,
     Shown,
+    as_label,
     ink,
     measured_in,
-    plain,
     raised,
 )
 from rockframe.plot._panels import NO_BREAK, Axes
@@ -335,7 +335,7 @@ class SceneArtist:
         key = f"name of {name}"
         if key not in self._artists:
             self._artists[key] = self.axes.annotate(
-                plain(name), (0.0, 0.0), xytext=(5, 3), textcoords="offset points",
+                as_label(name), (0.0, 0.0), xytext=(5, 3), textcoords="offset points",
                 fontsize="small", zorder=7,
             )  # fmt: skip
         self._artists[key].xy = tuple(place[0])
@@ -390,7 +390,7 @@ def part_labels(parts: Parts, geometry: Geometry, units: ReaderUnits) -> dict[st
     elif geometry.bed_sinks is None:
         found["ground"] = ["rigid ground", *_numbers(parts.components.get("ground"), units)]
     for number, (name, link) in enumerate(zip(link_labels(parts.links), parts.links, strict=True)):
-        lines = [plain(name), *_numbers(link, units, _DRAWN)]
+        lines = [as_label(name), *_numbers(link, units, _DRAWN)]
         if number < len(geometry.ties):
             found[f"tie {number}"] = lines[:1] if link is parts.wall else lines
         elif isinstance(link, Load):  # not drawn, therefore listed with its body

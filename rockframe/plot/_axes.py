@@ -63,7 +63,7 @@ def key(axes: "Axes", named: tuple[Any, Any] | None = None, **style: Any) -> Non
         style |= {"title": common, "title_fontsize": "small"} if common else {}
     title = str(style.get("title", ""))
     room = int((0.95 * width - _HANDLE) / _LETTER)
-    words = [one if "$" in one else plain(one, max(room, _LEAST_LETTERS)) for one in words]
+    words = [one if "$" in one else as_label(one, max(room, _LEAST_LETTERS)) for one in words]
     entry = _HANDLE + _LETTER * max(map(len, words))
     columns = int(np.clip((0.95 * width) // entry, 1, max(1, len(words))))
     rows = -(-len(words) // columns) + bool(title)
@@ -95,7 +95,7 @@ def escaped(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def plain(name: str, most: int = _MOST_LETTERS) -> str:
+def as_label(name: str, most: int = _MOST_LETTERS) -> str:
     """Give a name without the meaning of ``$`` and ``_`` in matplotlib, in legends too.
 
     Long names are shortened in the middle, to leave room for the data.
@@ -106,9 +106,9 @@ def plain(name: str, most: int = _MOST_LETTERS) -> str:
     return escaped(f" {name}" if name.startswith("_") else name)
 
 
-def plain_names(names: Iterable[str], most: int = _MOST_LETTERS) -> list[str]:
-    """Give names as :func:`plain` does, numbered if they would be equal."""
-    found = [plain(name, most) for name in names]
+def labels_of_names(names: Iterable[str], most: int = _MOST_LETTERS) -> list[str]:
+    """Give names as :func:`as_label` does, numbered if they would be equal."""
+    found = [as_label(name, most) for name in names]
     alike = len(set(found)) < len(found)
     return [f"{k}: {one}" for k, one in enumerate(found, 1)] if alike else found
 
@@ -138,7 +138,7 @@ def label_of(values: xr.DataArray) -> str:
 def label_of_value(value: xr.DataArray) -> str:
     """Give a value along an axis with its unit, for a legend."""
     unit = str(value.attrs.get("units", "1"))
-    text = f"{value.item():.4g}" if value.dtype.kind == "f" else plain(str(value.item()))
+    text = f"{value.item():.4g}" if value.dtype.kind == "f" else as_label(str(value.item()))
     return text if unit == "1" else f"{text} {powers_in_mathtext(unit)}"
 
 
@@ -178,7 +178,7 @@ def zero_line(axes: "Axes") -> None:
     axes.axhline(0.0, color=GREY, alpha=0.6, linewidth=0.5, zorder=0)
 
 
-def plain_ticks(axes: "Axes", which: str = "xy") -> None:
+def label_log_ticks(axes: "Axes", which: str = "xy") -> None:
     """Label logarithmic axes at powers of ten; short ones at more numbers, at least three."""
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 

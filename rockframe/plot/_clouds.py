@@ -7,12 +7,12 @@ from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     COLOURS,
     GREY,
+    as_label,
     colour_of,
     grid,
+    label_log_ticks,
     label_of,
     label_of_intensity,
-    plain,
-    plain_ticks,
     raised,
 )
 from rockframe.plot._checks import drawable, draws
@@ -90,7 +90,7 @@ def cloud(
         xscale="log", yscale="log", ylim=(low / 1.3, high * 1.3),
         xlabel=label_of_intensity(given[name], given), ylabel=label_of(response_name),
     )  # fmt: skip
-    plain_ticks(axes)
+    label_log_ticks(axes)
     grid(axes)
     on.name_lines()
     on.entitle(raised(str(given.attrs["verdict"])), title)
@@ -150,7 +150,9 @@ def annual_rate(
     edges = np.exp(np.append(logs - 0.5 * step, logs[-1] + 0.5 * step))
     for number in range(given.sizes["limit_state"]):
         one = given.isel(limit_state=number)
-        state = plain(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"
+        state = (
+            as_label(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"
+        )
         rate = float(one["annual_rate"])
         if np.isnan(rate):
             continue
@@ -163,7 +165,7 @@ def annual_rate(
         xlabel=label_of_intensity(middle.rename(str(given.attrs["intensity"])), given),
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
-    plain_ticks(axes)
+    label_log_ticks(axes)
     grid(axes)
     on.name_lines()
     on.entitle(raised(str(given.attrs["verdict"])), title)

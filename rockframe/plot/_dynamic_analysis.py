@@ -9,11 +9,11 @@ from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     GREY,
     VERMILLION,
+    as_label,
     colour_of,
     grid,
     label_of,
     label_of_intensity,
-    plain,
     raised,
     style_of,
     units_of,
@@ -146,7 +146,7 @@ def _peaks(axes: Axes, given: xr.Dataset, intensity: xr.DataArray, flips: list[n
         line = _until_flips(along, one["peak_relative_rotation"].to_numpy(), places)
         colour = GREY if several else colour_of(number)
         words = (
-            ("motions" if number == 0 else None) if several else plain(str(one["motion"].item()))
+            ("motions" if number == 0 else None) if several else as_label(str(one["motion"].item()))
         )
         axes.plot(line[1], line[0], color=colour, lw=0.7, label=words)
         for some, face in ((places[:1], colour), (places[1:], "none")):
@@ -173,7 +173,7 @@ def _shares(axes: Axes, given: xr.Dataset, intensity: xr.DataArray) -> None:
         ]
         ordered = np.sort(np.array([0.0, *places]))
         shares = np.arange(len(ordered)) / max(1, len(capacity))
-        axes.step(shares, ordered, where="pre", color=colour_of(number), label=plain(str(state)))
+        axes.step(shares, ordered, where="pre", color=colour_of(number), label=as_label(str(state)))
     axes.set(xlabel="share of the motions [-]", xlim=(0.0, 1.02))
 
 

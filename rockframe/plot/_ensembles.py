@@ -8,13 +8,13 @@ import xarray as xr
 from rockframe.errors import SchemaError
 from rockframe.plot._axes import (
     COLOURS,
+    as_label,
     colour_of,
     grid,
     label_of,
     label_of_intensity,
     label_of_value,
-    plain,
-    plain_names,
+    labels_of_names,
     raised,
     style_of,
     units_of,
@@ -144,7 +144,7 @@ def probability(
         right.bar(range(len(labels)), shares, color=COLOURS[1], alpha=0.6)
         right.set(xlabel="motion")
         if len(labels) <= _MOST_NAMED:
-            ticks = plain_names(labels, 20)
+            ticks = labels_of_names(labels, 20)
             right.set_xticks(range(len(labels)), ticks, rotation=90, fontsize="x-small")
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
@@ -379,4 +379,4 @@ def _contours(axes: Axes, one: xr.Dataset, measures: list[str]) -> None:
 
 
 def _name(one: xr.Dataset) -> str:
-    return plain(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"
+    return as_label(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"

@@ -22,7 +22,7 @@ from rockframe.plot._axes import (
     grid,
     ink,
     key,
-    plain_names,
+    labels_of_names,
     style_of,
     units_of,
     zero_line,
@@ -74,7 +74,7 @@ def drawn_motions(given: object, function: str) -> list[Drawn]:
         return [
             Drawn(one, label, colour_of(number), style_of(number))
             for number, (label, one) in enumerate(
-                zip(plain_names(labelled), labelled.values(), strict=True)
+                zip(labels_of_names(labelled), labelled.values(), strict=True)
             )
         ]
     if not isinstance(given, GroundMotion):

@@ -13,10 +13,10 @@ from rockframe.plot._axes import (
     VERMILLION,
     colour_steps,
     grid,
+    label_log_ticks,
     label_of,
     label_of_intensity,
-    plain_names,
-    plain_ticks,
+    labels_of_names,
     units_of,
 )
 from rockframe.plot._checks import drawable, draws
@@ -212,11 +212,11 @@ def _by_slenderness(ax: AxesLike, function: str, values: xr.DataArray, **style: 
         lambda figure: figure.subplots(1, len(names), sharey=True),
     )  # fmt: skip
     for place, axes in enumerate(on.panels):
-        motions = plain_names(map(str, values["motion"].to_numpy()))
+        motions = labels_of_names(map(str, values["motion"].to_numpy()))
         for number, colour in enumerate(colour_steps(values["motion"])):
             one, label = values.isel(slenderness=place, motion=number), motions[number]
             axes.plot(one["rocking_period"], one, color=colour, lw=1.0, label=label)
         axes.set(xscale="log", xlabel=r"$2\pi/p$ [s]", title=names[place], **style)
         grid(axes)
-        plain_ticks(axes)
+        label_log_ticks(axes)
     return on

@@ -25,7 +25,7 @@ from rockframe.plot._response import (
     of_rotation,
     strips_of,
 )
-from rockframe.plot._runs import Window, runs_of, said_of
+from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving
 from rockframe.proposals import proposing
 from rockframe.results.outcome import LEAST_SLIP
@@ -202,7 +202,7 @@ def player(
                _label("ground acceleration", ground.words), "ink", store),
     ]  # fmt: skip
     sentence = (
-        said_of(run, chosen.reader)
+        verdict_of_case(run, chosen.reader)
         if title is None
         else text(title, owner="rf.plot.player", name="title")
     )

@@ -22,11 +22,11 @@ from rockframe.plot._axes import (
     PURPLE,
     VERMILLION,
     Shown,
+    as_label,
     axis_label,
     colour_of,
     ink,
     key,
-    plain,
     units_of,
     zero_line,
 )
@@ -372,7 +372,7 @@ def _history(axes: Axes, runs: list[Run], name: str, units: ReaderUnits) -> None
         rows = values if values.ndim > 1 else values.expand_dims("row")
         first = str(rows.dims[0])
         for number, row in enumerate(rows):
-            part = plain(str(row[first].item()), _MOST_OF_PART) if first in row.coords else ""
+            part = as_label(str(row[first].item()), _MOST_OF_PART) if first in row.coords else ""
             label = ", ".join(filter(None, (run.label, part))) or None
             colour = run.colour if len(rows) == 1 else colour_of(number)
             axes.plot(run.time, unit.of(row), color=colour, linestyle=run.style, linewidth=0.9,
@@ -414,7 +414,7 @@ def _rotation(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
     axes.set_ylabel(r"rotation $\alpha/\theta$ [-]")
     angles = {overturning_angles(run.dataset) for run in runs}
     if len(angles) == 1:
-        _beside_in_degrees(axes, *angles.pop())
+        _degrees_on_the_right(axes, *angles.pop())
 
 
 def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
@@ -428,7 +428,7 @@ def _uplift(axes: Axes, dataset: xr.Dataset, unit: Shown | None) -> None:
         axes.axhline(place, color=GREEN, linewidth=0.7, linestyle="--", label=label)
 
 
-def _beside_in_degrees(axes: Axes, left: float, right: float) -> None:
+def _degrees_on_the_right(axes: Axes, left: float, right: float) -> None:
     """Add degrees on the right of an axis of rotations over the overturning angle."""
 
     def degrees(share: Any) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.errors import ComponentError, shown
-from rockframe.plot._axes import colour_of, plain_names, style_of
+from rockframe.plot._axes import colour_of, labels_of_names, style_of
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
 from rockframe.results.variables.variable import unit_behind
@@ -50,7 +50,7 @@ def runs_of(given: object, function: str, window: Window) -> list[Run]:
     runs = [checked_run(one, function) for one in labelled.values()]
     return [
         Run(_part(one, cut, function), label, colour_of(number), style_of(number))
-        for number, (label, one) in enumerate(zip(plain_names(labelled), runs, strict=True))
+        for number, (label, one) in enumerate(zip(labels_of_names(labelled), runs, strict=True))
     ]
 
 
@@ -79,12 +79,12 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
 def runs_title(runs: list[Run], units: ReaderUnits) -> str:
     """Give the title of a figure: the verdict of a run; of several, their common motion."""
     if len(runs) == 1:
-        return said_of(runs[0].dataset, units)
+        return verdict_of_case(runs[0].dataset, units)
     motions = {str(run.dataset.attrs.get("motion", "")) for run in runs}
     return motions.pop() if len(motions) == 1 else ""
 
 
-def said_of(run: xr.Dataset, units: ReaderUnits) -> str:
+def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
     """Give the verdict of a run; of a case of a sweep, whose verdict is that of all, its own."""
     if "axes_json" not in run.attrs:
         return units.of_sentence(str(run.attrs.get("verdict", "")))

@@ -12,8 +12,8 @@ from rockframe.plot._axes import (
     axis_label,
     grid,
     key,
-    plain_names,
-    plain_ticks,
+    label_log_ticks,
+    labels_of_names,
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import AxesLike, Panels, sheet
@@ -99,7 +99,7 @@ def selection(
     spectra.set(xscale="log", yscale="log", xlabel="period [s]")
     spectra.set_ylabel(axis_label("pseudo-spectral acceleration", unit))
     key(spectra)
-    labels = plain_names(map(str, dataset["motion"].to_numpy()), _LETTERS)
+    labels = labels_of_names(map(str, dataset["motion"].to_numpy()), _LETTERS)
     factors = dataset["scale_factor"].to_numpy()
     misfits.barh(range(count), dataset["spectral_misfit"], color=GREY, alpha=0.7)
     misfits.set(xlabel="misfit of the logarithm [-]", ylim=(count - 0.5, -0.5))
@@ -108,6 +108,6 @@ def selection(
         misfits.set_yticks(range(count), words, fontsize="x-small")
     for panel in on.panels:
         grid(panel)
-    plain_ticks(spectra)
+    label_log_ticks(spectra)
     on.entitle(f"{count} motions; {dataset.attrs['target']}", title)
     return on.panels

@@ -21,7 +21,7 @@ from rockframe.plot._axes import (
     grid,
     ink,
     key,
-    plain_ticks,
+    label_log_ticks,
     style_of,
     units_of,
     zero_line,
@@ -155,8 +155,8 @@ def _label(panels: Panels, found: list[Any], unit: Shown, amplitude: Shown) -> N
         fourier.set_yscale("log")
         fourier.set_ylim(1e-4 * highest, 2.0 * highest)
     fourier.set(xlabel="frequency [Hz]", ylabel=axis_label("Fourier amplitude", amplitude.words))
-    plain_ticks(response, "x")
-    plain_ticks(fourier, "x")
+    label_log_ticks(response, "x")
+    label_log_ticks(fourier, "x")
     grid(response)
     grid(fourier)
 
@@ -272,7 +272,7 @@ def suite(
     if np.isfinite(cut).any():
         low, high = np.clip(cut, period[0], period[-1])
         on.axes.axvspan(low, high, color=STANDS, zorder=-1)
-    plain_ticks(on.axes)
+    label_log_ticks(on.axes)
     grid(on.axes)
     key(on.axes)
     count = len(given)

@@ -17,7 +17,7 @@ from rockframe.plot._axes import (
     key,
     label_of,
     label_of_value,
-    plain_names,
+    labels_of_names,
     style_of,
     units_of,
     zero_line,
@@ -269,11 +269,11 @@ def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
     values = given[variable]
     if not 1 <= values.ndim <= _MOST_AXES:
         names = [str(dim) for dim in values.dims]
-        plain = next((name for name in reversed(names) if name.isidentifier()), "scale")
+        as_label = next((name for name in reversed(names) if name.isidentifier()), "scale")
         msg = (
             f"rf.plot.sweep draws over one or two axes, {variable!r} has {values.ndim} "
             f"({', '.join(names) or 'none'}); choose from the others, for example with "
-            f"runs.isel({plain}=0)"
+            f"runs.isel({as_label}=0)"
         )
         raise SchemaError(msg)
     if values.dtype.kind not in "fiub":
@@ -319,7 +319,7 @@ def _draw_lines(
         both = np.concatenate(crosses, axis=1)
         axes.plot(*both, "x", color=ink(), markersize=6.0, label="overturned")
     if not _is_axis(given, along) and along in given.coords:
-        names = plain_names(map(str, given[along].to_numpy()), _MOST_LETTERS)
+        names = labels_of_names(map(str, given[along].to_numpy()), _MOST_LETTERS)
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
     elif places.dtype.kind in "iu":  # earthquakes and bodies are counted in integers
         axes.locator_params(axis="x", integer=True)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import xarray as xr
 
-from rockframe.plot._axes import GREY, grid, ink, plain_names
+from rockframe.plot._axes import GREY, grid, ink, labels_of_names
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.units.shown import UnitsLike
@@ -98,7 +98,7 @@ def tradeoff(
     axes[0].xaxis.set_minor_locator(NullLocator())
     axes[1].set(
         yticks=range(len(models)),
-        yticklabels=plain_names(models),
+        yticklabels=labels_of_names(models),
         ylim=(-0.7, len(models) - 0.3),
         xlabel=_ERROR.format("\n"),
         title="with that of the model: left is better",

@@ -31,9 +31,9 @@ from rockframe.records.components import FileComponent, choose_component, orient
 from rockframe.records.instruments import (
     InstrumentResponse,
     InstrumentResponses,
-    about_codes,
     check_finite,
     check_unit_or_response,
+    metadata_of_codes,
     record_of_counts,
     response_in,
 )
@@ -163,7 +163,7 @@ def _samples(source: Source, request: Request, file: Any, one: _Waveform) -> Rec
     settle_time_step(source, request, time_step, None)
     start = _EPOCH + timedelta(microseconds=int(variable.getncattr("starttime")) // 1000)
     metadata: Metadata = {
-        **about_codes(one.codes),
+        **metadata_of_codes(one.codes),
         "processing": one.tag,
         "record_time": f"{start.isoformat()}Z",
     }

@@ -83,7 +83,7 @@ def settle_time_step(source: Source, request: Request, time_step: float, line: i
     check_asked_time_step(source, request, time_step, line)
 
 
-def check_no_marks(source: Source, samples: Array) -> None:
+def check_no_missing_marks(source: Source, samples: Array) -> None:
     """Refuse samples with marks of missing ones among them."""
     size = np.abs(samples)
     marked = np.isin(size, MISSING)

@@ -133,7 +133,7 @@ def location_code(given: str) -> str:
     return given.strip(" -")
 
 
-def about_codes(name: str) -> Metadata:
+def metadata_of_codes(name: str) -> Metadata:
     """Give the codes of a channel for the metadata."""
     keys = ("network", "station", "sensor_location")
     return {key: code for key, code in zip(keys, codes_of(name), strict=False) if code}

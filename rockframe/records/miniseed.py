@@ -35,10 +35,10 @@ from rockframe.records.components import (
 )
 from rockframe.records.instruments import (
     InstrumentResponses,
-    about_codes,
     check_finite,
     check_unit_or_response,
     codes_of,
+    metadata_of_codes,
     record_of_counts,
 )
 from rockframe.records.reader import (
@@ -234,7 +234,7 @@ def _component(
             raise source.refuse(found=found, expected="miniSEED records that are not damaged")
         counts, time_step, start = joined_traces(source, traces)
         settle_time_step(source, request, time_step, None)
-        metadata: Metadata = {**about_codes(name), "record_time": start}
+        metadata: Metadata = {**metadata_of_codes(name), "record_time": start}
         record = record_of_counts(source, request, counts, time_step, metadata, response)
         if not damage.skipped:
             return record
@@ -296,7 +296,7 @@ def components_of_traces(
         values, time_step, start = joined_traces(source, held)
         check_time_step(source, time_step, None)
         unit, as_read, said = choose_unit(source, request, _stated_unit(held[0].stats), None)
-        metadata = {**about_codes(name), "record_time": start, "unit_as_read": as_read}
+        metadata = {**metadata_of_codes(name), "record_time": start, "unit_as_read": as_read}
         return Record(time_step, values, unit, metadata, warnings=tuple(said))
 
     return [

@@ -8,7 +8,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from rockframe.errors import RecordError, RockframeError
-from rockframe.records.checks import check_no_marks, check_time_step, plausibility
+from rockframe.records.checks import check_no_missing_marks, check_time_step, plausibility
 from rockframe.records.components import (
     EveryComponentError,
     FileComponent,
@@ -145,7 +145,7 @@ def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:
     check_time_step(source, record.time_step, None)
     held = [part for part in (record.samples, record.vertical) if part is not None]
     for samples in held:
-        check_no_marks(source, samples)
+        check_no_missing_marks(source, samples)
     doubts = [plausibility(source, record.time_step, samples, record.unit) for samples in held]
     si = Motion.of_samples(
         record.time_step,

@@ -164,7 +164,7 @@ def report(
         model = str(dataset.attrs["model"])
         heading = given or f"Rocking response, {model} model"
         system = _system_of(dataset, motion)
-        _tell_of_target(target, None if system is None else system.motion, "motion")
+        _warn_of_target(target, None if system is None else system.motion, "motion")
         dataset, reason = certified(dataset, system) if certify else (dataset, "")
         verdict = sections.verdict_section(dataset, reason, chosen)
         body = [page.section("Verdict", [*about.conclusions(), *verdict, *by_codes])]
@@ -173,7 +173,7 @@ def report(
         heading = given or str(dataset.attrs.get("title", "Study"))
         body = [*studies.verdict_sections(dataset, about, chosen, by_codes)]
         found = motions_of(dataset, motions, _OWNER)
-        _tell_of_target(target, found, "motions")
+        _warn_of_target(target, found, "motions")
         if found:
             spectra = spectra_section(found, aim, chosen)
             body.append(page.section("Ground motions", spectra))
@@ -204,7 +204,7 @@ def report(
     return write_file(path, page.KIND, written, overwrite=overwrite, read=read)
 
 
-def _tell_of_target(target: object, found: object, name: str) -> None:
+def _warn_of_target(target: object, found: object, name: str) -> None:
     """Warn of a target without spectra to compare, since no motion is available."""
     if target is not None and not found:
         msg = f"{_OWNER}: no motion is available to compare with the target; pass it by {name}="

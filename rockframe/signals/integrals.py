@@ -61,7 +61,7 @@ def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
     times = signal.times
     seconds = np.arange(0.0, math.ceil(times[-1]) + 1.0)
     at_seconds = np.interp(seconds, times, absolute_velocity_history(signal))
-    parts, starts, _ = _at_turns(signal.pieces)
+    parts, starts, _ = _split_at_extrema(signal.pieces)
     count = len(signal.pieces)  # parts from this number on start at peaks
     times = np.concatenate([times, starts[count:] * signal.time_step])
     size = np.abs(np.concatenate([signal.samples, parts[count:, 0]]))
@@ -106,7 +106,7 @@ def time_between_shares(history: Array, time_step: float, start: float, end: flo
 def exceedance(signal: Signal, level: float) -> tuple[float, float]:
     """Give the time from first to last exceedance of a level [m s^-2], and the total time [s]."""
     first, last, total = np.inf, -np.inf, 0.0
-    pieces, starts, lengths = _at_turns(signal.pieces)
+    pieces, starts, lengths = _split_at_extrema(signal.pieces)
     for side in (1.0, -1.0):
         above = side * pieces
         above[:, 0] -= level
@@ -125,7 +125,7 @@ def exceedance(signal: Signal, level: float) -> tuple[float, float]:
     return bracketed * signal.time_step, total * signal.time_step
 
 
-def _at_turns(pieces: Array) -> tuple[Array, Array, Array]:
+def _split_at_extrema(pieces: Array) -> tuple[Array, Array, Array]:
     """Divide intervals at their extrema; give the parts, their starts and lengths in time steps.
 
     Each part is monotone, so that it crosses a level once at most.

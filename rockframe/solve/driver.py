@@ -72,7 +72,7 @@ def time_of(progress: Progress) -> float:
 
 
 @kernel
-def look_ahead(
+def evaluate_anew(
     equations: BoundEquations, mode: int, tolerance: Vector, progress: Progress, w: Workspace
 ) -> int:
     """Evaluate accelerations and guards anew, after an event or a jump of the ground.
@@ -306,7 +306,7 @@ def run_on(
             status = at.MORE_ROOM
             break
         if stale:
-            broken = look_ahead(equations, known.mode, tolerance, progress, w)
+            broken = evaluate_anew(equations, known.mode, tolerance, progress, w)
             stale, anew = False, True
             if crossed < 0:
                 crossed = broken

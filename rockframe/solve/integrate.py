@@ -16,9 +16,9 @@ from rockframe.compiled import (
     Integers,
     Matrix,
     Vector,
-    say_slow,
     seconds_as_python,
     still_taking,
+    warn_of_slow_run,
 )
 from rockframe.dynamics.events import FLIGHT, FULL
 from rockframe.dynamics.protocol import (
@@ -380,7 +380,7 @@ def integrate(
         if not tables.make_room(counters):
             rows.read_from_steps(tables.close(counters, complete=False))
     if not COMPILED or not runs_as_python(equations):  # else a warning has been given already
-        say_slow(waiting.taken)
+        warn_of_slow_run(waiting.taken)
     steps = tables.close(counters) if keep_steps else None
     if steps is not None:
         rows.read_from_steps(steps)

@@ -20,10 +20,10 @@ from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_level
 from rockframe.studies.fragility.labelling import with_stripes
 from rockframe.studies.fragility.trials import (
+    attributes_of_system,
     check_one_structure,
     laid_out,
     motion_numbers,
-    told_of_system,
 )
 from rockframe.studies.fragility.words import POOLED
 from rockframe.studies.intensities import (
@@ -32,7 +32,7 @@ from rockframe.studies.intensities import (
     measure_in,
     measure_words,
     named_column,
-    told_period,
+    period_attribute,
 )
 from rockframe.studies.limit_states import (
     OVERTURNING,
@@ -274,8 +274,8 @@ def cloud_analysis(
     for one in ("cloud_response", "response_limit"):
         dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))
     dataset.attrs |= {
-        **told_of_system(runs),
-        **told_period(runs, [intensity], period, owner=_OWNER),
+        **attributes_of_system(runs),
+        **period_attribute(runs, [intensity], period, owner=_OWNER),
         "intensity": str(measure.name),
         "response": response if label is None else f"{response} {label}",
         **({POOLED: ", ".join(together)} if together else {}),

@@ -17,8 +17,8 @@ from rockframe.results.variables.studies import MOTION
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
 from rockframe.studies.confidence import read_shares
-from rockframe.studies.fragility.trials import told_of_system
-from rockframe.studies.intensities import PeriodLike, measure_in, told_period
+from rockframe.studies.fragility.trials import attributes_of_system
+from rockframe.studies.intensities import PeriodLike, measure_in, period_attribute
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.lines import SCALE
 from rockframe.studies.sweeps.motions import MotionsLike
@@ -140,9 +140,9 @@ def fractile_curves(
     for one in ("motion_response", "response_fractile", _LEVEL):
         found[one].attrs["units"] = unit
     found["intensity_fractile"].attrs["units"] = measure.attrs.get("units", "1")
-    told = told_period(runs, [intensity], period, owner=_OWNER)
+    told = period_attribute(runs, [intensity], period, owner=_OWNER)
     return found.assign_attrs(
-        {**told_of_system(runs), "intensity": name, **told,
+        {**attributes_of_system(runs), "intensity": name, **told,
          "response": response if label is None else f"{response} {label}",
          "verdict": _sentence(lines, low, high, measure) + _left_out(lines, runs)}
     )  # fmt: skip

@@ -153,7 +153,7 @@ def annual_rate(
     found = found.assign_attrs(
         {**told, "intensity": measure, "confidence": given.attrs.get("confidence", math.nan)}
     )
-    _say_what_lacks(found, curve)
+    _warn_beyond_curve(found, curve)
     return found.assign_attrs(verdict=_sentence(found))
 
 
@@ -357,7 +357,7 @@ def _of_curve(probability: xr.DataArray, along: xr.DataArray, curve: HazardCurve
     return float(_by_points(_interpolated(probability, along), *_finely(curve)).sum())
 
 
-def _say_what_lacks(found: xr.Dataset, curve: HazardCurve) -> None:
+def _warn_beyond_curve(found: xr.Dataset, curve: HazardCurve) -> None:
     """Warn if a part of the rate lies beyond the ends of the hazard curve."""
     unit = unit_behind(found["quantile_intensity"].attrs)
     ends = {"below": curve.intensities[0], "above": curve.intensities[-1]}

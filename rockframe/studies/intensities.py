@@ -216,7 +216,7 @@ def _same_period(runs: xr.Dataset, name: str, period: PeriodLike | None, owner: 
     return known is not None and np.array_equal(np.atleast_1d(known), np.atleast_1d(wanted))
 
 
-def told_period(
+def period_attribute(
     runs: xr.Dataset | None, measures: Iterable[object], period: PeriodLike | None, *, owner: str
 ) -> dict[str, Any]:
     """Give the period of a spectral measure, or those of an average, as an attribute."""

@@ -23,7 +23,7 @@ from rockframe.studies.intensities import (
     measure_in,
     measure_words,
     named_column,
-    told_period,
+    period_attribute,
 )
 from rockframe.studies.limit_states import check_runs, scalar_of
 from rockframe.studies.sweeps.motions import MotionsLike
@@ -129,7 +129,7 @@ def compare_intensities(
     )
     for one, period in listed:
         measure = measure_in(runs, one, period, motions, owner=_OWNER)
-        told = told_period(runs, [one], period, owner=_OWNER)
+        told = period_attribute(runs, [one], period, owner=_OWNER)
         cloud, those, _ = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
         if cloud.line is None:
             msg = (

@@ -203,7 +203,7 @@ def subset_simulation(
         warn(f"{_OWNER}: in further rounds: {sampler.said[0]}", ModelWarning)
     dataset = _labelled(sampler, found, trust, whole=whole)
     if whole:
-        _say_what_is_lacking(dataset)
+        _warn_of_uncertain_probability(dataset)
     return dataset.assign_attrs({
         "title": "Subset simulation of a rocking system",
         "limit_state": state.name,
@@ -342,7 +342,7 @@ def _labelled(
     return samples.assign_attrs({**known, "source": of_levels.attrs["source"]})
 
 
-def _say_what_is_lacking(found: xr.Dataset) -> None:
+def _warn_of_uncertain_probability(found: xr.Dataset) -> None:
     """Warn if the probability has only an upper bound, or is uncertain."""
     families, levels = int(found["family_count"]), found.sizes["sampling_level"]
     if families == 0:

@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.measures import rotated_spectrum
 from rockframe.measures.common import read_inputs
 from rockframe.measures.response import checked_periods, shortest_of, spectra_of
-from rockframe.motion.processing.samples import say_coarse
+from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.signals.arrays import Array
 from rockframe.suites.target import TargetSpectrum, check_target
 from rockframe.suites.value import LabelledMotions
@@ -89,7 +89,7 @@ def candidates_of(
     if periods is not None or conditioned_on is not None:
         every_period = fixed if periods is None else every
         signals = [motion.si.horizontal for motion in suite.values()]
-        say_coarse(signals, shortest_of(every_period), owner=owner)
+        warn_of_coarse_samples(signals, shortest_of(every_period), owner=owner)
     goal = np.log(target.at_seconds(every, owner=owner))
     labels, spectra, events = _spectra(suite, kind, every, target.damping_ratio, owner)
     still = [label for label, row in zip(labels, spectra, strict=True) if not (row > 0.0).all()]

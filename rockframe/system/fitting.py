@@ -184,7 +184,7 @@ def contradictions(parts: Parts) -> list[str]:
         depth = getattr(part, "depth", None) if known else None
         if depth is not None:
             depths[type(part).__name__] = float(depth.m_as("m"))
-    beside = _beside_bodies(parts) if parts.links else []
+    beside = _outside_bodies(parts) if parts.links else []
     if len(depths) < 2 or math.isclose(*depths.values(), rel_tol=_ROUNDING_OF_DEPTHS):
         return beside
     (upper, above), (lower, below) = depths.items()
@@ -202,7 +202,7 @@ def _bodies_of(parts: Parts) -> tuple[BlockSI, ...]:
     return () if parts.block is None else (parts.block.si,)
 
 
-def _beside_bodies(parts: Parts) -> list[str]:
+def _outside_bodies(parts: Parts) -> list[str]:
     """Warn of links at points that are above or below their bodies, or far beside them.
 
     A bracket or the arm of a statue may reach beyond the base, by no more than the body's height.

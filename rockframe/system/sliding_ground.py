@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rockframe.components.bases import Impact
 from rockframe.errors import AssemblyError
-from rockframe.many import largest, plain
+from rockframe.many import largest, python_number
 from rockframe.system.bodies import SupportedBody, load_of, resolve_restitution
 from rockframe.system.fitting import SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Options
@@ -161,8 +161,8 @@ def slips_on_ground(ending: "Ending") -> SlipRange:
         SLIPS,
     )
 
-    residual = plain(ending.state[SLIP])
-    left, right = plain(ending.memory[PEAK_LEFT]), plain(ending.memory[PEAK_RIGHT])
+    residual = python_number(ending.state[SLIP])
+    left, right = python_number(ending.memory[PEAK_LEFT]), python_number(ending.memory[PEAK_RIGHT])
     if ending.mode // SLIPS % BEARINGS < FLIES_RIGHT:
         left, right = largest(left, -residual), largest(right, residual)
     return SlipRange(residual, left, right)

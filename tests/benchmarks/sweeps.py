@@ -125,22 +125,22 @@ def monte_carlo(motion, name, accuracy) -> str:
     """Tell what a case of a random table costs [ms], and how many ran outside lanes."""
     study.FEWEST_IN_LANES = 1
     system, cases = rf.System(BLOCK, *TABLES[name][0]), table(name, DRAWN)
-    run_together = chunk.run_together
-    ways = {"together": run_together, "one by one": lambda *_: iter(())}
+    run_in_lanes = chunk.run_in_lanes
+    ways = {"together": run_in_lanes, "one by one": lambda *_: iter(())}
     least = dict.fromkeys(ways, math.inf)
     job = plan_study(system, motion, {}, cases, accuracy=accuracy).job(range(DRAWN))
     inside = math.inf
     try:
         for _ in range(ROUNDS):
             for way, run in ways.items():
-                chunk.run_together = run
+                chunk.run_in_lanes = run
                 with _loops_timed() as spent:
                     least[way] = min(least[way], _once(lambda: run_chunk(job)))
                 inside = min(inside, spent[0]) if way == "together" else inside
-        chunk.run_together = run_together
+        chunk.run_in_lanes = run_in_lanes
         alone = 1.0 - float(np.mean(run_chunk(job).scalars[DRIVER] == Driver.IN_LANES))
     finally:
-        chunk.run_together = run_together
+        chunk.run_in_lanes = run_in_lanes
     told = ", ".join(f"{way} {1e3 * seconds / DRAWN:.3f} ms" for way, seconds in least.items())
     return f"{told} a case, {1e3 * inside / DRAWN:.3f} ms in lanes; {alone:.1%} outside lanes"
 

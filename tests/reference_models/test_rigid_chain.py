@@ -79,7 +79,7 @@ def landing(pair: Pair, place, speed, touching):
     flying = system.with_bearing(0, 0, 0)
     had = system.energies(flying, state).kinetic
     assert 2.0 * had * upper.mass == pytest.approx(pair.masses @ speed**2, rel=1e-11)
-    new = system.let_bear(flying, closed, 0, 0, state, STILL, memory)
+    new = system.choose_bearing_corners(flying, closed, 0, 0, state, STILL, memory)
     after = system.energies(new, state).kinetic
     assert memory[IMPACT_LOSS] == pytest.approx(had - after, abs=1e-12 * had)
     room = system.places()

@@ -88,5 +88,5 @@ def test_divisions_by_zero_are_left_to_each_case():
 def test_numbers_that_all_cases_share_are_spread():
     assert in_each(2, 3).tolist() == [2.0, 2.0, 2.0]
     assert in_each(Many(X), 400) is X
-    assert many.plain(np.float64(2.0)) == 2.0
-    assert type(many.plain(np.float64(2.0))) is float
+    assert many.python_number(np.float64(2.0)) == 2.0
+    assert type(many.python_number(np.float64(2.0))) is float

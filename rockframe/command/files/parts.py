@@ -105,7 +105,7 @@ def _described(
     unknown = [name for name in table if name not in known_keys]
     declared = {name: one for name, one in declared.items() if name not in inner}
     if not checked(file, where, table, known_keys, declared, hints_of(kind.__init__)):
-        _say_ways(file, where, kind, unknown)
+        _note_others(file, where, kind, unknown)
         return None
     if faulty:
         return None
@@ -160,7 +160,7 @@ def _kind_of(
     return None
 
 
-def _say_ways(file: TomlFile, where: Place, kind: type[Component], unknown: list[str]) -> None:
+def _note_others(file: TomlFile, where: Place, kind: type[Component], unknown: list[str]) -> None:
     """Note which other constructors take the keys that this one does not know."""
     for name in unknown:
         ways = [way for way, one in constructors(kind).items() if name in arguments_of(one)]

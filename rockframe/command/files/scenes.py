@@ -73,9 +73,9 @@ def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion |
     if isinstance(component, list):  # TOML has no tuples
         table["component"] = tuple(component)  # pyright: ignore[reportUnknownArgumentType]
     if isinstance(table.get(_RESPONSE), str):
-        table[_RESPONSE] = file.path_beside(table[_RESPONSE])
+        table[_RESPONSE] = file.path_relative_to(table[_RESPONSE])
     return made(
-        file, where, lambda **rest: GroundMotion.read(file.path_beside(name), **rest), table
+        file, where, lambda **rest: GroundMotion.read(file.path_relative_to(name), **rest), table
     )
 
 
@@ -296,7 +296,7 @@ def _import(file: TomlFile, name: str) -> None:
     if not name.endswith(".py"):
         import_module(name)
         return
-    path = file.path_beside(name)
+    path = file.path_relative_to(name)
     stem = path.stem
     if stem in sys.modules:
         found = getattr(sys.modules[stem], "__file__", None)

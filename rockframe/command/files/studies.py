@@ -117,7 +117,7 @@ def _scene_of(file: TomlFile) -> Described | None:
         file.fault((SCENE,), f"scene must be the path of a file, got {shown(name)}")
         return None
     try:
-        scene = read_scene(file.path_beside(name))
+        scene = read_scene(file.path_relative_to(name))
     except FileError as problem:
         file.fault((SCENE,), f"the scene has faults\n{problem}")
         return None
@@ -164,7 +164,7 @@ def _axes_of(file: TomlFile) -> dict[str, Any]:
     if CASES in file.values:
         name = file.values[CASES]
         try:
-            found[CASES] = read_columns(file.path_beside(str(name)))
+            found[CASES] = read_columns(file.path_relative_to(str(name)))
         except (OSError, ValueError) as problem:
             file.fault((CASES,), f"{name}: the table cannot be read ({problem})")
     return found

@@ -139,7 +139,7 @@ class TomlFile:
             raise FileError(str(place), [(line, words + hint)]) from problem
         return cls(place, values, lines_of(text))
 
-    def path_beside(self, name: str) -> Path:
+    def path_relative_to(self, name: str) -> Path:
         """Give the path of a file to be read, named relative to the folder of this file."""
         self.files.append(self.path_of(name))
         return self.files[-1]

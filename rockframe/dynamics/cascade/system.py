@@ -31,7 +31,7 @@ from rockframe.dynamics.stacked import (
     LOWER_ROTATION,
     UPPER,
     Stacked,
-    tell_of_soil,
+    name_soil_event,
 )
 from rockframe.dynamics.switching import disturbed, lift_by_slip, switch_part
 
@@ -188,16 +188,18 @@ class Cascade(Stacked, Stages):
         new = switch_part(self, self.lower, LOWER, which, mode, state, ground, memory)
         memory[REPINNING_LOSS] = lost + self.mass_ratio * (memory[REPINNING_LOSS] - lost)
         memory[IMPACT_LOSS] = struck + self.mass_ratio * (memory[IMPACT_LOSS] - struck)
-        tell_of_soil(memory)
+        name_soil_event(memory)
         after = self.carried(self.modes_in(new).lower, self.state_of(LOWER, state), 0.0, 0.0, 0.0)
-        self.jolt(
+        self.apply_velocity_jump(
             new, after.velocity_x - before.velocity_x, after.velocity_y - before.velocity_y, state,
             memory,
         )  # fmt: skip
         return disturbed(self, self.upper, UPPER, new, state)
 
     @kernel
-    def jolt(self, mode: int, jump_x: float, jump_y: float, state: Vector, memory: Vector) -> None:
+    def apply_velocity_jump(
+        self, mode: int, jump_x: float, jump_y: float, state: Vector, memory: Vector
+    ) -> None:
         """Apply a jump of the velocity of the cap's top to the upper body, :eq:`eq-carried-jump`.
 
         `jump_x` and `jump_y` are the components of the jump [m s^-1].

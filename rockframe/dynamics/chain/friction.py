@@ -75,7 +75,7 @@ class SlippingChain(SlipperyBases):
             left = which < CORNER_GUARDS
             if memory[LAST_EVENT] == IMPACT:
                 stay_if_small(self, self.on_base(k), k, left, new, state, ground, memory)
-            if self.turns_back(k, left, new, state, ground, memory):
+            if self.reverses_at_once(k, left, new, state, ground, memory):
                 new = self.end_short_slips(new, state, ground, memory)
             new = self.wait(k, left, new, state, ground, memory)
         return new

@@ -20,7 +20,7 @@ from rockframe.dynamics.protocol import (
     ContactModel,
     Ground,
 )
-from rockframe.dynamics.stacked import COLUMNS, CONTACTS, LOWER, tell_of_soil
+from rockframe.dynamics.stacked import COLUMNS, CONTACTS, LOWER, name_soil_event
 from rockframe.dynamics.vibrations import ChainBody
 
 OF_CAP: Final = 4
@@ -38,7 +38,7 @@ class OnCap(Chain):
         new, of_soil = self.switch_body(mode, guard, state, ground, memory), LOWER + 1.0
         names_itself = int(memory[LAST_EVENT]) in (SLIP, STICK, REVERSAL)
         if memory[HELD_PLACE + self.body_count] == of_soil and not names_itself:
-            tell_of_soil(memory)
+            name_soil_event(memory)
         return new
 
 

@@ -124,7 +124,7 @@ class RigidChain(RigidImpulses):
         closed = before | landed | self.resting_corners(mode, state)
         if bore:
             leaving = (LEFT_ONLY if left else RIGHT_ONLY) << 2 * k
-            new = self.let_bear(mode, closed, before, leaving, state, ground, memory)
+            new = self.choose_bearing_corners(mode, closed, before, leaving, state, ground, memory)
             if self.bearing(new) == before & ~leaving and self.bears_alone(before, leaving):
                 new = self.hold_if_jammed(k, left, mode, new, state, ground, memory)
             flies = part.flies(self.part_mode(new, k).contact)
@@ -134,7 +134,7 @@ class RigidChain(RigidImpulses):
                 memory[LAST_EVENT] = SILENT
             return new
         memory[LAST_EVENT] = IMPACT
-        new = self.let_bear(mode, closed, before, 0, state, ground, memory)
+        new = self.choose_bearing_corners(mode, closed, before, 0, state, ground, memory)
         new = self.hold_where_small(closed, new, state, ground, memory)
         return self.rest_where_small(new, state, ground, memory)
 
@@ -285,14 +285,14 @@ class RigidChain(RigidImpulses):
         self.take_back(k, self.shares_of_blow(k, ends, flying, closed, state), flying, state)
         memory[IMPACT_LOSS] += had - self.energies(flying, state).kinetic
         event = memory[LAST_EVENT]
-        new = self.let_bear(free, closed, closed, 0, state, ground, memory)
+        new = self.choose_bearing_corners(free, closed, closed, 0, state, ground, memory)
         new = self.hold_where_small(closed, new, state, ground, memory)
         new = self.rest_where_small(new, state, ground, memory)
         memory[LAST_EVENT] = event
         return new
 
     @kernel
-    def let_bear(
+    def choose_bearing_corners(
         self, mode: int, closed: int, before: int, leaving: int, state: Vector, ground: Ground,
         memory: Vector,
     ) -> int:  # fmt: skip

@@ -72,7 +72,7 @@ class SlippingRigidChain(TriedSlips):
                 new = self.rest_where_small(new, state, ground, memory)
                 new = self.hold_as_far(new, state, ground, memory)
         elif self.is_slippery(k):
-            new = self.switch_beside(mode, guard, state, ground, memory)
+            new = self.switch_on_deformable_base(mode, guard, state, ground, memory)
         elif self.is_rigid(k):
             new = self.switch_contacts(mode, guard, state, ground, memory)
             if memory[LAST_EVENT] in (IMPACT, REST):
@@ -135,7 +135,7 @@ class SlippingRigidChain(TriedSlips):
         return new
 
     @kernel
-    def switch_beside(
+    def switch_on_deformable_base(
         self, mode: int, guard: int, state: Vector, ground: Ground, memory: Vector
     ) -> int:
         """Carry out a contact switch of a body that may slip on a deformable base."""
@@ -159,7 +159,7 @@ class SlippingRigidChain(TriedSlips):
         new = self.hold_as_far(new, state, ground, memory)
         if which < 2 * CORNER_GUARDS:
             left = which < CORNER_GUARDS
-            if self.turns_back(k, left, new, state, ground, memory):
+            if self.reverses_at_once(k, left, new, state, ground, memory):
                 new = self.stop_short_slip(k, new, state, ground, memory)
                 new = self.hold_as_far(new, state, ground, memory)
             new = self.wait(k, left, new, state, ground, memory)

@@ -197,7 +197,7 @@ class SlipperyBases(SlippingBodies):
         return out[BEFORE_HORIZONTAL * k + VERTICAL], slides
 
     @kernel
-    def turns_back(
+    def reverses_at_once(
         self, k: int, left: bool, mode: int, state: Vector, ground: Ground, memory: Vector
     ) -> bool:
         """Whether an end that has lifted off returns immediately, or one that has landed leaves."""

@@ -37,7 +37,7 @@ from rockframe.dynamics.stacked import (
     UPPER,
     Stacked,
     States,
-    tell_of_soil,
+    name_soil_event,
 )
 from rockframe.dynamics.switching import checked_sliding, disturbed, lift_by_slip, switch_part
 
@@ -188,7 +188,7 @@ class Coupled(Stacked, Pair):
             new = switch_part(self, self.upper, UPPER, guard, mode, state, ground, memory)
             return checked_sliding(self, self.lower, LOWER, new, state)
         new = switch_part(self, self.lower, LOWER, guard - count, mode, state, ground, memory)
-        tell_of_soil(memory)
+        name_soil_event(memory)
         return disturbed(self, self.upper, UPPER, new, state)
 
     @kernel

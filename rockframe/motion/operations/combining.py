@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, cast
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning, warn
-from rockframe.motion.operations.following import following, other_motion, say_other_start
+from rockframe.motion.operations.following import following, other_motion, warn_of_other_start
 from rockframe.motion.operations.scaling import times
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.value import Made, MotionValue
@@ -73,7 +73,7 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
             operation={"with_vertical": {"other": None}}, metadata=of_it, same_spectrum=True,
         )  # fmt: skip
     theirs = other_motion(other, si, owner).si
-    say_other_start(motion, other, owner)
+    warn_of_other_start(motion, other, owner)
     count = max(len(motion), len(other))
     upwards = replace(padded(theirs.horizontal, count), time_step=si.time_step, name=VERTICAL)
     verb = "vertical component" if si.vertical is None else "vertical component replaced:"
@@ -159,7 +159,7 @@ def rotated(
     if (angle is None) == (azimuth is None):
         msg = f"{owner}: give either angle or azimuth, for example angle='30 deg'"
         raise ComponentError(msg)
-    say_other_start(motion, other, owner)
+    warn_of_other_start(motion, other, owner)
     own, clockwise = _azimuths(motion, other, owner)
     metadata: dict[str, str | float | None] = {}
     if azimuth is None:

@@ -93,7 +93,7 @@ def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | None]
     return {key: time_after(motion.metadata[key], seconds) for key in known if seconds != 0.0}
 
 
-def say_other_start(motion: MotionValue, other: MotionValue, owner: str) -> None:
+def warn_of_other_start(motion: MotionValue, other: MotionValue, owner: str) -> None:
     """Warn if the files of two motions state different starts."""
     starts = motion.metadata.get(_START), other.metadata.get(_START)
     if not same_start(*starts, motion.si.time_step):

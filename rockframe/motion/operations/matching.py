@@ -12,7 +12,7 @@ import numpy as np
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.motion.matching.iteration import Goal, Matched, changes, match, unusual
 from rockframe.motion.operations.following import following, lost_pieces
-from rockframe.motion.processing.samples import finer, say_coarse
+from rockframe.motion.processing.samples import finer, warn_of_coarse_samples
 from rockframe.motion.value import Made
 from rockframe.proposals import hinted
 from rockframe.signals.spectra import check_cost
@@ -221,7 +221,7 @@ def _check_motion(motion: Any, signal: Signal, goal: Goal, owner: str) -> None:
             "out with window(), or resample it"
         )
         raise ComponentError(msg)
-    say_coarse([replace(signal, polynomials=None)], shortest, owner=owner)
+    warn_of_coarse_samples([replace(signal, polynomials=None)], shortest, owner=owner)
 
 
 def _attributes_of(motion: Any, target: Target, found: Matched) -> dict[str, str | float | int]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rockframe.errors import ComponentError
 from rockframe.motion.operations.following import following
-from rockframe.motion.processing.samples import say_coarse
+from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.value import Made
 from rockframe.proposals import hinted
 from rockframe.records import DOWNWARDS, SENSE, UPWARDS
@@ -182,6 +182,6 @@ def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str])
 def _pseudo_acceleration(across: Signal, seconds: float, damping: float, owner: str) -> float:
     periods = np.array([seconds])
     check_cost(across, periods, owner=owner)
-    say_coarse([across], seconds, owner=owner)
+    warn_of_coarse_samples([across], seconds, owner=owner)
     displacement = spectral_peaks(across, periods, damping)[:, 0]
     return float(pseudo_spectra(across, periods, displacement)[1][0])

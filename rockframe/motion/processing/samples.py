@@ -223,7 +223,7 @@ FEWEST: Final = 10
 _ROUNDING: Final = 1e-9
 
 
-def say_coarse(
+def warn_of_coarse_samples(
     signals: Iterable[Signal], shortest: float, *, owner: str, remedy: str | None = None
 ) -> None:
     """Warn of records that are sampled too coarsely for the shortest period."""

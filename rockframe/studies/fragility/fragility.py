@@ -32,7 +32,7 @@ from rockframe.studies.intensities import (
     PeriodLike,
     measure_in,
     named_column,
-    told_period,
+    period_attribute,
 )
 from rockframe.studies.limit_states import (
     LimitState,
@@ -229,7 +229,7 @@ def fragility(
     dataset = fragility_dataset(
         found, {**over, "limit_state": len(states)},
         [(str(one.name), dict(one.attrs)) for one in measures], means,
-        about | told_period(runs, given, period, owner=_OWNER), fits,
+        about | period_attribute(runs, given, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = dataset.assign_coords(structures.coordinates)
     dataset = with_variables(dataset, labels_of_states(states))
@@ -288,7 +288,7 @@ def _of_counts(
     found = fragility_dataset(
         [StructureTrials(made, runs, 0, len(verdicts))],
         {"limit_state": 1}, [(which.name, which.attributes())], means,
-        about | told_period(None, [measure], period, owner=_OWNER),
+        about | period_attribute(None, [measure], period, owner=_OWNER),
     ).isel(limit_state=0)  # fmt: skip
     return found.assign_attrs(verdict=sentences(found))
 

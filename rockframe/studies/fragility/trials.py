@@ -106,7 +106,7 @@ def check_one_structure(
         raise StudyError(msg)
 
 
-def told_of_system(runs: xr.Dataset) -> dict[str, Any]:
+def attributes_of_system(runs: xr.Dataset) -> dict[str, Any]:
     """Give the attributes that tell of the system of runs, which a sweep may have changed."""
     changed = any(name in runs.coords for name in _changed(_axes(runs), ()))
     names = ("model",) if changed else ("model", "system_json")

@@ -76,7 +76,7 @@ class Axis:
 
 def numbers_of(given: object, measure: Measure, name: str, *, owner: str = OWNER) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
-    given = _beside_own_unit(given)
+    given = _with_own_unit(given)
     if measure.unit == Unit.ONE:
         if (pair := _with_unit(given)) is not None:
             check_own_unit(*pair, owner=owner, name=name)
@@ -95,7 +95,7 @@ def numbers_of(given: object, measure: Measure, name: str, *, owner: str = OWNER
     return np.array(found, dtype=np.float64)
 
 
-def _beside_own_unit(given: object) -> object:
+def _with_own_unit(given: object) -> object:
     """Give an array with an attribute ``units`` beside it, as values and their unit are given."""
     own = None if isinstance(given, pint.Quantity | tuple) else own_unit(given)
     return given if own in (None, "", str(Unit.ONE)) else (given, own)
@@ -125,7 +125,7 @@ def free_values(
 
     A unit of several quantities, such as ``g``, is of that which is `expected`.
     """
-    given = _beside_own_unit(given)
+    given = _with_own_unit(given)
     unit = _unit_in(given)
     if unit is not None:
         measure = _measure_of(unit, name, owner, expected)

@@ -70,7 +70,7 @@ class CasesOfJob:
         return found
 
     @property
-    def go_together(self) -> bool:
+    def can_run_in_lanes(self) -> bool:
         """Whether scenes of many cases can be assembled at once: of parameters, not by a user."""
         return isinstance(self.job.scene, SystemScene)
 
@@ -83,7 +83,7 @@ class CasesOfJob:
         numbers = self._numbers.get(axis.name)
         return values[which[0]] if numbers is None else Many(numbers[which])
 
-    def scene_together(self, which: Places) -> tuple[Assembly, list[str]]:
+    def scene_of_many(self, which: Places) -> tuple[Assembly, list[str]]:
         """Give the scene of many cases; what is warned of is the same in all."""
         values = {axis: self._of(axis, each, which) for axis, each in self._of_scene}
         with collected_warnings() as said:
@@ -92,7 +92,7 @@ class CasesOfJob:
     def unscaled(self, case: int) -> GroundMotion | None:
         """Give the motion of a case before it is scaled; the scene's unless there are others."""
         motion = self.job.motions[self.job.motion_of_case[case]]
-        if motion is None and not self.go_together:  # a function puts it into its systems
+        if motion is None and not self.can_run_in_lanes:  # a function puts it into its systems
             motion = self.scene(case)[0].parts.motion
         return motion
 
@@ -131,9 +131,9 @@ class CasesOfJob:
         start = {axis.parameter: each[case] for axis, each in self._start}
         return system, said, self._plan(system, start, self.motion(case))
 
-    def planned_together(self, which: Places) -> tuple[Assembly, list[str], Plan]:
+    def plan_of_many(self, which: Places) -> tuple[Assembly, list[str], Plan]:
         """Give the same of many cases, with the motion of the first before it is scaled."""
-        system, said = self.scene_together(which)
+        system, said = self.scene_of_many(which)
         start = {axis.parameter: self._of(axis, each, which) for axis, each in self._start}
         return system, said, self._plan(system, start, self.unscaled(int(which[0])))
 

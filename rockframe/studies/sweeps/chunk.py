@@ -29,8 +29,8 @@ from rockframe.studies.sweeps.lanes import (
     Failed,
     Finished,
     FinishedTogether,
+    run_in_lanes,
     run_side_by_side,
-    run_together,
     when_compiled,
 )
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
@@ -124,7 +124,7 @@ def each_run(
     faults: dict[int, Exception] = {}
     if patience is not None:
         ready = when_compiled(patience)
-        for several in run_together(cases, which, stopped, ready):
+        for several in run_in_lanes(cases, which, stopped, ready):
             if isinstance(several, Finished):
                 alone.discard(several.case)
             else:
@@ -225,7 +225,7 @@ class _Collector(CollectedResults):
             self._refuse(run.case, run.problem)
             return
         if isinstance(run, FinishedTogether):
-            self._finish_together(run)
+            self._finish_lanes(run)
             return
         try:
             self._finish(run)
@@ -250,7 +250,7 @@ class _Collector(CollectedResults):
         if self._kept is not None and response is not None and response.answers.values:
             self._put_histories(case, response.answers.values, self._kept)
 
-    def _finish_together(self, run: FinishedTogether) -> None:
+    def _finish_lanes(self, run: FinishedTogether) -> None:
         if np.any(self._status[run.cases] != RunStatus.NOT_RUN):  # of a first run
             self._clear(run.cases)
         self._say(run.cases, "; ".join(run.said) or NONE)

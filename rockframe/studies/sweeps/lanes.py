@@ -198,14 +198,14 @@ class _Batch:
     rows: Any
 
 
-def run_together(
+def run_in_lanes(
     cases: CasesOfJob,
     which: Sequence[int],
     stopped: Callable[[], bool],
     ready: Callable[[LaneScene], bool],
 ) -> Iterator[Finished | FinishedTogether]:
     """Run what can be assembled together; cases are missing that cannot, or need a closer look."""
-    if not cases.go_together:
+    if not cases.can_run_in_lanes:
         return
     kinds: dict[Any, list[_Batch]] = {}
     # what is no number in their scenes, and the length of their motions, is the same in all
@@ -238,7 +238,7 @@ def run_together(
 def _assembled(cases: CasesOfJob, some: Places) -> _Batch:
     """Assemble the scenes of cases; give the row of each for lanes."""
     first = int(some[0])
-    several, one = prepared(*cases.planned_together(some)), prepared(*cases.planned(first))
+    several, one = prepared(*cases.plan_of_many(some)), prepared(*cases.planned(first))
     if several is None or one is None:
         raise OnlyAlone
     rows = rows_of(several.run.model, several.run.begun, len(some))
@@ -300,7 +300,7 @@ def _told(
 
 
 def _summed_up(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedTogether:
-    system, said = cases.scene_together(some)
+    system, said = cases.scene_of_many(some)
     missing: list[str] = []
     if not has_no_cautions(system, summary):
         raise OnlyAlone

@@ -34,7 +34,7 @@ from rockframe.studies.sweeps.motions import MotionsLike
 from rockframe.studies.sweeps.planning import plan_study
 from rockframe.studies.sweeps.store import Store, begin_with
 from rockframe.studies.sweeps.study import Study
-from rockframe.studies.sweeps.words import cases_verdict, not_screened, say_what_is_missing
+from rockframe.studies.sweeps.words import cases_verdict, not_screened, warn_of_missing_results
 from rockframe.system.options import Overturning, OverturningLike, PointsLike, SweepAccuracyLike
 from rockframe.system.own_base import OwnBase
 from rockframe.system.own_scene import OwnScene
@@ -259,7 +259,7 @@ def run_study(
         as_python = _runs_as_python(study)
         chunk = study.chunk_size(workers, as_python=as_python)
     size = whole_number(chunk, owner=OWNER, name="chunk", lowest=1, highest=_LARGEST_CHUNK)
-    _say_how_long(study, workers, as_python=as_python, kept=store is not None)
+    _warn_of_long_study(study, workers, as_python=as_python, kept=store is not None)
     if store is None and known:
         msg = "known cases are copied into the store of the sweep; give store='a folder'"
         raise StudyError(msg)
@@ -273,11 +273,11 @@ def run_study(
     if not study.lazy:
         dataset = not_screened(dataset) if study.handed_over else dataset
         kept = study.histories
-        say_what_is_missing(dataset, () if kept is None else kept.names or ())
+        warn_of_missing_results(dataset, () if kept is None else kept.names or ())
     return dataset, not unfinished
 
 
-def _say_how_long(study: Study, workers: int, *, as_python: bool, kept: bool) -> None:
+def _warn_of_long_study(study: Study, workers: int, *, as_python: bool, kept: bool) -> None:
     """Warn of what takes more than a day."""
     days = study.grid.count * study.time_of_case(as_python=as_python) / workers / _DAY
     if days > 1.0:

@@ -126,7 +126,7 @@ def not_screened(runs: xr.Dataset) -> xr.Dataset:
     return runs.assign_attrs(verdict=f"{said}; {words}.")
 
 
-def say_what_is_missing(dataset: xr.Dataset, histories: Iterable[str]) -> None:
+def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> None:
     """Warn of cases without a result, of cautions, and of histories that no scene has."""
     status = dataset["status"].to_numpy().ravel()
     message = dataset[MESSAGE].to_numpy().ravel()

@@ -5,7 +5,7 @@ import pytest
 from matplotlib import pyplot
 
 import rockframe as rf
-from rockframe.plot._axes import plain_ticks
+from rockframe.plot._axes import label_log_ticks
 from rockframe.results.variables.runs import RunStatus
 
 BLOCK = rf.Block(width="0.25 m", height="1 m", mass="100 kg")
@@ -81,7 +81,7 @@ def test_verdicts_that_are_alike_have_no_indices_and_the_figure_says_so():
 def test_logarithmic_axes_have_three_numbers_at_least(ends):
     _, axes = pyplot.subplots()
     axes.set(xscale="log", xlim=ends)
-    plain_ticks(axes, "x")
+    label_log_ticks(axes, "x")
     axes.figure.canvas.draw()
     places = np.array([one for one in axes.get_xticks() if ends[0] <= one <= ends[1]])
     assert len(places) >= 3

@@ -7,7 +7,7 @@ from kept_sweep import alike
 
 import rockframe as rf
 from rockframe.errors import ModelWarning
-from rockframe.studies.sweeps.words import MOST_ALIKE, say_what_is_missing, summed_up
+from rockframe.studies.sweeps.words import MOST_ALIKE, summed_up, warn_of_missing_results
 
 BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
 PULSE = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
@@ -91,7 +91,7 @@ def test_of_many_cautions_the_most_frequent_is_told():
         values = {"status": np.zeros(5), "peak_rotation": np.zeros(5), "message": np.array(texts)}
         runs = xr.Dataset({name: ("case", some) for name, some in values.items()})
         with pytest.warns(ModelWarning, match=said):
-            say_what_is_missing(runs, ())
+            warn_of_missing_results(runs, ())
 
 
 def test_numbers_of_texts_become_ranges_and_words_stay():

@@ -91,10 +91,10 @@ def both(monkeypatch, scene, cases, motion, **options):
     monkeypatch.setattr(study, "COMPILING_SHARE", float("inf"))
     planned = plan_study(scene, motion, {}, cases, **options)
     job = planned.job(range(planned.grid.count))
-    served, run_together = [0], chunk.run_together
+    served, run_in_lanes = [0], chunk.run_in_lanes
 
     def counted(*arguments):
-        for found in run_together(*arguments):
+        for found in run_in_lanes(*arguments):
             served[0] += len(found.cases) if isinstance(found, FinishedTogether) else 1
             yield found
 
@@ -102,7 +102,7 @@ def both(monkeypatch, scene, cases, motion, **options):
     together = chunk.run_chunk(job)
     monkeypatch.setattr(chunk, "run_together", lambda *_: iter(()))
     alone = chunk.run_chunk(job)
-    monkeypatch.setattr(chunk, "run_together", run_together)
+    monkeypatch.setattr(chunk, "run_together", run_in_lanes)
     return together, alone, served[0]
 
 
