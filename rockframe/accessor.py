@@ -172,19 +172,19 @@ class RockframeAccessor:
         """Contents and outcome of the dataset, in a few lines."""
         from rockframe.results.variables.variable import unit_behind
 
-        given = self._dataset
-        lines = [line for line in (str(given.attrs.get("title", "")), self.verdict) if line]
+        data = self._dataset
+        lines = [line for line in (str(data.attrs.get("title", "")), self.verdict) if line]
         lines += [
-            f"{name}: {given.attrs[name]}"
+            f"{name}: {data.attrs[name]}"
             for name in ("model", "motion", "accuracy")
-            if name in given.attrs
+            if name in data.attrs
         ]
-        if len(given.sizes) > 0:
-            lines.append("over " + ", ".join(f"{dim} ({n})" for dim, n in given.sizes.items()))
+        if len(data.sizes) > 0:
+            lines.append("over " + ", ".join(f"{dim} ({n})" for dim, n in data.sizes.items()))
         for name in _SHOWN:
-            if name in given and given[name].ndim == 0:
-                unit = unit_behind(given[name].attrs)
-                lines.append(f"{name}: {given[name].item():.4g}{unit}")
+            if name in data and data[name].ndim == 0:
+                unit = unit_behind(data[name].attrs)
+                lines.append(f"{name}: {data[name].item():.4g}{unit}")
         return "\n".join(lines)
 
     def __repr__(self) -> str:
@@ -193,8 +193,8 @@ class RockframeAccessor:
     def _repr_html_(self) -> str:
         from rockframe.notebook import card, curve
 
-        given, lines = self._dataset, self.summary.splitlines()
-        kind = str(given.attrs.get("title", ""))
+        value, lines = self._dataset, self.summary.splitlines()
+        kind = str(value.attrs.get("title", ""))
         first = self.verdict or kind or "Dataset"
         rows = {"result": kind} if self.verdict and kind else {}
         for line in lines[bool(kind) + bool(self.verdict) :]:
@@ -202,9 +202,9 @@ class RockframeAccessor:
             if not words.startswith("nan"):
                 rows[name.replace("_", " ")] = words
         for name in ("peak_rotation", "uplift_angle", "overturning_angle"):
-            if name in given and given[name].ndim == 0:
-                rows[name.replace("_", " ")] = f"{math.degrees(given[name].item()):.4g}°"
-        history = given.get("rotation")
+            if name in value and value[name].ndim == 0:
+                rows[name.replace("_", " ")] = f"{math.degrees(value[name].item()):.4g}°"
+        history = value.get("rotation")
         trace = ""
         if history is not None and history.ndim == 1:  # of a case of a sweep, up to its end
             trace = curve(history.dropna(history.dims[0]).to_numpy().tolist())

@@ -56,8 +56,8 @@ def card(title: str, rows: Mapping[str, str], drawing: str = "", more: str = "")
 
 def drawing(shapes: Iterable[Polygon], *, size: float = 130.0) -> str:
     """Draw polygons to scale."""
-    given = list(shapes)
-    places = [point for shape in given for point in shape.points]
+    values = list(shapes)
+    places = [point for shape in values for point in shape.points]
     left, right = min(x for x, _ in places), max(x for x, _ in places)
     low, high = min(y for _, y in places), max(y for _, y in places)
     scale = size / max(right - left, high - low, 1e-12)
@@ -65,7 +65,7 @@ def drawing(shapes: Iterable[Polygon], *, size: float = 130.0) -> str:
     def at(point: tuple[float, float]) -> tuple[float, float]:
         return 4.0 + scale * (point[0] - left), 4.0 + scale * (high - point[1])
 
-    drawn = "".join(_element(shape, [at(point) for point in shape.points]) for shape in given)
+    drawn = "".join(_element(shape, [at(point) for point in shape.points]) for shape in values)
     width, height = scale * (right - left) + 8.0, scale * (high - low) + 8.0
     return _svg(width, height, drawn)
 

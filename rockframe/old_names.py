@@ -40,11 +40,11 @@ def _select_for_target(suite: Any, target: Any, count: int, **arguments: Any) ->
     return _suite(suite).selection_for(target, count, **arguments)
 
 
-def _suite(given: Any) -> Any:
+def _suite(value: Any) -> Any:
     from rockframe.suites import MotionSuite
 
-    plain = isinstance(given, Mapping) and not isinstance(given, MotionSuite)
-    return MotionSuite(given) if plain else given  # pyright: ignore[reportUnknownArgumentType]
+    plain = isinstance(value, Mapping) and not isinstance(value, MotionSuite)
+    return MotionSuite(value) if plain else value  # pyright: ignore[reportUnknownArgumentType]
 
 
 _BECAME: Final[dict[str, tuple[Callable[..., Any], str]]] = {

@@ -35,7 +35,7 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
         any_name = any(one.kind is one.VAR_KEYWORD for one in parameters)
 
         @wraps(function)
-        def call(*given: Any, **named: Any) -> Any:
+        def call(*values: Any, **named: Any) -> Any:
             for name in named:
                 if name in hints:
                     msg = f"{function.__qualname__}() takes no {name!r}: {hints[name]}"
@@ -44,7 +44,7 @@ def hinted(**hints: str) -> Callable[[Function], Function]:
                     words = f"{function.__qualname__}()"
                     raise unexpected_argument(words, name, listed)
             try:
-                return function(*given, **named)
+                return function(*values, **named)
             except TypeError as problem:
                 raise_refused(problem, [*listed, "further named arguments"] if any_name else listed)
                 raise

@@ -70,7 +70,7 @@ def takes(
         shown = whole.replace(parameters=[*first, *shared, *([more] if further else [])])
 
         @wraps(function)
-        def call(*given: Any, **named: Any) -> Any:
+        def call(*values: Any, **named: Any) -> Any:
             others = [name for name in named if name not in whole.parameters]
             if others and further is None:
                 raise ArgumentError(_unknown(function.__qualname__, others[0], whole.parameters))
@@ -82,7 +82,7 @@ def takes(
                     raise ArgumentError(msg)
                 named[further] = {**mapping, **{name: named.pop(name) for name in others}}
             try:
-                return function(*given, **{**otherwise, **named})
+                return function(*values, **{**otherwise, **named})
             except TypeError as problem:
                 raise_refused(problem, whole.parameters)
                 raise

@@ -45,11 +45,11 @@ def rocking_block(
     raise ComponentError(msg)
 
 
-def read_motions(given: object, owner: str) -> dict[str, GroundMotion]:
+def read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
     """Read one motion, or several by their labels."""
-    several = {given.name: given} if isinstance(given, GroundMotion) else given
+    several = {value.name: value} if isinstance(value, GroundMotion) else value
     if not isinstance(several, Mapping):
-        msg = f"{owner}: expected a GroundMotion or several by their labels, got {shown(given)}"
+        msg = f"{owner}: expected a GroundMotion or several by their labels, got {shown(value)}"
         raise ComponentError(msg)
     motions = cast("Mapping[str, GroundMotion]", several)
     check_some(motions, owner=owner)

@@ -39,14 +39,14 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         raise FileError(path, [(None, f"the name ends in {ending!r}; {words}")])
     run = _run_of(arguments, answer)
     outputs = Outputs(arguments, [arguments.dataset], answer)
-    given = typed_options(arguments, "window", "magnify", "title")
+    options = typed_options(arguments, "window", "magnify", "title")
     if ending in _PAGES and arguments.speed is not None:
         msg = "--speed is for films; a page has a choice of speeds"
         raise ComponentError(msg)
     moving: Animation | Player = (
-        player(run, **given)
+        player(run, **options)
         if ending in _PAGES
-        else animation(run, **given, **typed_options(arguments, "speed"))
+        else animation(run, **options, **typed_options(arguments, "speed"))
     )
     try:
         outputs.written_by(

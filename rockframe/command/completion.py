@@ -56,8 +56,8 @@ def script(shell: str) -> str:
 
 def _options(command: Command) -> list[tuple[CommandArgument, str]]:
     """Give the options of a command, each by its long name."""
-    given = (*command.arguments, *EVERYWHERE)
-    return [(one, one.names[-1]) for one in given if one.names[0].startswith("-")]
+    values = (*command.arguments, *EVERYWHERE)
+    return [(one, one.names[-1]) for one in values if one.names[0].startswith("-")]
 
 
 def _choices(command: Command) -> list[str]:

@@ -30,14 +30,14 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Find the least scale that overturns, and report the intensity at this scale."""
     found = scene_from(arguments, moved=True)
     outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
-    given: dict[str, Any] = {
+    values: dict[str, Any] = {
         "intensity": _USUAL,
         **typed_options(arguments, "largest", "runs", "intensity", "period"),
         **taken_by(critical_scale, found.run),
     }
     if arguments.runs is not None:
-        given["scales"] = max(2, min(arguments.runs, _FIRST))
-    dataset = analysed(critical_scale, found, found.motion, given, arguments)
+        values["scales"] = max(2, min(arguments.runs, _FIRST))
+    dataset = analysed(critical_scale, found, found.motion, values, arguments)
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Motion", motion_words(dataset.attrs))
     answer.says("Verdict", dataset.attrs["verdict"])

@@ -41,11 +41,11 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if found is None:
         runs = _runs_of_study(arguments)
     else:
-        given: dict[str, Any] = {"store": found.store, **found.arguments}
-        if AXES not in given and CASES not in given:
-            given[AXES] = {SCALE: _USUAL}
+        values: dict[str, Any] = {"store": found.store, **found.arguments}
+        if AXES not in values and CASES not in values:
+            values[AXES] = {SCALE: _USUAL}
         try:
-            runs = analysed(sweep, found, found.motions, given, arguments)
+            runs = analysed(sweep, found, found.motions, values, arguments)
         except StudyError as problem:
             raise found.at_lines(problem) from problem
     dataset = fragility(runs, **typed_intensity(arguments, fragility))

@@ -43,7 +43,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         raise FileError(arguments.scene, [(None, f"{words}; 'fragility' fits each structure")])
     if KNOWN in found.arguments:
         raise FileError(arguments.scene, [(None, f"a dynamic analysis takes no {KNOWN!r} stores")])
-    given: dict[str, Any] = {
+    values: dict[str, Any] = {
         "intensity": _USUAL,
         "store": found.store,
         **taken_by(incremental_dynamic_analysis, found.arguments),
@@ -51,7 +51,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         AXES: axes,
         **typed_intensity(arguments, incremental_dynamic_analysis),
     }
-    dataset = analysed(incremental_dynamic_analysis, found, found.motions, given, arguments)
+    dataset = analysed(incremental_dynamic_analysis, found, found.motions, values, arguments)
     answer.says("Verdict", dataset.attrs["verdict"])
     answer.subject("Scene", system_words(found.system))
     fitted = fragility(dataset, dataset.attrs["intensity"], trials="capacities",

@@ -26,9 +26,9 @@ WRONG_INPUT: Final = 2
 INTERRUPTED: Final = 130
 
 
-def main(given: Sequence[str] | None = None) -> int:
+def main(values: Sequence[str] | None = None) -> int:
     """Run the command line, and give its exit code."""
-    typed = list(sys.argv[1:] if given is None else given)
+    typed = list(sys.argv[1:] if values is None else values)
     StandardInput.taken_by = ""
     problem = misspelt(typed)
     if problem is not None:
@@ -101,17 +101,17 @@ def _carried_out(arguments: "Namespace", who: str, heard: list[int]) -> int:
 
 def _print(answer: "Answer", code: int, error: str, who: str) -> bool:
     """Print the results of a command; false where they could not be written."""
-    told = answer.json(code, error) if answer.as_json else answer.printed(error)
+    text = answer.json(code, error) if answer.as_json else answer.printed(error)
     if sys.stdout is None:  # closed before the command began
         return True
     try:
         if answer.data is not None:  # the file takes the standard output, so text goes to the other
             sys.stdout.buffer.write(answer.data)
             sys.stdout.flush()
-            print(told, end="", file=sys.stderr)
+            print(text, end="", file=sys.stderr)
             return True
         encoding = sys.stdout.encoding or "utf-8"
-        print(told.encode(encoding, "replace").decode(encoding), end="", flush=True)
+        print(text.encode(encoding, "replace").decode(encoding), end="", flush=True)
     except OSError as problem:
         # otherwise Python writes again when it exits, and reports the error a second time
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

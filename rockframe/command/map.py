@@ -39,14 +39,14 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Run pulses of all amplitudes and frequencies, and report which of them overturn."""
     found = read_scene(arguments.scene)
     outputs = Outputs(arguments, found.files, answer, output=_RESULT, picture=PICTURE)
-    given: dict[str, Any] = {
+    values: dict[str, Any] = {
         "store": store_from(arguments),
         **taken_by(overturning_map, run_from(found.run, arguments)),
         "amplitude": values_of(arguments.amplitude, "--amplitude", "1:10:0.5 m/s^2"),
         "frequency": values_of(arguments.frequency, "--frequency", "0.5:4:0.25 Hz"),
     }
     pulse, words = _pulse(found, arguments.pulse)
-    dataset = analysed(overturning_map, found, pulse, given, arguments)
+    dataset = analysed(overturning_map, found, pulse, values, arguments)
     answer.says("Verdict", dataset.attrs["verdict"])
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Pulse", words)
@@ -90,13 +90,13 @@ def _lines(dataset: xr.Dataset) -> list[str]:
     for number, frequency in enumerate(dataset["frequency"].to_numpy()):
         one = dataset.isel(frequency=number)
         ends = zip(one["amplitude_above"].to_numpy(), one["impacts_above"].to_numpy(), strict=True)
-        told = [f"{at:.4g} {_way(impacts)}" for at, impacts in ends if at == at]
+        text = [f"{at:.4g} {_way(impacts)}" for at, impacts in ends if at == at]
         falls = overturns(one).to_numpy()
         lacking = int(np.isnan(falls).sum())
         ways = "overturns" if (falls == 1.0).any() else "stands"
-        told = told or [f"none: {ways} throughout" if lacking < falls.size else "none"]
-        told += [f"{lacking} of {falls.size} without a verdict"] if lacking else []
-        lines.append(f"  {frequency:<16.4g} {', '.join(told)}")
+        text = text or [f"none: {ways} throughout" if lacking < falls.size else "none"]
+        text += [f"{lacking} of {falls.size} without a verdict"] if lacking else []
+        lines.append(f"  {frequency:<16.4g} {', '.join(text)}")
     return lines
 
 

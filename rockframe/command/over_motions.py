@@ -39,19 +39,19 @@ def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
         found = replace(found, motions=dict(suite.items()), files=files)
     if found.motions is None:
         raise FileError(arguments.scene, [(None, _NO_MOTIONS)])
-    given = run_from(found.arguments, arguments)
+    values = run_from(found.arguments, arguments)
     if arguments.scales is not None:
         scales, _ = values_of(arguments.scales, "--scales", "0.25:4:0.25")
-        given[AXES] = {**given.get(AXES, {}), SCALE: scales}
-    return replace(found, arguments=given, store=store_from(arguments) or found.store)
+        values[AXES] = {**values.get(AXES, {}), SCALE: scales}
+    return replace(found, arguments=values, store=store_from(arguments) or found.store)
 
 
 def typed_intensity(arguments: argparse.Namespace, function: Callable[..., Any]) -> dict[str, Any]:
     """Give the intensity and the limit states that were typed."""
-    given = typed_options(arguments, "intensity", "period")
+    options = typed_options(arguments, "intensity", "period")
     if arguments.limits is not None:
-        given["limits"] = [_limit(word.strip()) for word in arguments.limits.split(",")]
-    return taken_by(function, given)
+        options["limits"] = [_limit(word.strip()) for word in arguments.limits.split(",")]
+    return taken_by(function, options)
 
 
 def _limit(word: str) -> object:

@@ -84,9 +84,9 @@ def _checks(
     Checks that were typed replace those in the file of the scene. The latter are left out where
     the motions are missing; the report mentions this.
     """
-    asked = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}"))).get(CHECKS, ())
+    requested = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}"))).get(CHECKS, ())
     required = bool(typed)
-    typed = typed or [check_of(one, CHECKS) for one in asked]
+    typed = typed or [check_of(one, CHECKS) for one in requested]
     if not typed:
         return []
     try:

@@ -47,15 +47,15 @@ _LONGEST_HEAD: Final = 65536
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
     """Read the file of a motion with the options for reading."""
-    given = typed_options(arguments, "component", "unit", "time_step")
-    return GroundMotion.read(opened(path, "a record"), **given)
+    options = typed_options(arguments, "component", "unit", "time_step")
+    return GroundMotion.read(opened(path, "a record"), **options)
 
 
 def suite_from(paths: Sequence[str], arguments: argparse.Namespace) -> MotionSuite:
     """Read all records of files, archives and folders."""
     files = [opened(path, "a record") for path in paths]
-    given = files[0] if len(files) == 1 else files
-    return read_suite(given, unit=arguments.unit, time_step=arguments.time_step)
+    value = files[0] if len(files) == 1 else files
+    return read_suite(value, unit=arguments.unit, time_step=arguments.time_step)
 
 
 def motions_from(arguments: argparse.Namespace) -> Mapping[str, GroundMotion]:
@@ -97,10 +97,10 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
 def refuse_of_record(arguments: argparse.Namespace, way: str) -> None:
     """Refuse options on how a record is read, where no record is named."""
     for name in ("component", "unit", "time_step"):
-        given = getattr(arguments, name, None)
-        if given is not None:
+        values = getattr(arguments, name, None)
+        if values is not None:
             option = f"--{name.replace('_', '-')}"
-            msg = f"{option} {given}: this says how a record is read; {way}"
+            msg = f"{option} {values}: this says how a record is read; {way}"
             raise ComponentError(msg)
 
 
@@ -134,8 +134,8 @@ def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, 
 
 def typed_options(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
     """Give the options that were typed, by their names."""
-    given = {name: getattr(arguments, name) for name in names}
-    return {name: value for name, value in given.items() if value is not None}
+    values = {name: getattr(arguments, name) for name in names}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def store_from(arguments: argparse.Namespace) -> Path | None:
@@ -184,12 +184,12 @@ def analysed(
     analysis: Callable[..., xr.Dataset],
     found: Any,
     motions: object,
-    given: Mapping[str, Any],
+    values: Mapping[str, Any],
     arguments: argparse.Namespace,
 ) -> xr.Dataset:
     """Analyse what a file describes, with a progress bar."""
     with bar_for(arguments.command, quiet=arguments.quiet) as bar:
-        dataset = analysis(found.system, motions, **given, progress=bar)
+        dataset = analysis(found.system, motions, **values, progress=bar)
     return with_project(dataset, found.project)
 
 
@@ -367,12 +367,12 @@ def _accuracy(text: str, command: str) -> str | float:
     if text == SCREEN and command in _SCREENING:
         return text
     try:
-        given: str | float = float(text)
+        value: str | float = float(text)
     except ValueError:
-        given = text
+        value = text
     try:
-        accuracy_of(given, owner="--accuracy")
+        accuracy_of(value, owner="--accuracy")
     except SolverError as problem:
         words = str(problem).replace(" or an Accuracy(...)", "")
         raise ComponentError(re.sub("^Accuracy: ", "--accuracy: ", words)) from problem
-    return given
+    return value

@@ -64,8 +64,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 def _print_how_to_continue(store: Path | None, typed: list[str]) -> None:
     """Print the command that continues an interrupted study."""
     words = ["rockframe", *typed]
-    told = "this command continues it"
+    text = "this command continues it"
     if store is None:
         words += ["--store", "study"]
-        told = "without a store all has to be run again; with a store it could continue"
-    tell("rockframe study", f"interrupted; {told}: {shlex.join(words)}")
+        text = "without a store all has to be run again; with a store it could continue"
+    tell("rockframe study", f"interrupted; {text}: {shlex.join(words)}")

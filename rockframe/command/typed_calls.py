@@ -43,8 +43,8 @@ def called(
     functions: Mapping[str, Callable[..., Made]], words: Sequence[str], option: str, *before: object
 ) -> Made:
     """Call a function by its name, with the arguments `before` and then those that were typed."""
-    function, given = call_of(functions, words, option, len(before))
-    return function(*before, **given)
+    function, value = call_of(functions, words, option, len(before))
+    return function(*before, **value)
 
 
 def call_of(
@@ -59,15 +59,15 @@ def call_of(
     function = functions[name]
     first = tuple(arguments_of(function))[:before]
     known = arguments_of(function, without=first)
-    given = values_by_name(typed, option, f"{next(iter(known))}=...")
-    unknown = [one for one in given if one not in known]
-    lacking = [one for one, needed in known.items() if needed and one not in given]
+    value = values_by_name(typed, option, f"{next(iter(known))}=...")
+    unknown = [one for one in value if one not in known]
+    lacking = [one for one, needed in known.items() if needed and one not in value]
     if unknown or lacking:
-        said = f"has no {unknown[0]!r}{nearest(unknown[0], known)}" if unknown else ""
-        said = said or f"needs {lacking[0]}=..."
-        msg = f"{option}: {name} {said}; it takes {', '.join(known)}"
+        message = f"has no {unknown[0]!r}{nearest(unknown[0], known)}" if unknown else ""
+        message = message or f"needs {lacking[0]}=..."
+        msg = f"{option}: {name} {message}; it takes {', '.join(known)}"
         raise ComponentError(msg)
-    return function, {one: _value(text) for one, text in given.items()}
+    return function, {one: _value(text) for one, text in value.items()}
 
 
 def check_of(text: str, option: str) -> list[str]:

@@ -56,10 +56,10 @@ _LINKS: Final[dict[type, str]] = {
 """Words for links; links of a user's own are named by their classes."""
 
 
-def check_system(given: object, owner: str) -> None:
+def check_system(value: object, owner: str) -> None:
     """Refuse anything but a System."""
-    if not isinstance(given, System):
-        msg = f"{owner}: system needs a System, got {type(given).__name__}"
+    if not isinstance(value, System):
+        msg = f"{owner}: system needs a System, got {type(value).__name__}"
         raise ComponentError(msg)
 
 
@@ -167,9 +167,9 @@ def _holding(part: Component) -> Component:
     return part
 
 
-def _bases(given: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dict[str, Component]]:
+def _bases(arguments: Mapping[str, Any], slots: tuple[str, ...]) -> Iterator[dict[str, Component]]:
     """Give the bases of a model: for users' own bases the simpler ones, then the own ones."""
-    bases = {slot: given[slot] for slot in ("pads", "soil") if slot in slots}
+    bases = {slot: arguments[slot] for slot in ("pads", "soil") if slot in slots}
     simpler = {
         slot: part.simpler() if isinstance(part, OwnBase) else () for slot, part in bases.items()
     }

@@ -132,11 +132,11 @@ def recommend(
     return Recommendation(model, accuracy, met, sentence)
 
 
-def _checked(given: object) -> xr.Dataset:
-    if isinstance(given, xr.Dataset):
-        return given
+def _checked(value: object) -> xr.Dataset:
+    if isinstance(value, xr.Dataset):
+        return value
     msg = (
-        f"{_OWNER}: found {shown(given)}; expected a comparison of models, "
+        f"{_OWNER}: found {shown(value)}; expected a comparison of models, "
         "as rockframe.tradeoff(system, motion) gives it"
     )
     raise SchemaError(msg)

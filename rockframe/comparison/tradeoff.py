@@ -176,13 +176,13 @@ def tradeoff(
     models_of_scene = model_ladder(system)
     chosen = _chosen(models_of_scene, models)
     alone = isinstance(accuracies, str | float | int | Accuracy)
-    given: list[Any] = [accuracies] if alone else several(
+    entries: list[Any] = [accuracies] if alone else several(
         accuracies, owner=_OWNER, name="accuracies", of="accuracies"
     )  # fmt: skip
-    if not given:
+    if not entries:
         msg = f"{_OWNER}: accuracies must be one or more, got {shown(accuracies)}"
         raise ComponentError(msg)
-    settings = {_label(accuracy): accuracy_of(accuracy, owner=_OWNER) for accuracy in given}
+    settings = {_label(accuracy): accuracy_of(accuracy, owner=_OWNER) for accuracy in entries}
     record = system.motion if motion is None else motion
 
     def plan(scene: System, accuracy: Accuracy) -> Plan:
@@ -276,24 +276,24 @@ def _timed(scene: System, plan: Plan) -> float:
 def _chosen(known: dict[str, System], models: object) -> dict[str, System]:
     if models is None:
         return known
-    asked = several(models, owner=_OWNER, name="models", of="models")
-    unknown = [name for name in asked if not isinstance(name, str) or name not in known]
-    if unknown or not asked:
+    requested = several(models, owner=_OWNER, name="models", of="models")
+    unknown = [name for name in requested if not isinstance(name, str) or name not in known]
+    if unknown or not requested:
         names = ", ".join(repr(name) for name in known)
         near = nearest(unknown[0], known) if unknown else ""
-        msg = f"{_OWNER}: models must be some of {names}, got {shown(asked)}{near}"
+        msg = f"{_OWNER}: models must be some of {names}, got {shown(requested)}{near}"
         raise ComponentError(msg)
-    return {name: known[name] for name in asked}
+    return {name: known[name] for name in requested}
 
 
-def _label(given: AccuracyLike) -> str:
-    if isinstance(given, float):
-        return f"rtol {float(given)!r}"
-    if isinstance(given, Accuracy):
+def _label(value: AccuracyLike) -> str:
+    if isinstance(value, float):
+        return f"rtol {float(value)!r}"
+    if isinstance(value, Accuracy):
         changed = (
-            f"{field.name} {getattr(given, field.name)}"
-            for field in fields(given)
-            if getattr(given, field.name) != field.default
+            f"{field.name} {getattr(value, field.name)}"
+            for field in fields(value)
+            if getattr(value, field.name) != field.default
         )
         return ", ".join(changed)
-    return str(given)
+    return str(value)

@@ -234,9 +234,9 @@ def forget_code(file: Path) -> None:
 
 def folders() -> list[Path]:
     """Give the folders that the store may be in, the preferred one first."""
-    given = os.environ.get("ROCKFRAME_CACHE_DIR")
-    if given:
-        return [Path(given)]
+    value = os.environ.get("ROCKFRAME_CACHE_DIR")
+    if value:
+        return [Path(value)]
     if sys.platform == "win32":
         own = os.environ.get("LOCALAPPDATA", "~/AppData/Local")
     elif sys.platform == "darwin":

@@ -42,12 +42,12 @@ class OneOf:
         object.__setattr__(self, "ways", split)
         object.__setattr__(self, "required", required)
 
-    def check(self, given: Mapping[str, object], owner: str) -> None:
+    def check(self, values: Mapping[str, object], owner: str) -> None:
         """Refuse arguments that give the quantity twice, or not at all.
 
         Parameters
         ----------
-        given : mapping
+        values : mapping
             Arguments by name; None for those not given.
         owner : str
             Class, for the message.
@@ -57,7 +57,7 @@ class OneOf:
         ComponentError
             More than one way is used; none, although one is required; or one incompletely.
         """
-        taken = [way for way in self.ways if given.get(way[0]) is not None]
+        taken = [way for way in self.ways if values.get(way[0]) is not None]
         heads = " or ".join(way[0] for way in self.ways)
         pair = len(self.ways) == 2
         if len(taken) > 1 and not self.required:
@@ -70,7 +70,7 @@ class OneOf:
             msg = f"{owner}: give {heads}; {'neither' if pair else 'none'} was given"
             raise ComponentError(msg)
         for way in self.ways:
-            there = [name for name in way if given.get(name) is not None]
+            there = [name for name in way if values.get(name) is not None]
             if 0 < len(there) < len(way):
                 found = f"only {' and '.join(there)} {'was' if len(there) == 1 else 'were'} given"
                 msg = f"{owner}: {' and '.join(way)} go together; {found}"

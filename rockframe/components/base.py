@@ -110,8 +110,8 @@ class Component(metaclass=Proposing):
             cls.__doc__ = with_parameters(cls.__doc__, cls._declared.values())
         register_class(cls)
 
-    def __init__(self, **given: object) -> None:
-        self._fill(given)
+    def __init__(self, **values: object) -> None:
+        self._fill(values)
         self._warn()
 
     def _warn(self) -> None:
@@ -128,32 +128,32 @@ class Component(metaclass=Proposing):
         """
         return [f"{type(self).__name__}: {words}" for words in self._cautions()]
 
-    def _fill(self, given: Mapping[str, object]) -> None:
+    def _fill(self, values: Mapping[str, object]) -> None:
         """Check and store the arguments of the constructor."""
-        every = _every_argument(type(self), given)
+        every = _every_argument(type(self), values)
         owner = self._owner(every)
         self._check(every, owner)
         self._hold({name: one.accept(every[name], owner) for name, one in self._declared.items()})
 
     def _hold(self, values: Mapping[str, object]) -> None:
         """Store values in SI units, and the numbers derived from them."""
-        given = SIValues(**values)
-        object.__setattr__(self, "given", given)
-        object.__setattr__(self, "si", self._numbers(given))
+        items = SIValues(**values)
+        object.__setattr__(self, "given", items)
+        object.__setattr__(self, "si", self._numbers(items))
 
     @classmethod
-    def _owner(cls, given: Mapping[str, object]) -> str:
+    def _owner(cls, values: Mapping[str, object]) -> str:
         """Give the name of the component for messages."""
         return cls.__name__
 
-    def _check(self, given: Mapping[str, object], owner: str) -> None:
+    def _check(self, values: Mapping[str, object], owner: str) -> None:
         """Refuse arguments that exclude one another."""
         for alternative in self.alternatives:
-            alternative.check(given, owner)
+            alternative.check(values, owner)
 
-    def _numbers(self, given: SIValues) -> Any:
+    def _numbers(self, numbers: SIValues) -> Any:
         """Give the numbers for the equations; refuse values that do not fit together."""
-        return given
+        return numbers
 
     def _cautions(self) -> list[str]:
         """Give a text for each unusual value."""
@@ -194,8 +194,8 @@ class Component(metaclass=Proposing):
         return hash((type(self), tuple(self._arguments().items())))
 
     def __repr__(self) -> str:
-        given = ", ".join(f"{name}={value!r}" for name, value in self._arguments().items())
-        return f"{type(self).__name__}({given})"
+        argument = ", ".join(f"{name}={value!r}" for name, value in self._arguments().items())
+        return f"{type(self).__name__}({argument})"
 
     def _shapes(self) -> list[Polygon]:
         """Give the polygons that notebooks draw, to scale; none if it has no shape."""
@@ -427,24 +427,24 @@ def replaced(
     return {**{name: value for name, value in arguments.items() if name not in gone}, **changes}
 
 
-def _every_argument(kind: type[Component], given: Mapping[str, object]) -> dict[str, object]:
+def _every_argument(kind: type[Component], values: Mapping[str, object]) -> dict[str, object]:
     """Add defaults to arguments; refuse unknown and missing ones as Python does."""
     declared = kind._declared  # pyright: ignore[reportPrivateUsage]
     call = f"{kind.__qualname__}.__init__()"
-    for name in given:
+    for name in values:
         if name not in declared:
             raise unexpected_argument(call, name, declared)
     missing = [
         repr(name)
         for name, one in declared.items()
-        if one.default is REQUIRED and name not in given
+        if one.default is REQUIRED and name not in values
     ]
     if missing:
         count = f"{len(missing)} required keyword-only argument{'s' if len(missing) > 1 else ''}"
         msg = f"{call} missing {count}: {' and '.join(missing)}"
         raise ArgumentError(msg)
     defaults = {name: _default(one, None) for name, one in declared.items()}
-    return {**defaults, **given}
+    return {**defaults, **values}
 
 
 def _default(one: Declared[Any, Any], required: object) -> object:
@@ -456,13 +456,13 @@ def _default(one: Declared[Any, Any], required: object) -> object:
 def _constructor(kind: type[Component]) -> Any:
     """Make a constructor with the signature of the declarations."""
 
-    def __init__(self: Component, *strange: object, **given: object) -> None:  # noqa: N807
+    def __init__(self: Component, *strange: object, **values: object) -> None:  # noqa: N807
         if strange:
             names = ", ".join(kind._declared)  # pyright: ignore[reportPrivateUsage]
             call, count = f"{kind.__qualname__}.__init__()", 1 + len(strange)
             msg = f"{call} takes 1 positional argument but {count} were given. It takes {names}"
             raise ArgumentError(msg)
-        Component.__init__(self, **given)
+        Component.__init__(self, **values)
 
     __init__.hints = {}  # type: ignore[attr-defined]  # it explains unknown arguments itself
 

@@ -105,8 +105,8 @@ class RigidGround(Component):
             impact=impact,
         )
 
-    def _numbers(self, given: SIValues) -> SIValues:
-        return check_frictions("RigidGround", given)
+    def _numbers(self, numbers: SIValues) -> SIValues:
+        return check_frictions("RigidGround", numbers)
 
 
 class TwoSpringSupport(Component):
@@ -197,8 +197,8 @@ class TwoSpringSupport(Component):
             kinetic_friction=kinetic_friction,
         )
 
-    def _numbers(self, given: SIValues) -> SIValues:
-        return check_frictions("TwoSpringSupport", given)
+    def _numbers(self, numbers: SIValues) -> SIValues:
+        return check_frictions("TwoSpringSupport", numbers)
 
 
 @dataclass(frozen=True)
@@ -275,10 +275,10 @@ class CushionCap(Component):
         half = 0.5 * si.width
         return [Polygon("cap", [(-half, 0.0), (half, 0.0), (half, si.height), (-half, si.height)])]
 
-    def _numbers(self, given: SIValues) -> CushionCapSI:
-        by_density = given.density is not None
-        per_width = given.density * given.depth * given.height if by_density else None
-        return CushionCapSI(given.width, given.height, given.mass, per_width)
+    def _numbers(self, numbers: SIValues) -> CushionCapSI:
+        by_density = numbers.density is not None
+        per_width = numbers.density * numbers.depth * numbers.height if by_density else None
+        return CushionCapSI(numbers.width, numbers.height, numbers.mass, per_width)
 
 
 class Separation(StrEnum):
@@ -370,8 +370,8 @@ class WinklerSoil(Component):
             kinetic_friction=kinetic_friction,
         )
 
-    def _numbers(self, given: SIValues) -> SIValues:
-        return check_frictions("WinklerSoil", given)
+    def _numbers(self, numbers: SIValues) -> SIValues:
+        return check_frictions("WinklerSoil", numbers)
 
     @classmethod
     def from_subgrade_modulus(

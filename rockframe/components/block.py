@@ -339,20 +339,20 @@ class Block(Component):
             behind.append("centre_height")
         return tuple(behind)
 
-    def _numbers(self, given: SIValues) -> BlockSI:
+    def _numbers(self, numbers: SIValues) -> BlockSI:
         owner = type(self).__name__
-        height = 0.5 * given.height if given.centre_height is None else given.centre_height
-        beside = 0.0 if given.eccentricity is None else given.eccentricity
-        check_centre(given.width, given.height, height, beside, owner)
-        diagonal = hypot(given.width, 2.0 * height)
-        mu: float = given.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
-        if given.inertia is not None:
-            mu = given.mass * diagonal * (diagonal / (4.0 * given.inertia))
-        elif given.shape_factor is None and height != 0.5 * given.height:
+        height = 0.5 * numbers.height if numbers.centre_height is None else numbers.centre_height
+        beside = 0.0 if numbers.eccentricity is None else numbers.eccentricity
+        check_centre(numbers.width, numbers.height, height, beside, owner)
+        diagonal = hypot(numbers.width, 2.0 * height)
+        mu: float = numbers.shape_factor or SOLID_RECTANGLE_SHAPE_FACTOR
+        if numbers.inertia is not None:
+            mu = numbers.mass * diagonal * (diagonal / (4.0 * numbers.inertia))
+        elif numbers.shape_factor is None and height != 0.5 * numbers.height:
             # the inertia of the solid rectangle by default
-            whole = hypot(given.width, given.height)
+            whole = hypot(numbers.width, numbers.height)
             mu *= (diagonal / whole) ** 2
-        si = BlockSI(given.width, given.height, given.mass, mu, height, beside)
+        si = BlockSI(numbers.width, numbers.height, numbers.mass, mu, height, beside)
         check_representable(si, type(self).__name__)
         return si
 
@@ -496,16 +496,16 @@ class Block(Component):
 
 
 def _pair(
-    owner: str, given: object, height: object, eccentricity: object
+    owner: str, value: object, height: object, eccentricity: object
 ) -> tuple[QuantityLike, QuantityLike]:
     """Read the position of the centre of mass: height above the base, and eccentricity."""
     if height is not None or eccentricity is not None:
         msg = f"{owner}: centre_of_mass gives centre_height and eccentricity; give it alone"
         raise ComponentError(msg)
-    if isinstance(given, tuple | list) and len(cast("tuple[object, ...]", given)) == 2:
-        return cast("tuple[QuantityLike, QuantityLike]", given)
+    if isinstance(value, tuple | list) and len(cast("tuple[object, ...]", value)) == 2:
+        return cast("tuple[QuantityLike, QuantityLike]", value)
     msg = (
         f"{owner}: centre_of_mass needs two lengths, the height above the base and the distance "
-        f"to the right of its middle, such as ('0.7 m', '0.05 m'); got {shown(given)}"
+        f"to the right of its middle, such as ('0.7 m', '0.05 m'); got {shown(value)}"
     )
     raise ComponentError(msg)

@@ -232,16 +232,16 @@ class FrameEquivalent(Block):
         >>> rf.FrameEquivalent.from_dict(frame.to_dict()) == frame
         True
         """
-        given = cls._described(arguments)
-        if not {"members", "density"} & set(given):
-            return super().from_dict(given)
-        if "members" in given:
+        values = cls._described(arguments)
+        if not {"members", "density"} & set(values):
+            return super().from_dict(values)
+        if "members" in values:
             try:
-                given["members"] = json.loads(given["members"])
+                values["members"] = json.loads(values["members"])
             except (TypeError, ValueError) as problem:
-                msg = f"found members {shown(given['members'])}; expected a list in JSON"
+                msg = f"found members {shown(values['members'])}; expected a list in JSON"
                 raise SchemaError(msg) from problem
-        return cls._of_members(**given)
+        return cls._of_members(**values)
 
     def replace(self, **changes: Any) -> Self:
         """Build a frame with some parameters changed.
@@ -372,14 +372,14 @@ class FrameEquivalent(Block):
         object.__setattr__(frame, "_building", building)
         return frame
 
-    def _check(self, given: Mapping[str, object], owner: str) -> None:
-        if given["shape_factor"] is None and given["inertia"] is None:
+    def _check(self, values: Mapping[str, object], owner: str) -> None:
+        if values["shape_factor"] is None and values["inertia"] is None:
             msg = (
                 f"{owner}: give shape_factor or inertia, neither was given; a frame "
                 "is hollow, so that the solid rectangle's 3 is not assumed"
             )
             raise ComponentError(msg)
-        super()._check(given, owner)
+        super()._check(values, owner)
 
     def _cautions(self) -> list[str]:
         return super()._cautions() if self._building is None else self._building.cautions()
@@ -402,8 +402,8 @@ class FrameEquivalent(Block):
 
     def _plain_arguments(self) -> dict[str, Any]:
         """Give the arguments of :meth:`from_members`, members as a list."""
-        given: dict[str, Any] = self._arguments()
-        return given | ({"members": json.loads(given["members"])} if "members" in given else {})
+        values: dict[str, Any] = self._arguments()
+        return values | ({"members": json.loads(values["members"])} if "members" in values else {})
 
     def __repr__(self) -> str:
         if self._building is None:

@@ -174,13 +174,13 @@ class Member(Component):
         return member
 
     @classmethod
-    def _owner(cls, given: Mapping[str, object]) -> str:
-        name = given["name"]
+    def _owner(cls, values: Mapping[str, object]) -> str:
+        name = values["name"]
         return f"Member {name!r}" if isinstance(name, str) and name.strip() else "Member"
 
-    def _check(self, given: Mapping[str, object], owner: str) -> None:
+    def _check(self, values: Mapping[str, object], owner: str) -> None:
         words = ("mass", "density", "width", "height", "depth", "inertia")
-        there = {word for word in words if given[word] is not None}
+        there = {word for word in words if values[word] is not None}
         rules = (
             (("mass" in there) is not ("density" in there), "give mass or density, exactly one"),
             (
@@ -202,20 +202,27 @@ class Member(Component):
                 msg = f"{owner}: {rule}; got {found}"
                 raise ComponentError(msg)
 
-    def _numbers(self, given: SIValues) -> MemberSI:
-        width, height, depth = (given.width or 0.0), (given.height or 0.0), (given.depth or 0.0)
-        mass, inertia = given.mass, given.inertia
+    def _numbers(self, numbers: SIValues) -> MemberSI:
+        width, height, depth = (
+            (numbers.width or 0.0),
+            (numbers.height or 0.0),
+            (numbers.depth or 0.0),
+        )
+        mass, inertia = numbers.mass, numbers.inertia
         if mass is None:
-            mass = given.density * width * height * depth
+            mass = numbers.density * width * height * depth
         if inertia is None:
             inertia = mass * (width * width + height * height) / 12.0
         if not (0.0 < mass < math.inf and inertia < math.inf):
             msg = (
-                f"Member {given.name!r}: a mass of {mass:.4g} {MASS.unit} and a moment of inertia "
-                f"of {inertia:.4g} {INERTIA.unit} are out of the range of floating-point numbers"
+                f"Member {numbers.name!r}: a mass of {mass:.4g} {MASS.unit} and a moment of "
+                f"inertia of {inertia:.4g} {INERTIA.unit} are out of the range of floating-point "
+                "numbers"
             )
             raise ComponentError(msg)
-        return MemberSI(mass, given.x, given.y, inertia, given.width, given.height, given.depth)
+        return MemberSI(
+            mass, numbers.x, numbers.y, inertia, numbers.width, numbers.height, numbers.depth
+        )
 
 
 _COLUMNS: Final = {

@@ -74,9 +74,9 @@ class StoreyCount(Declared[int, Missing]):
     written_as = "int"
     annotation = RatioLike
 
-    def read(self, given: object, owner: str) -> float:
+    def read(self, value: object, owner: str) -> float:
         """Read the number."""
-        return to_ratio(given, owner=owner, name=self.name, condition=self.condition, example="3")
+        return to_ratio(value, owner=owner, name=self.name, condition=self.condition, example="3")
 
 
 class StoreyHeights(Declared[Quantity, Missing]):
@@ -85,13 +85,13 @@ class StoreyHeights(Declared[Quantity, Missing]):
     written_as = "sequence of str or Quantity, or str"
     annotation = Iterable[QuantityLike]
 
-    def read(self, given: object, owner: str) -> tuple[float, ...]:
+    def read(self, value: object, owner: str) -> tuple[float, ...]:
         """Convert every height to SI units."""
-        each: Any = given.split(";") if isinstance(given, str) else given
+        each: Any = value.split(";") if isinstance(value, str) else value
         try:
             each = list(each)
         except TypeError:  # one value; a scalar Quantity even calls itself iterable
-            each = [given]
+            each = [value]
         if not each:
             _refuse("storey_heights is empty; give the height of every storey")
         return tuple(
@@ -115,11 +115,11 @@ class InfillThickness(Declared[Quantity | None, str]):
     annotation = QuantityLike | None
     measure: Measure
 
-    def read(self, given: object, owner: str) -> float:
+    def read(self, value: object, owner: str) -> float:
         """Convert to SI units."""
-        if given is None or (isinstance(given, str) and given == _NO_INFILL):
+        if value is None or (isinstance(value, str) and value == _NO_INFILL):
             return 0.0
-        return to_si(given, self.measure, owner=owner, name=self.name, condition=self.condition)
+        return to_si(value, self.measure, owner=owner, name=self.name, condition=self.condition)
 
     def write(self, value: float) -> str:
         """Write the thickness, or ``"none"``."""
@@ -242,9 +242,9 @@ class RegularFrame(Component):
             density=density,
         )
 
-    def _check(self, given: Mapping[str, object], owner: str) -> None:
-        of_all = [given[name] is not None for name in ("storeys", "height")]
-        one_by_one = given["storey_heights"] is not None
+    def _check(self, values: Mapping[str, object], owner: str) -> None:
+        of_all = [values[name] is not None for name in ("storeys", "height")]
+        one_by_one = values["storey_heights"] is not None
         if not one_by_one and not all(of_all):
             _refuse("give storeys and height, or storey_heights")
         if one_by_one and any(of_all):
@@ -257,8 +257,8 @@ class RegularFrame(Component):
         }
         super()._hold({**values, **square})
 
-    def _numbers(self, given: SIValues) -> RegularFrameSI:
-        values = dict(vars(given))
+    def _numbers(self, numbers: SIValues) -> RegularFrameSI:
+        values = dict(vars(numbers))
         count, total, heights = (values.pop(n) for n in ("storeys", "height", "storey_heights"))
         if heights is None:
             levels = tuple(total * (k / count) for k in range(1, int(count) + 1))

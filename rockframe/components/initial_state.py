@@ -94,10 +94,10 @@ class InitialState(Component):
             vertical_velocity=vertical_velocity,
         )
 
-    def _numbers(self, given: SIValues) -> InitialStateSI:
+    def _numbers(self, numbers: SIValues) -> InitialStateSI:
         return InitialStateSI(
-            given.rotation,
-            given.angular_velocity or 0.0,
-            given.vertical_displacement,
-            given.vertical_velocity or 0.0,
+            numbers.rotation,
+            numbers.angular_velocity or 0.0,
+            numbers.vertical_displacement,
+            numbers.vertical_velocity or 0.0,
         )

@@ -184,21 +184,21 @@ class Restrainer(PointLink):
             to_body=to_body, name=name,
         )  # fmt: skip
 
-    def _numbers(self, given: SIValues) -> Any:
+    def _numbers(self, numbers: SIValues) -> Any:
         faults = list[str]()
-        if given.slack and given.preload:
+        if numbers.slack and numbers.preload:
             faults.append("a tie with slack has no preload: give one of them")
-        if given.breaking_elongation and (given.strength or not given.brittle):
+        if numbers.breaking_elongation and (numbers.strength or not numbers.brittle):
             faults.append("a tie that breaks at an elongation has no strength: give one of them")
-        if given.breaking_elongation and given.breaking_elongation <= (given.slack or 0.0):
+        if numbers.breaking_elongation and numbers.breaking_elongation <= (numbers.slack or 0.0):
             faults.append("breaking_elongation must exceed the slack, or it breaks before it pulls")
-        if given.slack and given.compression:
+        if numbers.slack and numbers.compression:
             faults.append("a bar that pushes has no slack: give slack or compression")
         if faults:
             msg = f"Restrainer: {'; '.join(faults)}"
             raise ComponentError(msg)
-        _refuse_preload("Restrainer", given)
-        return given
+        _refuse_preload("Restrainer", numbers)
+        return numbers
 
 
 class Tendon(Link):
@@ -267,9 +267,9 @@ class Tendon(Link):
             brittle=brittle, on_body=on_body, name=name,
         )  # fmt: skip
 
-    def _numbers(self, given: SIValues) -> Any:
-        _refuse_preload("Tendon", given)
-        return given
+    def _numbers(self, numbers: SIValues) -> Any:
+        _refuse_preload("Tendon", numbers)
+        return numbers
 
 
 class Load(Link):
@@ -321,19 +321,19 @@ class Load(Link):
             on_body=on_body, name=name,
         )  # fmt: skip
 
-    def _numbers(self, given: SIValues) -> Any:
-        if not (given.vertical or given.horizontal) and given.moving_mass is None:
+    def _numbers(self, numbers: SIValues) -> Any:
+        if not (numbers.vertical or numbers.horizontal) and numbers.moving_mass is None:
             msg = "Load: give vertical, horizontal or moving_mass"
             raise ComponentError(msg)
-        return given
+        return numbers
 
 
-def _refuse_preload(owner: str, given: SIValues) -> None:
+def _refuse_preload(owner: str, numbers: SIValues) -> None:
     """Refuse a preload that is not below the strength."""
-    if given.preload and given.strength and given.preload >= given.strength:
+    if numbers.preload and numbers.strength and numbers.preload >= numbers.strength:
         msg = (
-            f"{owner}: its preload, {given.preload:.6g} N, is not below its strength, "
-            f"{given.strength:.6g} N"
+            f"{owner}: its preload, {numbers.preload:.6g} N, is not below its strength, "
+            f"{numbers.strength:.6g} N"
         )
         raise ComponentError(msg)
 
@@ -372,12 +372,12 @@ class _Impact(Declared[Any, Any]):
         measure = Measure("a pure ratio", Unit.ONE, "-0.4")
         super().__init__(measure, REBOUND, doc=doc, default=default)
 
-    def read(self, given: object, owner: str) -> WallImpact | float:
+    def read(self, value: object, owner: str) -> WallImpact | float:
         """Read the name of a law, or a number."""
-        if isinstance(given, str) and given in list(WallImpact):
-            return one_of_words(WallImpact, given, owner=owner, name=self.name)
+        if isinstance(value, str) and value in list(WallImpact):
+            return one_of_words(WallImpact, value, owner=owner, name=self.name)
         return to_ratio(
-            given, owner=owner, name=self.name, condition=self.condition,
+            value, owner=owner, name=self.name, condition=self.condition,
             example=f'"{WallImpact.SORRENTINO}", "{WallImpact.NEWTON}" or -0.4',
         )  # fmt: skip
 
@@ -479,9 +479,9 @@ class RearWall(Link):
         """Sign of its side: 1 for the right, -1 for the left."""
         return -1.0 if self.given.side is WallSide.LEFT else 1.0
 
-    def _numbers(self, given: SIValues) -> SIValues:
-        newton = given.restitution is WallImpact.NEWTON
-        if newton == (given.wall_restitution is None):
+    def _numbers(self, numbers: SIValues) -> SIValues:
+        newton = numbers.restitution is WallImpact.NEWTON
+        if newton == (numbers.wall_restitution is None):
             words = (
                 'restitution="newton" needs wall_restitution, for example wall_restitution=0.3'
                 if newton
@@ -489,11 +489,11 @@ class RearWall(Link):
             )
             msg = f"RearWall: {words}"
             raise ComponentError(msg)
-        of_spring = [name for name in _OF_SPRING if getattr(given, name) is not None]
-        if of_spring and given.stiffness is None:
+        of_spring = [name for name in _OF_SPRING if getattr(numbers, name) is not None]
+        if of_spring and numbers.stiffness is None:
             msg = f"RearWall: give a stiffness with {' and '.join(of_spring)}, for an elastic wall"
             raise ComponentError(msg)
-        if given.stiffness is not None and given.restitution is not WallImpact.SORRENTINO:
+        if numbers.stiffness is not None and numbers.restitution is not WallImpact.SORRENTINO:
             msg = "RearWall: give restitution or stiffness, not both; a spring has no restitution"
             raise ComponentError(msg)
-        return SIValues(**vars(given), name="wall")
+        return SIValues(**vars(numbers), name="wall")

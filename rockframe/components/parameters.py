@@ -64,13 +64,13 @@ class Declared(Generic[Public, Usual]):
     def __init__(
         self, measure: Measure | None, condition: Condition | None, *, doc: str, default: Usual
     ) -> None:
-        for name, given, kind in (
+        for name, value, kind in (
             ("measure", measure, Measure), ("condition", condition, Condition), ("doc", doc, str)
         ):  # fmt: skip
-            missing = given is None and name != "doc"
-            if not missing and not isinstance(given, kind):
+            missing = value is None and name != "doc"
+            if not missing and not isinstance(value, kind):
                 wanted = "a text" if kind is str else f"a rockframe.units.{kind.__name__}"
-                msg = f"{type(self).__name__}: {name} must be {wanted}, got {shown(given)}"
+                msg = f"{type(self).__name__}: {name} must be {wanted}, got {shown(value)}"
                 raise ComponentError(msg)
         self.measure = measure
         self.condition = condition
@@ -100,12 +100,12 @@ class Declared(Generic[Public, Usual]):
         msg = f"{type(instance).__name__} is immutable; build a new one to change {self.name}"
         raise AccessError(msg)
 
-    def accept(self, given: object, owner: str) -> Any:
+    def accept(self, value: object, owner: str) -> Any:
         """Read an argument that may be None if it is optional; messages begin with `owner`."""
-        missing = given is None and self.default in (None, DERIVED)
-        return None if missing else self.read(given, owner)
+        missing = value is None and self.default in (None, DERIVED)
+        return None if missing else self.read(value, owner)
 
-    def read(self, given: object, owner: str) -> Any:
+    def read(self, value: object, owner: str) -> Any:
         """Read an argument and give its value in SI units."""
         raise NotImplementedError
 
@@ -167,9 +167,9 @@ class Parameter(Declared[Quantity, Usual]):
     ) -> None:
         super().__init__(measure, condition, doc=doc, default=default)
 
-    def read(self, given: object, owner: str) -> float:
+    def read(self, value: object, owner: str) -> float:
         """Convert to SI units, with :func:`rockframe.units.to_si`."""
-        return to_si(given, self.measure, owner=owner, name=self.name, condition=self.condition)
+        return to_si(value, self.measure, owner=owner, name=self.name, condition=self.condition)
 
     def write(self, value: float) -> str:
         """Write the number with its unit."""
@@ -223,11 +223,11 @@ class Ratio(Declared[float, Usual]):
         measure = Measure("a pure ratio", Unit.ONE, example)
         super().__init__(measure, condition, doc=doc, default=default)
 
-    def read(self, given: object, owner: str) -> float:
+    def read(self, value: object, owner: str) -> float:
         """Convert to a pure number, with :func:`rockframe.units.to_ratio`."""
         example = self.measure.example
         return to_ratio(
-            given, owner=owner, name=self.name, condition=self.condition, example=example
+            value, owner=owner, name=self.name, condition=self.condition, example=example
         )
 
 
@@ -265,9 +265,9 @@ class Choice(Declared[Words, Words]):
         super().__init__(None, None, doc=doc, default=default)
         self.written_as = "{" + ", ".join(f'"{word}"' for word in type(default)) + "}"
 
-    def read(self, given: object, owner: str) -> Words:
+    def read(self, value: object, owner: str) -> Words:
         """Find the word, with :func:`rockframe.arguments.one_of_words`."""
-        return one_of_words(type(self.default), given, owner=owner, name=self.name)
+        return one_of_words(type(self.default), value, owner=owner, name=self.name)
 
     def write(self, value: Words) -> str | None:
         """Write the word; None for the default."""
@@ -300,7 +300,7 @@ class Text(Declared[str, Usual]):
     def __init__(self, *, doc: str, default: Usual = REQUIRED) -> None:
         super().__init__(None, None, doc=doc, default=default)
 
-    def read(self, given: object, owner: str) -> str:
+    def read(self, value: object, owner: str) -> str:
         """Check that the argument is a text.
 
         Raises
@@ -308,10 +308,10 @@ class Text(Declared[str, Usual]):
         ComponentError
             Not a text, or an empty one.
         """
-        if isinstance(given, str) and given.strip():
-            return given
+        if isinstance(value, str) and value.strip():
+            return value
         missing = ", or None" if self.default is None else ""
-        msg = f"{owner}: {self.name} must be a text that is not empty{missing}, got {shown(given)}"
+        msg = f"{owner}: {self.name} must be a text that is not empty{missing}, got {shown(value)}"
         raise ComponentError(msg)
 
 
@@ -324,13 +324,13 @@ class Flag(Declared[bool, bool]):
     def __init__(self, *, doc: str, default: bool) -> None:
         super().__init__(None, None, doc=doc, default=default)
 
-    def read(self, given: object, owner: str) -> bool:
+    def read(self, value: object, owner: str) -> bool:
         """Read a truth value, or the word ``true`` or ``false``."""
-        if isinstance(given, bool | np.bool_):
-            return bool(given)
-        if isinstance(given, str) and given in _TRUTHS:
-            return _TRUTHS[given]
-        msg = f"{owner}: {self.name} must be True or False, got {shown(given)}"
+        if isinstance(value, bool | np.bool_):
+            return bool(value)
+        if isinstance(value, str) and value in _TRUTHS:
+            return _TRUTHS[value]
+        msg = f"{owner}: {self.name} must be True or False, got {shown(value)}"
         raise ComponentError(msg)
 
     def write(self, value: bool) -> str | None:
@@ -353,14 +353,14 @@ class Count(Declared[int, Usual]):
     def __init__(self, *, doc: str, default: Usual = REQUIRED) -> None:
         super().__init__(None, None, doc=doc, default=default)
 
-    def read(self, given: object, owner: str) -> int:
+    def read(self, value: object, owner: str) -> int:
         """Read the number."""
-        number = given if not isinstance(given, bool) else None
+        number = value if not isinstance(value, bool) else None
         if isinstance(number, int | np.integer | float) and 1 <= number <= MOST_COUNTED:
             whole = int(number)
             if whole == number:
                 return whole
-        msg = f"{owner}: {self.name} must be a whole number from 1 on, got {shown(given)}"
+        msg = f"{owner}: {self.name} must be a whole number from 1 on, got {shown(value)}"
         raise ComponentError(msg)
 
     def write(self, value: int) -> int | None:
@@ -378,16 +378,16 @@ class Place(Declared[tuple[Quantity, Quantity], Missing]):
     def __init__(self, *, doc: str) -> None:
         super().__init__(LENGTH.like('("-0.5 m", "3 m")'), None, doc=doc, default=REQUIRED)
 
-    def read(self, given: object, owner: str) -> tuple[float, float]:
+    def read(self, value: object, owner: str) -> tuple[float, float]:
         """Convert to SI units."""
-        written = _PLACE.fullmatch(given) if isinstance(given, str) else None
+        written = _PLACE.fullmatch(value) if isinstance(value, str) else None
         if written is not None:
-            given = tuple(f"{one} m" for one in written.groups())
-        pair: list[Any] = list(given) if isinstance(given, tuple | list) else []
+            value = tuple(f"{one} m" for one in written.groups())
+        pair: list[Any] = list(value) if isinstance(value, tuple | list) else []
         if len(pair) != 2:
             msg = (
                 f'{owner}: {self.name} must be a point such as ("-0.5 m", "3 m"), to the right '
-                f"and above, got {shown(given)}"
+                f"and above, got {shown(value)}"
             )
             raise ComponentError(msg)
         x, y = (
@@ -431,9 +431,9 @@ def friction_of_slip() -> Ratio[None]:
     return Ratio(NOT_NEGATIVE, doc=words, default=None, example="0.45")
 
 
-def check_frictions(owner: str, given: SIValues) -> SIValues:
+def check_frictions(owner: str, numbers: SIValues) -> SIValues:
     """Refuse a kinetic friction without a static one, or above it."""
-    static, kinetic = given.friction, given.kinetic_friction
+    static, kinetic = numbers.friction, numbers.kinetic_friction
     if kinetic is not None and (static is None or kinetic > static):
         found = "is not given" if static is None else f"is {static:.6g}"
         msg = (
@@ -441,7 +441,7 @@ def check_frictions(owner: str, given: SIValues) -> SIValues:
             f"{kinetic:.6g}"
         )
         raise ComponentError(msg)
-    return given
+    return numbers
 
 
 CRITICAL: Final = 1.0

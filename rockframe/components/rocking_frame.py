@@ -32,20 +32,20 @@ class _Column(Declared[Block, Missing]):
     def __init__(self, *, doc: str) -> None:
         super().__init__(None, None, doc=doc, default=REQUIRED)
 
-    def read(self, given: object, owner: str) -> Block:
+    def read(self, value: object, owner: str) -> Block:
         """Read a block, or the mapping that describes it."""
-        if isinstance(given, Mapping):
-            given = component_from_dict({"type": Block.__name__, **given})
-        if not isinstance(given, Block):
-            msg = f"{owner}: {self.name} must be a Block, got {shown(given)}"
+        if isinstance(value, Mapping):
+            value = component_from_dict({"type": Block.__name__, **value})
+        if not isinstance(value, Block):
+            msg = f"{owner}: {self.name} must be a Block, got {shown(value)}"
             raise ComponentError(msg)
-        if given.si.eccentricity != 0.0:
+        if value.si.eccentricity != 0.0:
             msg = (
                 f"{owner}: the centre of mass of the {self.name} must be above the middle of its "
-                f"base, got an eccentricity of {given.si.eccentricity:.6g} m"
+                f"base, got an eccentricity of {value.si.eccentricity:.6g} m"
             )
             raise ComponentError(msg)
-        return given
+        return value
 
     def write(self, value: Block) -> Any:
         """Describe the block."""
@@ -120,14 +120,14 @@ class RockingFrame(Component):
             beam_height=beam_height,
         )  # fmt: skip
 
-    def _numbers(self, given: SIValues) -> RockingFrameSI:
-        if given.columns < FEWEST_COLUMNS:
-            msg = f"RockingFrame: columns must be {FEWEST_COLUMNS} or more, got {given.columns}"
+    def _numbers(self, numbers: SIValues) -> RockingFrameSI:
+        if numbers.columns < FEWEST_COLUMNS:
+            msg = f"RockingFrame: columns must be {FEWEST_COLUMNS} or more, got {numbers.columns}"
             raise ComponentError(msg)
-        si = given.column.si
-        spacing = SPACING * si.height if given.spacing is None else given.spacing
-        depth = BEAM_HEIGHT * si.height if given.beam_height is None else given.beam_height
-        return RockingFrameSI(si, given.columns, given.beam_mass, spacing, depth)
+        si = numbers.column.si
+        spacing = SPACING * si.height if numbers.spacing is None else numbers.spacing
+        depth = BEAM_HEIGHT * si.height if numbers.beam_height is None else numbers.beam_height
+        return RockingFrameSI(si, numbers.columns, numbers.beam_mass, spacing, depth)
 
     def cautions(self) -> list[str]:
         """Give the warnings about unusual values of the column.
@@ -176,8 +176,8 @@ class RockingFrame(Component):
         return self.from_dict({**self._arguments(), "column": column})
 
     def __repr__(self) -> str:
-        given = {**self._arguments(), "column": self.given.column}
-        column, *others = (f"{name}={value!r}" for name, value in given.items())
+        arguments = {**self._arguments(), "column": self.given.column}
+        column, *others = (f"{name}={value!r}" for name, value in arguments.items())
         return f"RockingFrame({column.removeprefix('column=')}, {', '.join(others)})"
 
     def __hash__(self) -> int:

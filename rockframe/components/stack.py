@@ -108,8 +108,8 @@ class Stack(Component):
             raise ComponentError(msg)
         beside = [0.0] * (len(bodies) - 1) if beside is None else beside
         _refuse_overhang([one.si for one in bodies], beside)
-        given = SIValues(bodies=tuple(bodies), interfaces=tuple(interfaces), offsets=tuple(beside))
-        object.__setattr__(self, "given", given)
+        values = SIValues(bodies=tuple(bodies), interfaces=tuple(interfaces), offsets=tuple(beside))
+        object.__setattr__(self, "given", values)
         object.__setattr__(self, "si", StackSI(tuple(one.si for one in bodies), (*beside, 0.0)))
 
     @property
@@ -200,13 +200,13 @@ class Stack(Component):
         TypeError, UnitsError, ComponentError
             As the constructor.
         """
-        given = {"bodies": self.bodies, "interfaces": self.interfaces,
+        values = {"bodies": self.bodies, "interfaces": self.interfaces,
                  "offsets": self._arguments()["offsets"]}  # fmt: skip
         for name in changes:
-            if name not in given:
+            if name not in values:
                 call = f"{type(self).__name__}.replace()"
-                raise unexpected_argument(call, name, given)
-        bodies, interfaces, offsets = (changes.get(name, old) for name, old in given.items())
+                raise unexpected_argument(call, name, values)
+        bodies, interfaces, offsets = (changes.get(name, old) for name, old in values.items())
         kept = several(bodies, owner="Stack", name="bodies", of="blocks")
         return type(self)(*kept, interfaces=interfaces, offsets=offsets)
 

@@ -136,9 +136,9 @@ def _answer(
 ) -> tuple[float, int, float, float]:
     """Give a link's force, its state, and the force's derivatives by elongation and rate."""
     law: Any = tie.numbers.law
-    given = math.hypot(*tie.apart)
-    reach = given + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
-    stretch, own = Stretch(elongation, 0.0, 0.0, given, 1e-15 * reach), np.zeros(law.variables())
+    length = math.hypot(*tie.apart)
+    reach = length + math.hypot(*tie.on_point) + math.hypot(*tie.to_point)
+    stretch, own = Stretch(elongation, 0.0, 0.0, length, 1e-15 * reach), np.zeros(law.variables())
     starting = law.starting(stretch, own)
     found = starting if state is None else state
     steps = {"elongation": SMALL * (reach or 1.0), "rate": STEP}

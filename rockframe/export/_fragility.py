@@ -133,10 +133,10 @@ def to_pelicun(
 
 def _check_demand(demand: str, measure: str, kind: str) -> None:
     """Raise on a demand whose words name another quantity than that of the fragility."""
-    told, own = (
+    text, own = (
         _QUANTITIES.intersection(re.findall("[a-z]+", of.lower())) for of in (demand, kind)
     )
-    if told and told != own:
+    if text and text != own:
         msg = (
             f"{_PELICUN}: the demand must be of the measure of the fragility, {measure}, as "
             f"{kind!r} is, got {demand!r}; fit a fragility over the measure of the demand"
@@ -210,8 +210,8 @@ def to_openquake(
     'model.xml'
     """
     one_of_names(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
-    for what, given in (("description", description), ("category", category)):
-        text(given, owner=_OPENQUAKE, name=what)
+    for what, argument in (("description", description), ("category", category)):
+        text(argument, owner=_OPENQUAKE, name=what)
     limit_given = None if no_damage_limit is None else to_ratio(
         no_damage_limit, owner=_OPENQUAKE, name="no_damage_limit", condition=POSITIVE
     )  # fmt: skip
@@ -268,10 +268,10 @@ def to_openquake(
 
 
 def _fits(
-    given: object, measures: Mapping[str, Any], *, owner: str
+    value: object, measures: Mapping[str, Any], *, owner: str
 ) -> tuple[str, list[tuple[str, float, float]]]:
     """Give the measure of a fragility, and the name, median and dispersion of its limit states."""
-    dataset = checked_dataset(given, owner=owner)
+    dataset = checked_dataset(value, owner=owner)
     known = [name for name in measures if name in dataset.dims]
     if "median_intensity" not in dataset or len(known) != 1:
         msg = (
@@ -311,9 +311,9 @@ def _period(dataset: xr.Dataset, owner: str) -> float:
     return float(dataset.attrs[PERIOD_OF])
 
 
-def _check_word(given: object) -> None:
-    if not isinstance(given, str) or not _WORD.fullmatch(given):
-        msg = f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got {shown(given)}"
+def _check_word(value: object) -> None:
+    if not isinstance(value, str) or not _WORD.fullmatch(value):
+        msg = f"{_OPENQUAKE}: names have up to 100 letters, digits, '-' and '_', got {shown(value)}"
         raise ComponentError(msg)
 
 

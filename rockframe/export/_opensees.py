@@ -138,7 +138,7 @@ def to_opensees(
     period = 2.0 * math.pi / math.sqrt(len(base.places) * base.stiffness / body.mass)
     rigid = not system.setting.supports
     steps = _OUTPUT_STEP * (_STEPS_PER_PERIOD // (1 + 3 * rigid)) / period
-    given = {
+    values = {
         "half_width": body.half_width,
         "centre_height": body.centre_height,
         "mass": body.mass,
@@ -166,7 +166,7 @@ def to_opensees(
         ),
         "rotation": (run["rotation"].to_numpy()[whole], 9),
     }
-    text = _file(_head(system, motion, base, held), given, arrays)
+    text = _file(_head(system, motion, base, held), values, arrays)
     return write_file(path, _KIND, text.encode(), overwrite=overwrite)
 
 
@@ -249,7 +249,7 @@ _HELD: Final = (
 def _head(system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: Dashpots) -> str:
     """Give the docstring of the file."""
     elsewhere = base.words is not _GROUND and system.restraint is not Restraint.CENTRE
-    told = [
+    messages = [
         f"{_MARK}{__version__}: {system.setting.model} under {motion.name}, in OpenSees.",
         "Run it with numpy and openseespy installed. It writes both histories of the rotation "
         "to a CSV file of the same name, and prints both peaks.",
@@ -259,19 +259,20 @@ def _head(system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: D
         "Steps of integration are fixed, and events within them are not located. After many "
         "impacts two runs that were close at first may differ: compare peaks before histories.",
     ]
-    lines = "\n\n".join(fill(one, 96) for one in told if one)
+    lines = "\n\n".join(fill(one, 96) for one in messages if one)
     return lines.replace("\\", "/").replace('"""', "'''")
 
 
-def _file(head: str, given: dict[str, Any], arrays: dict[str, Any]) -> str:
+def _file(head: str, arguments: dict[str, Any], arrays: dict[str, Any]) -> str:
     body = _BODY.read_text().split('"""\n', 1)[1]
-    numbers = pprint.pformat(given, width=95, sort_dicts=False)
+    numbers = pprint.pformat(arguments, width=95, sort_dicts=False)
     columns = "".join(
         f"GIVEN[{name!r}] = {_array(values, digits)}\n" for name, (values, digits) in arrays.items()
     )
     return (
         f'"""{head}\n"""\n{body}\n\nGIVEN: dict[str, Any] = {numbers}\n'
-        f"# at every {given['time_step']:g} s, and at every {given['output_step']:g} s\n{columns}\n"
+        f"# at every {arguments['time_step']:g} s, and at every "
+        f"{arguments['output_step']:g} s\n{columns}\n"
         'if __name__ == "__main__":\n'
         '    compare_peaks(GIVEN, Path(__file__).with_suffix(".csv"))\n'
     )

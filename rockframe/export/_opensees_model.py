@@ -27,20 +27,24 @@ def opensees() -> Any:
     return importlib.import_module("openseespy.opensees")
 
 
-def build(ops: Any, given: dict[str, Any]) -> tuple[int, int, float]:
+def build(ops: Any, arguments: dict[str, Any]) -> tuple[int, int, float]:
     """Build the block on its springs; give the nodes of its axis and the height between them [m].
 
     The block is a truss of nearly rigid bars, exact at finite rotations. Four point masses give
     its mass, its centre of mass and its moment of inertia. Of the mass at the base a half is in
     the middle, and a quarter at each corner; the rest of the mass is at the top.
     """
-    b, h, mass = given["half_width"], given["centre_height"], given["mass"]
-    square = given["inertia"] / mass
+    b, h, mass = arguments["half_width"], arguments["centre_height"], arguments["mass"]
+    square = arguments["inertia"] / mass
     half = 0.5 * (h**2 + 0.5 * b**2 - square)
     top = h + (math.sqrt(half**2 + square * h**2) - half) / h
     base = mass * (1.0 - h / top)
-    across, stiffness, damping = given["springs_at"], given["stiffness"], given["damping"]
-    weight, count = mass * given["gravity"], len(across)
+    across, stiffness, damping = (
+        arguments["springs_at"],
+        arguments["stiffness"],
+        arguments["damping"],
+    )
+    weight, count = mass * arguments["gravity"], len(across)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 2)
     # the two nodes connected to all others come last, for a narrow profile of the equations
@@ -54,7 +58,7 @@ def build(ops: Any, given: dict[str, Any]) -> tuple[int, int, float]:
     masses = {middle: 0.5 * base, left: 0.25 * base, right: 0.25 * base, above: mass - base}
     for tag, share in masses.items():
         ops.mass(tag, share, share)
-    ops.uniaxialMaterial("Elastic", 1, given["bars_over_springs"] * stiffness * count)
+    ops.uniaxialMaterial("Elastic", 1, arguments["bars_over_springs"] * stiffness * count)
     bars = [(above, middle)]
     bars += [(one, tag) for tag in places if tag not in (middle, above) for one in (middle, above)]
     for number, (start, end) in enumerate(bars, 1):
@@ -62,7 +66,7 @@ def build(ops: Any, given: dict[str, Any]) -> tuple[int, int, float]:
         ops.element("corotTruss", number, start, end, length, 1)
     # springs without tension, which carry the weight from the start, and dashpots
     sunk = -weight / (count * stiffness)
-    if given["dashpots"] == "let go" and damping > 0.0:
+    if arguments["dashpots"] == "let go" and damping > 0.0:
         ops.uniaxialMaterial("ViscoelasticGap", 2, stiffness, damping, -1e-12)
         ops.uniaxialMaterial("InitStrainMaterial", 5, 2, sunk)
     else:
@@ -78,34 +82,34 @@ def build(ops: Any, given: dict[str, Any]) -> tuple[int, int, float]:
     ops.timeSeries("Constant", 1)
     ops.pattern("Plain", 1, 1)
     for tag, share in masses.items():
-        ops.load(tag, 0.0, -share * given["gravity"])
+        ops.load(tag, 0.0, -share * arguments["gravity"])
     for direction, name in enumerate(("acceleration", "vertical_acceleration"), 1):
-        if given[name] is not None:
-            values = np.append(given[name], 0.0).tolist()
-            ops.timeSeries("Path", 1 + direction, "-dt", given["time_step"], "-values", *values)
+        if arguments[name] is not None:
+            values = np.append(arguments[name], 0.0).tolist()
+            ops.timeSeries("Path", 1 + direction, "-dt", arguments["time_step"], "-values", *values)
             ops.pattern("UniformExcitation", 1 + direction, direction, "-accel", 1 + direction)
     return middle, above, top
 
 
-def solve(ops: Any, given: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+def solve(ops: Any, values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     """Integrate by Newmark's rule; give times [s] and rotations, clockwise, [rad]."""
-    middle, above, top = build(ops, given)
+    middle, above, top = build(ops, values)
     ops.system("ProfileSPD")
     ops.numberer("Plain")
     ops.constraints("Plain")
-    ops.test("NormDispIncr", given["tolerance"], 30)
+    ops.test("NormDispIncr", values["tolerance"], 30)
     ops.algorithm("Newton")
     ops.integrator("Newmark", 0.5, 0.25)
     ops.analysis("Transient")
-    step, steps = given["output_step"], given["steps_per_output"]
+    step, steps = values["output_step"], values["steps_per_output"]
     rotation = [0.0]
-    for row in range(1, given["outputs"]):
+    for row in range(1, values["outputs"]):
         if not all(step_in_parts(ops, step / steps) for _ in range(steps)):
             print(f"OpenSees did not converge before {row * step:.4g} s")
             break
         sideways, up = ops.nodeDisp(above, 1), ops.nodeDisp(above, 2) - ops.nodeDisp(middle, 2)
         rotation.append(math.atan2(sideways, top + up))
-        if abs(rotation[-1]) >= given["overturning_angle"]:
+        if abs(rotation[-1]) >= values["overturning_angle"]:
             print(f"OpenSees: overturned after {row * step:.4g} s")
             break
     return step * np.arange(len(rotation)), np.array(rotation)
@@ -118,24 +122,24 @@ def step_in_parts(ops: Any, step: float, halvings: int = 10) -> bool:
     return halvings > 0 and all(step_in_parts(ops, 0.5 * step, halvings - 1) for _ in range(2))
 
 
-def compare_peaks(given: dict[str, Any], history: Path) -> dict[str, float]:
+def compare_peaks(values: dict[str, Any], history: Path) -> dict[str, float]:
     """Run OpenSees, write its history and that of rockframe, and compare the peaks."""
     ops = opensees()
     ops.logFile(os.devnull, "-noEcho")  # it prints a message for each impact
-    time, found = solve(ops, given)
-    expected = given["rotation"]
+    time, found = solve(ops, values)
+    expected = values["rotation"]
     both = min(found.size, expected.size)
     with history.open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["time [s]", "rotation in OpenSees [rad]", "rotation in rockframe [rad]"])
         rows = zip(time[:both], found[:both], expected[:both], strict=True)
         writer.writerows([f"{one:.9g}" for one in row] for row in rows)
-    peaks = {"OpenSees": float(np.abs(found).max()), "rockframe": given["peak"]}
-    size = max(peaks["rockframe"], 1e-6 * given["overturning_angle"])
+    peaks = {"OpenSees": float(np.abs(found).max()), "rockframe": values["peak"]}
+    size = max(peaks["rockframe"], 1e-6 * values["overturning_angle"])
     apart = float(np.abs(found[:both] - expected[:both]).max()) / size
-    print(f"rockframe: {given['verdict']}")
+    print(f"rockframe: {values['verdict']}")
     for name, peak in peaks.items():
-        share = 100.0 * peak / given["overturning_angle"]
+        share = 100.0 * peak / values["overturning_angle"]
         print(f"peak rotation in {name}: {peak:.6g} rad, {share:.4g} % of the overturning angle")
     print(f"peaks differ by {100.0 * (peaks['OpenSees'] - peaks['rockframe']) / size:+.3g} %")
     print(f"histories differ by {100.0 * apart:.3g} % of the peak at most")

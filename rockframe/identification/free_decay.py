@@ -123,8 +123,8 @@ def fit_free_decay(
     _check_system(system)
     _check_level(system)
     if (measured is None) == (peaks is None):
-        given = "neither" if peaks is None else "both"
-        msg = f"{_OWNER}: give measured (a history) or peaks, got {given}"
+        value = "neither" if peaks is None else "both"
+        msg = f"{_OWNER}: give measured (a history) or peaks, got {value}"
         raise ComponentError(msg)
     names = _names(parameters)
     probability = to_ratio(
@@ -156,9 +156,9 @@ def fit_free_decay(
     )
 
 
-def _check_system(given: object) -> None:
-    if not isinstance(given, System):
-        msg = f"{_OWNER}: system needs a System, got {type(given).__name__}"
+def _check_system(value: object) -> None:
+    if not isinstance(value, System):
+        msg = f"{_OWNER}: system needs a System, got {type(value).__name__}"
         raise ComponentError(msg)
 
 
@@ -181,7 +181,7 @@ def _names(parameters: Sequence[str] | str) -> tuple[str, ...]:
 
 
 def _sought(
-    given: Sequence[str] | str | None, data: History | MeasuredPeaks
+    values: Sequence[str] | str | None, data: History | MeasuredPeaks
 ) -> tuple[Circumstance, ...]:
     """Give the circumstances that are to be found; refuse those that the data do not determine."""
     circumstances = [Circumstance.INITIAL_ROTATION]
@@ -189,11 +189,11 @@ def _sought(
         circumstances.append(Circumstance.RELEASE_TIME)
     if isinstance(data, History):
         circumstances.append(Circumstance.GAUGE_OFFSET)
-    if given is None:
+    if values is None:
         return tuple(circumstances)
     if isinstance(data, MeasuredPeaks) and data.signed:
         circumstances.append(Circumstance.GAUGE_OFFSET)
-    listed = several(given, owner=_OWNER, name="circumstances", of="names")
+    listed = several(values, owner=_OWNER, name="circumstances", of="names")
     names = [one_of_words(Circumstance, one, owner=_OWNER, name="circumstances") for one in listed]
     for name in names:
         if name not in circumstances:

@@ -60,39 +60,39 @@ class MeasuredPeaks:
         return bool(self.sides[0] != self.sides[-1] or np.any(np.diff(self.sides)))
 
 
-def read_history(given: object, owner: str) -> History:
+def read_history(value: object, owner: str) -> History:
     """Read a history of the rotation, with its times."""
-    if isinstance(given, xr.DataArray):
-        name = given.dims[0] if given.ndim == 1 else None
-        if name is None or name not in given.coords:
+    if isinstance(value, xr.DataArray):
+        name = value.dims[0] if value.ndim == 1 else None
+        if name is None or name not in value.coords:
             msg = (
                 f"{owner}: measured needs one dimension with times as its coordinate, got "
-                f"{shown(given)}; {_HISTORY}"
+                f"{shown(value)}; {_HISTORY}"
             )
             raise ComponentError(msg)
-        time = _values(given[name], TIME, owner, "time")
-        return _history(time, _values(given, ANGLE, owner, "rotation"), owner)
-    pair = _two(given)
+        time = _values(value[name], TIME, owner, "time")
+        return _history(time, _values(value, ANGLE, owner, "rotation"), owner)
+    pair = _two(value)
     if pair is None:
-        msg = f"{owner}: measured needs times and rotations, got {shown(given)}; {_HISTORY}"
+        msg = f"{owner}: measured needs times and rotations, got {shown(value)}; {_HISTORY}"
         raise UnitsError(msg)
     time = _values(pair[0], TIME, owner, "time")
     return _history(time, _values(pair[1], ANGLE, owner, "rotation"), owner)
 
 
-def read_peaks(given: object, owner: str) -> MeasuredPeaks:
+def read_peaks(value: object, owner: str) -> MeasuredPeaks:
     """Read successive peaks of the rotation, with or without times."""
-    pair = _two(given)
+    pair = _two(value)
     if pair is not None:
         times = _values(pair[0], TIME, owner, "time")
         rotation = _values(pair[1], ANGLE, owner, "rotation")
         _check_times(times, rotation, owner)
         peaks = MeasuredPeaks(rotation, np.sign(rotation), times)
-    elif isinstance(given, tuple | pint.Quantity):
-        rotation = _values(cast("object", given), ANGLE, owner, "peaks")
+    elif isinstance(value, tuple | pint.Quantity):
+        rotation = _values(cast("object", value), ANGLE, owner, "peaks")
         peaks = MeasuredPeaks(rotation, np.sign(rotation))
     else:
-        msg = f"{owner}: peaks needs rotations with a unit, got {shown(given)}; {_PEAKS}"
+        msg = f"{owner}: peaks needs rotations with a unit, got {shown(value)}; {_PEAKS}"
         raise UnitsError(msg)
     turns = np.diff(peaks.sides)
     if not np.all(peaks.sides) or (peaks.signed and not np.all(turns)):
@@ -126,11 +126,11 @@ def check_below_overturning(
         raise ComponentError(msg)
 
 
-def _two(given: object) -> tuple[object, object] | None:
+def _two(value: object) -> tuple[object, object] | None:
     """Give the two items of a pair of arrays with units, or None of anything else."""
-    if not isinstance(given, tuple | list):
+    if not isinstance(value, tuple | list):
         return None
-    items = cast("tuple[object, ...]", given)
+    items = cast("tuple[object, ...]", value)
     if len(items) != 2 or any(isinstance(item, str | float | int) for item in items):
         return None
     return items[0], items[1]
@@ -141,19 +141,19 @@ def _history(time: Array, rotation: Array, owner: str) -> History:
     return History(time, rotation)
 
 
-def _values(given: object, measure: Measure, owner: str, name: str) -> Array:
+def _values(value: object, measure: Measure, owner: str, name: str) -> Array:
     """Convert an array with a unit to SI units, and check it."""
     unit: object = None
-    values: object = given
-    if isinstance(given, xr.DataArray):
-        values, unit = given.to_numpy(), given.attrs.get("units")
-        if unit is None and isinstance(given.data, pint.Quantity):
-            values, unit = given.data.magnitude, str(given.data.units)
-    elif isinstance(given, pint.Quantity):
-        quantity = cast("Any", given)
+    values: object = value
+    if isinstance(value, xr.DataArray):
+        values, unit = value.to_numpy(), value.attrs.get("units")
+        if unit is None and isinstance(value.data, pint.Quantity):
+            values, unit = value.data.magnitude, str(value.data.units)
+    elif isinstance(value, pint.Quantity):
+        quantity = cast("Any", value)
         values, unit = quantity.magnitude, str(quantity.units)
-    elif isinstance(given, tuple):
-        pair = cast("tuple[object, ...]", given)
+    elif isinstance(value, tuple):
+        pair = cast("tuple[object, ...]", value)
         if len(pair) == 2:
             values, unit = pair
             if isinstance(unit, str):
@@ -161,7 +161,7 @@ def _values(given: object, measure: Measure, owner: str, name: str) -> Array:
     if not isinstance(unit, str):
         example = _UNITS["time" if measure is TIME else "rotation"]
         msg = (
-            f"{owner}: {name} needs an array with a unit such as {example}, got {shown(given)}; "
+            f"{owner}: {name} needs an array with a unit such as {example}, got {shown(value)}; "
             f"write for example (values, {example!r})"
         )
         raise UnitsError(msg)

@@ -42,9 +42,9 @@ def signal_of(motion: object, component: object, *, owner: str) -> Signal:
     return motion.si.vertical
 
 
-def component_of(given: object, *, owner: str) -> GroundComponent:
+def component_of(value: object, *, owner: str) -> GroundComponent:
     """Read the argument `component`."""
-    return one_of_words(GroundComponent, given, owner=owner, name="component")
+    return one_of_words(GroundComponent, value, owner=owner, name="component")
 
 
 Thing = TypeVar("Thing")
@@ -89,13 +89,13 @@ class Inputs(Generic[Thing]):
         return without_fill_values(dataset.assign_coords({MOTION: (MOTION, self.labels, _LABEL)}))
 
 
-def read_inputs(given: object, component: object, *, owner: str) -> Inputs[Signal]:
+def read_inputs(value: object, component: object, *, owner: str) -> Inputs[Signal]:
     """Take one component of a motion, or of each of several."""
-    if not isinstance(given, Mapping):
-        signal = signal_of(given, component, owner=owner)
+    if not isinstance(value, Mapping):
+        signal = signal_of(value, component, owner=owner)
         which = component_of(component, owner=owner)
-        return Inputs([signal], None, component_attributes(cast("GroundMotion", given), which))
-    motions = cast("Mapping[Any, Any]", given)
+        return Inputs([signal], None, component_attributes(cast("GroundMotion", value), which))
+    motions = cast("Mapping[Any, Any]", value)
     check_some(motions, owner=owner)
     signals = [signal_of(motion, component, owner=owner) for motion in motions.values()]
     which = str(component_of(component, owner=owner))

@@ -224,15 +224,15 @@ def _axes(pair: HorizontalPair) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _pairs(given: object, *, owner: str) -> Inputs[HorizontalPair]:
+def _pairs(value: object, *, owner: str) -> Inputs[HorizontalPair]:
     """Read one pair or several."""
-    if isinstance(given, HorizontalPair):
-        return Inputs([given], None, {"motion": given.name, "references": _REFERENCES})
-    if not isinstance(given, Mapping):
+    if isinstance(value, HorizontalPair):
+        return Inputs([value], None, {"motion": value.name, "references": _REFERENCES})
+    if not isinstance(value, Mapping):
         wanted = "two horizontal components, rf.HorizontalPair(first, second)"
-        msg = f"{owner}: pair needs {wanted}, got {shown(given)}"
+        msg = f"{owner}: pair needs {wanted}, got {shown(value)}"
         raise ComponentError(msg)
-    pairs = cast("Mapping[Any, Any]", given)
+    pairs = cast("Mapping[Any, Any]", value)
     check_some(pairs, owner=owner)
     for label, one in pairs.items():
         if not isinstance(one, HorizontalPair):

@@ -168,30 +168,32 @@ def _spectra(signal: Signal, seconds: Array, ratios: Array) -> dict[str, Array]:
     }
 
 
-def checked_periods(given: object, *, owner: str) -> Array:
+def checked_periods(value: object, *, owner: str) -> Array:
     """Read the argument `periods`; 100 per decade from 0.01 s to 10 s unless given [s]."""
-    if given is None:
+    if value is None:
         decades = np.arange(-2 * _PERIODS_PER_DECADE, _PERIODS_PER_DECADE + 1)
         return 10.0 ** (decades / _PERIODS_PER_DECADE)
-    seconds = np.array(to_si_values(given, PERIOD, owner=owner, name="periods"))
+    seconds = np.array(to_si_values(value, PERIOD, owner=owner, name="periods"))
     if seconds.size == 0 or seconds[0] < 0.0 or not (np.diff(seconds) > 0.0).all():
         msg = (
-            f"{owner}: periods must be one or more, from zero up and increasing, got {shown(given)}"
+            f"{owner}: periods must be one or more, from zero up and increasing, got {shown(value)}"
         )
         raise ComponentError(msg)
     return seconds
 
 
-def checked_ratios(given: Any, *, owner: str) -> Array:
+def checked_ratios(argument: Any, *, owner: str) -> Array:
     """Read the argument `damping_ratios`: one or several, of which none is given twice [1]."""
-    if isinstance(given, np.ndarray):
-        given = np.atleast_1d(given)
-    values: list[Any] = list(given) if isinstance(given, list | tuple | np.ndarray) else [given]
+    if isinstance(argument, np.ndarray):
+        argument = np.atleast_1d(argument)
+    values: list[Any] = (
+        list(argument) if isinstance(argument, list | tuple | np.ndarray) else [argument]
+    )
     ratios = [
         to_ratio(value, owner=owner, name="damping_ratios", condition=DAMPING_RATIO)
         for value in values
     ]
     if not ratios or len(set(ratios)) < len(ratios):
-        msg = f"{owner}: damping_ratios must be one or more, each once, got {shown(given)}"
+        msg = f"{owner}: damping_ratios must be one or more, each once, got {shown(argument)}"
         raise ComponentError(msg)
     return np.array(ratios)

@@ -126,14 +126,14 @@ def from_dict(kind: type[Made], description: Mapping[str, Any]) -> Made:
     try:
         motion = getattr(kind, constructor)(**arguments)
         for operation in operations:
-            ((name, given),) = operation.items()
+            ((name, values),) = operation.items()
             if name not in OPERATIONS:
                 found = f"{shown(name)}{nearest(name, OPERATIONS)}"
                 msg = f"found the operation {found}; expected one of {', '.join(OPERATIONS)}"
                 raise SchemaError(msg)
-            if given.get("other") is not None:
-                given = {**given, "other": from_dict(kind, given["other"])}
-            motion = getattr(motion, name)(**given)
+            if values.get("other") is not None:
+                values = {**values, "other": from_dict(kind, values["other"])}
+            motion = getattr(motion, name)(**values)
     except TypeError as problem:
         msg = f"found arguments that do not fit {constructor} or its operations: {problem}"
         raise SchemaError(msg) from problem

@@ -59,7 +59,7 @@ class GroundMotion(AnalyticMotion):
     if not TYPE_CHECKING:  # the arguments that count are those of the constructor
 
         @wraps(MotionValue.__init__, assigned=())
-        def __new__(cls, *given, **named):
+        def __new__(cls, *values, **named):
             """Refuse arguments other than a motion, and name the constructors."""
             if cls.__init__ is not MotionValue.__init__:
                 return super().__new__(cls)
@@ -67,10 +67,10 @@ class GroundMotion(AnalyticMotion):
                 f"{cls.__name__}.read(path), {cls.__name__}.from_arrays(acceleration, time_step) "
                 f"or a pulse such as {cls.__name__}.sine_pulse()"
             )
-            if not given and "si" not in named:
+            if not values and "si" not in named:
                 msg = f"{cls.__name__}: it is not built by calling the class; write {usage}"
                 raise ArgumentError(msg)
-            si = given[0] if given else named["si"]
+            si = values[0] if values else named["si"]
             if not isinstance(si, Motion):
                 msg = f"{cls.__name__}: found {shown(si)}; write {usage}"
                 raise ComponentError(msg)

@@ -52,9 +52,9 @@ def accelerations_to_si(value: object, *, owner: str, name: str) -> Array:
             raise UnitsError(msg)
         return _scaled(value.values, _unit_factor(unit, owner, name, udunits=True), owner, name)
     if _is_quantity(value):
-        given = cast("Any", value)
-        factor = to_si(type(given)(1.0, given.units), ACCELERATION, owner=owner, name=name)
-        return _scaled(given.magnitude, factor, owner, name)
+        argument = cast("Any", value)
+        factor = to_si(type(argument)(1.0, argument.units), ACCELERATION, owner=owner, name=name)
+        return _scaled(argument.magnitude, factor, owner, name)
     if _has_unit(value):
         check_own_unit(value[0], value[1], owner=owner, name=name)
         return _scaled(value[0], _unit_factor(value[1], owner, name), owner, name)
@@ -82,9 +82,9 @@ def times_to_si(value: object, *, owner: str, name: str) -> Array:
         factor = to_si(f"1 {value.attrs.get('units', '')}", TIME, owner=owner, name=name)
         values = value.values
     elif _is_quantity(value):
-        given = cast("Any", value)
-        factor = to_si(type(given)(1.0, given.units), TIME, owner=owner, name=name)
-        values = given.magnitude
+        argument = cast("Any", value)
+        factor = to_si(type(argument)(1.0, argument.units), TIME, owner=owner, name=name)
+        values = argument.magnitude
     elif _has_unit(value):
         check_own_unit(value[0], value[1], owner=owner, name=name)
         factor = to_si(f"1 {value[1]}", TIME, owner=owner, name=name)
@@ -166,12 +166,12 @@ def declared_times(value: object) -> Array | None:
 
 def relative_seconds(axis: object, unit: object) -> Array | None:
     """Convert an axis to seconds from its first time; None if it is no time axis."""
-    given: Any = axis
+    value: Any = axis
     if getattr(getattr(axis, "dtype", None), "tz", None) is not None:
         import pandas as pd
 
-        given = pd.DatetimeIndex(given).tz_convert("UTC").tz_localize(None)
-    values: npt.NDArray[Any] = np.asarray(given)
+        value = pd.DatetimeIndex(value).tz_convert("UTC").tz_localize(None)
+    values: npt.NDArray[Any] = np.asarray(value)
     if values.ndim != 1 or values.size < 2:
         return None
     if values.dtype.kind in "mM":

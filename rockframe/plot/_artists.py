@@ -409,10 +409,10 @@ def _numbers(part: Component | None, units: ReaderUnits, without: Sequence[str] 
     """Write the parameters of a part, in the reader's units if these are chosen."""
     if part is None:
         return []
-    given = {name: one for name, one in part.to_dict().items() if name not in without}
-    found = arguments_in_words({name: one for name, one in given.items() if one != "0.0 N"})
-    for name, one in given.items():
-        told = units.of_sentence(str(one))
-        if told != str(one):
-            found[name.replace("_", " ")] = told
+    data = {name: one for name, one in part.to_dict().items() if name not in without}
+    found = arguments_in_words({name: one for name, one in data.items() if one != "0.0 N"})
+    for name, one in data.items():
+        text = units.of_sentence(str(one))
+        if text != str(one):
+            found[name.replace("_", " ")] = text
     return [f"{name} {words}" for name, words in found.items()]

@@ -236,21 +236,21 @@ class FigureUnits:
     owner: str
     reader: ReaderUnits
 
-    def of(self, measure: Measure, usual: str = "", **given: object) -> Shown:
-        """Give the unit of an axis; `given` has the axis's own argument by its name."""
-        for name, unit in given.items():
+    def of(self, measure: Measure, usual: str = "", **values: object) -> Shown:
+        """Give the unit of an axis; `values` has the axis's own argument by its name."""
+        for name, unit in values.items():
             if unit is not None:
                 return shown_unit(unit, measure, owner=self.owner, name=name)
         usual = usual or str(measure.unit)
         return self.reader.chose(measure) or shown_unit(usual, measure, owner=self.owner, name="")
 
-    def unless_relative(self, measure: Measure, **given: object) -> Shown | None:
+    def unless_relative(self, measure: Measure, **items: object) -> Shown | None:
         """Give the unit of an axis; None where values are relative to a scale of the body."""
-        (unit,) = given.values()
+        (unit,) = items.values()
         if unit is None and self.reader.chose(measure) is None:
             return None
         told_relative = isinstance(unit, str) and unit == RELATIVE
-        return None if told_relative else self.of(measure, "", **given)
+        return None if told_relative else self.of(measure, "", **items)
 
     def rotations(self, rotation: str | None) -> str | None:
         """Give the unit of a history of rotations: the given one, that of `units`, or degrees."""

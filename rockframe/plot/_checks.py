@@ -125,20 +125,20 @@ def draws(
     return decorate
 
 
-def _known_by(given: xr.Dataset) -> str | None:
-    return next((name for name, kind in KINDS.items() if _holds(given, kind.known)), None)
+def _known_by(dataset: xr.Dataset) -> str | None:
+    return next((name for name, kind in KINDS.items() if _holds(dataset, kind.known)), None)
 
 
-def drawn_by(given: xr.Dataset) -> str:
+def drawn_by(dataset: xr.Dataset) -> str:
     """Give the function that draws a dataset."""
-    if (known := _known_by(given)) is not None:
+    if (known := _known_by(dataset)) is not None:
         return known
-    if _holds(given, ("relative_rotation", "time", "contact_state")):
+    if _holds(dataset, ("relative_rotation", "time", "contact_state")):
         return "response"
-    if "peak_relative_rotation" in given and given["peak_relative_rotation"].ndim > 0:
+    if "peak_relative_rotation" in dataset and dataset["peak_relative_rotation"].ndim > 0:
         return "sweep"
     for names, what, way in _NOT_BY_KIND:
-        if _holds(given, names):
+        if _holds(dataset, names):
             msg = f"no function of rf.plot draws a Dataset with {what}; {way}"
             raise SchemaError(msg)
     msg = (
@@ -148,52 +148,52 @@ def drawn_by(given: xr.Dataset) -> str:
     raise SchemaError(msg)
 
 
-def checked_run(given: object, function: str) -> xr.Dataset:
+def checked_run(value: object, function: str) -> xr.Dataset:
     """Raise unless given the result of one run with histories; give it up to its end.
 
     The histories of a case of a sweep are padded with NaN to the length of the longest case.
     """
     owner = f"rf.plot.{function}"
-    given = in_units_of_schema(_checked(given, function, RUN), owner=owner)
-    given = given.assign_coords(time=in_unit(given["time"], Unit.SECOND, owner=owner).variable)
+    value = in_units_of_schema(_checked(value, function, RUN), owner=owner)
+    value = value.assign_coords(time=in_unit(value["time"], Unit.SECOND, owner=owner).variable)
     for name in (*RUN.known, *RUN.needed):
-        if given[name].dtype.kind not in "fiub":
+        if value[name].dtype.kind not in "fiub":
             raise _got(function, f"one whose {name!r} holds no numbers")
-    more = [str(name) for name in given["relative_rotation"].dims if name != "time"]
+    more = [str(name) for name in value["relative_rotation"].dims if name != "time"]
     if more:
         way = f"pick one, for example with dataset.isel({more[0]}=0)"
         raise _got(function, f"several runs over {', '.join(more)}; {way}")
-    known = np.flatnonzero(~np.isnan(given["relative_rotation"].to_numpy()))
+    known = np.flatnonzero(~np.isnan(value["relative_rotation"].to_numpy()))
     if not len(known):
         raise _got(function, "a case without a result")
     if known[-1] < 1:
         way = "simulate for longer, or with a shorter output_step"
         raise _got(function, f"one of a single instant; {way}")
-    return given.isel(time=slice(int(known[-1]) + 1))
+    return value.isel(time=slice(int(known[-1]) + 1))
 
 
-def drawable(given: object, function: str, units: UnitsLike = None) -> xr.Dataset:
+def drawable(value: object, function: str, units: UnitsLike = None) -> xr.Dataset:
     """Give the dataset that a function draws, in the chosen units; raise on anything else."""
-    dataset = _checked(given, function, KINDS[function])
+    dataset = _checked(value, function, KINDS[function])
     return reader_units(units, owner=f"rf.plot.{function}").of_all(dataset)
 
 
-def _checked(given: object, function: str, kind: DatasetKind) -> xr.Dataset:
-    if not isinstance(given, xr.Dataset) or not _holds(given, kind.known):
-        raise SchemaError(refuse(function, given))
-    missing = [repr(name) for name in (*kind.known, *kind.needed) if name not in given.variables]
+def _checked(value: object, function: str, kind: DatasetKind) -> xr.Dataset:
+    if not isinstance(value, xr.Dataset) or not _holds(value, kind.known):
+        raise SchemaError(refuse(function, value))
+    missing = [repr(name) for name in (*kind.known, *kind.needed) if name not in value.variables]
     if missing:
         raise _got(function, f"one that lacks {', '.join(missing)}; give it the whole dataset")
-    return given
+    return value
 
 
 def _got(function: str, what: str) -> SchemaError:
     return SchemaError(f"rf.plot.{function} needs {_needed(function)}, got {what}")
 
 
-def above_zero(given: object, function: str, name: str) -> float:
+def above_zero(value: object, function: str, name: str) -> float:
     """Read a number greater than zero."""
-    return to_ratio(given, owner=f"rf.plot.{function}", name=name, condition=POSITIVE, example="2")
+    return to_ratio(value, owner=f"rf.plot.{function}", name=name, condition=POSITIVE, example="2")
 
 
 def system_of_run(run: xr.Dataset, function: str) -> System:
@@ -212,36 +212,36 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         return System.from_dict(json.loads(text))
 
 
-def refuse(function: str, given: object) -> str:
+def refuse(function: str, value: object) -> str:
     """Write what a function draws, what was given, and how the latter can be drawn."""
-    what, way = _words(function, given)
+    what, way = _words(function, value)
     return f"rf.plot.{function} needs {_needed(function)}, got {what}" + (f"; {way}" if way else "")
 
 
-def _words(function: str, given: object) -> tuple[str, str]:
+def _words(function: str, value: object) -> tuple[str, str]:
     """Describe what was given, and how it can be drawn."""
-    if isinstance(given, str | PathLike):
-        name = str(cast("object", given))
+    if isinstance(value, str | PathLike):
+        name = str(cast("object", value))
         of_motions = function in ("motion", "spectra")
         opened = "rf.GroundMotion.read" if of_motions else "xr.open_dataset"
         return f"{name!r}", f"open the file first: rf.plot.{function}({opened}({name!r}))"
-    if isinstance(given, GroundMotion):
-        return f"a GroundMotion, {given.name!r}", "rf.plot.motion and rf.plot.spectra draw it"
-    if isinstance(given, System):
+    if isinstance(value, GroundMotion):
+        return f"a GroundMotion, {value.name!r}", "rf.plot.motion and rf.plot.spectra draw it"
+    if isinstance(value, System):
         way = "rf.plot.scene draws it, rf.plot.response(system.simulate(motion)) its response"
         return "a System", way
-    if isinstance(given, xr.DataArray):
-        return f"a DataArray, {given.name!r}", "a figure is drawn from the whole Dataset"
-    if not isinstance(given, xr.Dataset):
-        return f"{given!r}" if given is None else f"a value of type {type(given).__name__}", ""
-    if (known := _known_by(given)) is not None:
+    if isinstance(value, xr.DataArray):
+        return f"a DataArray, {value.name!r}", "a figure is drawn from the whole Dataset"
+    if not isinstance(value, xr.Dataset):
+        return f"{value!r}" if value is None else f"a value of type {type(value).__name__}", ""
+    if (known := _known_by(value)) is not None:
         return f"a Dataset with {KINDS[known].what}", f"rf.plot.{known} draws it"
     for names, what, way in _NOT_BY_KIND:
-        if _holds(given, names):
-            if "overturned" in given and given["overturned"].ndim > 0:
+        if _holds(value, names):
+            if "overturned" in value and value["overturned"].ndim > 0:
                 return "a Dataset with many runs", "rf.plot.sweep draws it"
             return f"a Dataset with {what}", way
-    title = given.attrs.get("title")
+    title = value.attrs.get("title")
     return "a Dataset" + (f" with the title {title!r}" if title else " of another kind"), ""
 
 
@@ -250,8 +250,8 @@ def _needed(function: str) -> str:
     return _NEEDED.get(function, RUN.words)
 
 
-def _holds(given: xr.Dataset, names: tuple[str, ...]) -> bool:
-    return all(name in given.variables for name in names)
+def _holds(dataset: xr.Dataset, names: tuple[str, ...]) -> bool:
+    return all(name in dataset.variables for name in names)
 
 
 def overturning_angles(dataset: xr.Dataset) -> tuple[float, float]:

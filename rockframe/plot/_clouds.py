@@ -57,14 +57,14 @@ def cloud(
     >>> rf.plot.cloud(found).get_ylabel()
     'peak relative rotation [-]'
     """
-    given = drawable(dataset, "cloud", units)
+    data = drawable(dataset, "cloud", units)
     on = single(ax, "cloud", (6.0, 4.3))
     axes = on.axes
-    name = str(given.attrs["intensity"])
-    along, response = (given[f"cloud_{one}"].to_numpy() for one in ("intensity", "response"))
+    name = str(data.attrs["intensity"])
+    along, response = (data[f"cloud_{one}"].to_numpy() for one in ("intensity", "response"))
     fell, still = np.isinf(response), response == 0.0
     between = ~fell & ~still
-    limits = given["response_limit"].to_numpy()
+    limits = data["response_limit"].to_numpy()
     limits = limits[np.isfinite(limits)]
     shown = np.concatenate([response[between], limits])
     low, high = (shown.min() / 1.6, shown.max() * 1.6) if len(shown) else (0.1, 1.0)
@@ -76,7 +76,7 @@ def cloud(
     x = np.geomspace(along.min(), along.max(), 101)
     # the line was fitted in SI units; in any units it passes through the mean of the runs
     logs = np.log(along[between])
-    slope, spread = float(given["regression_slope"]), float(given["residual_dispersion"])
+    slope, spread = float(data["regression_slope"]), float(data["residual_dispersion"])
     if np.isfinite(slope):
         middle = np.log(response[between]).mean() + slope * (np.log(x) - logs.mean())
         axes.plot(x, np.exp(middle), color=COLOURS[0], lw=1.6, label="median")
@@ -85,15 +85,15 @@ def cloud(
             axes.fill_between(x, *ends, color=COLOURS[0], alpha=0.12, linewidth=0.0)
     for one in limits:
         axes.axhline(one, color="0.3", lw=0.8, ls=":")
-    response_name = given["cloud_response"].rename(str(given.attrs["response"]))
+    response_name = data["cloud_response"].rename(str(data.attrs["response"]))
     axes.set(
         xscale="log", yscale="log", ylim=(low / 1.3, high * 1.3),
-        xlabel=label_of_intensity(given[name], given), ylabel=label_of(response_name),
+        xlabel=label_of_intensity(data[name], data), ylabel=label_of(response_name),
     )  # fmt: skip
     label_log_ticks(axes)
     grid(axes)
     on.name_lines()
-    on.entitle(raised(str(given.attrs["verdict"])), title)
+    on.entitle(raised(str(data.attrs["verdict"])), title)
     return axes
 
 
@@ -130,26 +130,26 @@ def annual_rate(
     >>> rf.plot.annual_rate(rates).get_ylabel()
     'share of the rate [%]'
     """
-    given = drawable(dataset, "annual_rate", units)
-    several = [str(dim) for dim in given["annual_rate"].dims if dim != "limit_state"]
-    given = given.isel({dim: 0 for dim in several if given.sizes[dim] == 1})
-    wide = [dim for dim in several if dim in given.dims]
+    data = drawable(dataset, "annual_rate", units)
+    several = [str(dim) for dim in data["annual_rate"].dims if dim != "limit_state"]
+    data = data.isel({dim: 0 for dim in several if data.sizes[dim] == 1})
+    wide = [dim for dim in several if dim in data.dims]
     if wide:
         msg = (
             f"rf.plot.annual_rate: found several structures, by {', '.join(wide)}; pick one, for "
             f"example with rates.isel({wide[0]}=0)"
         )
         raise SchemaError(msg)
-    if "limit_state" not in given.dims:
-        given = given.expand_dims("limit_state")
+    if "limit_state" not in data.dims:
+        data = data.expand_dims("limit_state")
     on = single(ax, "annual_rate", (6.0, 4.0))
     axes = on.axes
-    middle = given["contributing_intensity"]
+    middle = data["contributing_intensity"]
     logs = np.log(middle.to_numpy())
     step = logs[1] - logs[0]
     edges = np.exp(np.append(logs - 0.5 * step, logs[-1] + 0.5 * step))
-    for number in range(given.sizes["limit_state"]):
-        one = given.isel(limit_state=number)
+    for number in range(data.sizes["limit_state"]):
+        one = data.isel(limit_state=number)
         state = (
             as_label(str(one["limit_state"].item())) if "limit_state" in one.coords else "counted"
         )
@@ -162,11 +162,11 @@ def annual_rate(
         )  # fmt: skip
     axes.set(
         xscale="log", ylabel="share of the rate [%]",
-        xlabel=label_of_intensity(middle.rename(str(given.attrs["intensity"])), given),
+        xlabel=label_of_intensity(middle.rename(str(data.attrs["intensity"])), data),
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
     label_log_ticks(axes)
     grid(axes)
     on.name_lines()
-    on.entitle(raised(str(given.attrs["verdict"])), title)
+    on.entitle(raised(str(data.attrs["verdict"])), title)
     return axes

@@ -80,12 +80,12 @@ def phase(
     'rotation [°]'
     >>> axes.figure.savefig("phase.png")  # doctest: +SKIP
     """
-    given = runs_of(runs, "phase", window)
+    data = runs_of(runs, "phase", window)
     chosen = units_of(units, "phase")
     unit = chosen.unless_relative(ANGLE, rotation=rotation)
     on = single(ax, "phase", (5.6, 4.4))
     reach, end = 0.0, np.inf
-    for run in given:
+    for run in data:
         across, up = of_rotation(run, unit), _rate(run, unit)
         on.axes.plot(across, up, color=run.colour, ls=run.style, lw=0.9, label=run.label)
         on.axes.plot(across[:1], up[:1], "o", color=run.colour, markersize=5.0)
@@ -103,9 +103,9 @@ def phase(
     else:
         on.axes.set(xlabel=axis_label("rotation", unit.words))
         on.axes.set(ylabel=axis_label("rate of the rotation", f"{unit.words} s^-1"))
-    if len(given) > 1:
+    if len(data) > 1:
         key(on.axes)
-    on.entitle(runs_title(given, chosen.reader), title)
+    on.entitle(runs_title(data, chosen.reader), title)
     return on.axes
 
 
@@ -231,13 +231,13 @@ def energies(
     'energy [kJ]'
     >>> axes.figure.savefig("energies.png")  # doctest: +SKIP
     """
-    given = runs_of(run, "energies", None)
-    if len(given) > 1:
+    data = runs_of(run, "energies", None)
+    if len(data) > 1:
         raise SchemaError(refuse("energies", run))
-    _need(given, ENERGIES, "energies")
+    _need(data, ENERGIES, "energies")
     chosen = units_of(units, "energies")
     unit = chosen.of(ENERGY, "kJ", energy=energy)
-    (whole,) = given
+    (whole,) = data
     from_start = {
         name: unit.of(whole.dataset[name] - (whole.dataset[name][0] if name in _STATES else 0.0))
         for name in ENERGIES
@@ -268,7 +268,7 @@ def energies(
     on.axes.set(xlabel="time [s]", ylabel=axis_label("energy", unit.words))
     on.axes.set_xlim(part.time[0], part.time[-1])
     on.legend(*on.axes.get_legend_handles_labels(), columns=4)
-    on.entitle(runs_title(given, chosen.reader), title)
+    on.entitle(runs_title(data, chosen.reader), title)
     return on.axes
 
 
@@ -321,11 +321,11 @@ def _need(runs: list[Run], names: tuple[str, ...], function: str) -> None:
     for run in runs:
         missing = [name for name in names if name not in run.dataset]
         if missing:
-            asked = "energy" if missing[0] in ENERGIES else missing[0]
+            requested = "energy" if missing[0] in ENERGIES else missing[0]
             text = SCHEMA[missing[0]].long_name
             msg = (
                 f"rf.plot.{function} needs {missing[0]!r}, the {text}, which runs have on request: "
-                f"system.simulate(motion, outputs=({asked!r},))"
+                f"system.simulate(motion, outputs=({requested!r},))"
             )
             raise SchemaError(msg)
 

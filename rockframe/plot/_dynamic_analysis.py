@@ -37,18 +37,18 @@ _CAPPED: Final = 1.0
 """Peaks over the overturning angle above this are drawn at this value."""
 
 
-def of_one_structure(given: xr.Dataset) -> xr.Dataset:
+def of_one_structure(dataset: xr.Dataset) -> xr.Dataset:
     """Give an analysis without axes of a single value; raise on several structures."""
-    dims = given["capacity_scale"].dims
+    dims = dataset["capacity_scale"].dims
     beside = [dim for dim in dims if dim not in ("limit_state", "motion")]
-    several = [f"{dim} ({given.sizes[dim]})" for dim in beside if given.sizes[dim] > 1]
+    several = [f"{dim} ({dataset.sizes[dim]})" for dim in beside if dataset.sizes[dim] > 1]
     if several:
         msg = (
             f"rf.plot.dynamic_analysis draws one structure, this analysis is of several, by "
             f"{', '.join(several)}; choose one, for example with analysis.isel({beside[0]}=0)"
         )
         raise SchemaError(msg)
-    return given.squeeze(beside)
+    return dataset.squeeze(beside)
 
 
 @draws(
@@ -98,7 +98,7 @@ def dynamic_analysis(
     >>> panels[0].get_ylabel()
     'peak ground acceleration [g]'
     """
-    given = of_one_structure(drawable(dataset, "dynamic_analysis", units))
+    data = of_one_structure(drawable(dataset, "dynamic_analysis", units))
     names = chosen_panels(panels, _PANELS, "dynamic_analysis")
     widths = [_PANELS[name] for name in names]
     on = sheet(
@@ -107,13 +107,13 @@ def dynamic_analysis(
         choice=True,
     )  # fmt: skip
     drawn = dict(zip(names, on.panels, strict=True))
-    measure = given[str(given.attrs.get("intensity", "scale"))]
-    intensity = measure.broadcast_like(given["peak_relative_rotation"])
-    flips = _flips(given, intensity)
+    measure = data[str(data.attrs.get("intensity", "scale"))]
+    intensity = measure.broadcast_like(data["peak_relative_rotation"])
+    flips = _flips(data, intensity)
     if "peaks" in drawn:
-        _peaks(drawn["peaks"], given, intensity, flips)
+        _peaks(drawn["peaks"], data, intensity, flips)
     if "shares" in drawn:
-        _shares(drawn["shares"], given, intensity)
+        _shares(drawn["shares"], data, intensity)
     # if all motions have overturned, nothing changes above the last change of a verdict
     highest = [float(places.max(initial=0.0)) for places in flips]
     above = _ROOM * max(highest) if min(highest) > 0.0 else np.inf
@@ -123,26 +123,28 @@ def dynamic_analysis(
         grid(axes)
     # given panels may be anywhere in a figure, so each has its label
     for axes in on.panels if on.own is None else on.panels[:1]:
-        axes.set_ylabel(label_of_intensity(measure, given))
+        axes.set_ylabel(label_of_intensity(measure, data))
     on.name_lines()
     verdict = verdict_of_analysis(of_one_structure(dataset))
     on.entitle(units_of(units, "dynamic_analysis").reader.of_sentence(verdict), title)
     return on.panels
 
 
-def _flips(given: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
+def _flips(dataset: xr.Dataset, intensity: xr.DataArray) -> list[np.ndarray]:
     """Give the intensities at which the verdict on each motion changes."""
-    scales = given["scale"].to_numpy()
-    above = given["scale_above"].isel(limit_state=-1).transpose("motion", ...).to_numpy()
+    scales = dataset["scale"].to_numpy()
+    above = dataset["scale_above"].isel(limit_state=-1).transpose("motion", ...).to_numpy()
     each = zip(above, intensity.transpose("motion", ...).to_numpy(), strict=True)
     return [at_scales(along, scales, flips[~np.isnan(flips)]) for flips, along in each]
 
 
-def _peaks(axes: Axes, given: xr.Dataset, intensity: xr.DataArray, flips: list[np.ndarray]) -> None:
+def _peaks(
+    axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray, flips: list[np.ndarray]
+) -> None:
     """Draw the peaks of the motions, and the fractiles of four motions or more."""
-    several, lines = given.sizes["motion"] >= _LEAST_FRACTILES, list[tuple[Any, Any]]()
+    several, lines = dataset.sizes["motion"] >= _LEAST_FRACTILES, list[tuple[Any, Any]]()
     for number, places in enumerate(flips):
-        one, along = given.isel(motion=number), intensity.isel(motion=number).to_numpy()
+        one, along = dataset.isel(motion=number), intensity.isel(motion=number).to_numpy()
         line = _until_flips(along, one["peak_relative_rotation"].to_numpy(), places)
         colour = GREY if several else colour_of(number)
         words = (
@@ -160,12 +162,12 @@ def _peaks(axes: Axes, given: xr.Dataset, intensity: xr.DataArray, flips: list[n
     axes.set(xlabel=r"peak of $|\alpha|/\theta$ [-]", xlim=(0.0, 1.03))
 
 
-def _shares(axes: Axes, given: xr.Dataset, intensity: xr.DataArray) -> None:
+def _shares(axes: Axes, dataset: xr.Dataset, intensity: xr.DataArray) -> None:
     """Draw the share of the motions whose capacity is below an intensity."""
-    scales = given["scale"].to_numpy()
+    scales = dataset["scale"].to_numpy()
     each = intensity.transpose("motion", "scale").to_numpy()
-    for number, state in enumerate(given["limit_state"].to_numpy()):
-        capacity = given["capacity_scale"].isel(limit_state=number).to_numpy()
+    for number, state in enumerate(dataset["limit_state"].to_numpy()):
+        capacity = dataset["capacity_scale"].isel(limit_state=number).to_numpy()
         places = [
             at_scales(along, scales, scale)
             for scale, along in zip(capacity, each, strict=True)
@@ -234,12 +236,12 @@ def fractile_curves(
     >>> rf.plot.fractile_curves(rf.fractile_curves(runs, "PGA")).get_xlabel()
     'peak relative rotation [-]'
     """
-    given = drawable(dataset, "fractile_curves", units)
+    data = drawable(dataset, "fractile_curves", units)
     on = single(ax, "fractile_curves", (6.0, 4.3))
     axes = on.axes
-    name = str(given.attrs["intensity"])
-    up, levels = given[name].to_numpy(), given["response_level"].to_numpy()
-    runs = given["motion_response"].transpose("motion", name).to_numpy()
+    name = str(data.attrs["intensity"])
+    up, levels = data[name].to_numpy(), data["response_level"].to_numpy()
+    runs = data["motion_response"].transpose("motion", name).to_numpy()
     finite = runs[np.isfinite(runs)]
     right = _ROOM * max(float(levels[-1]), float(finite.max(initial=0.0)))
     for number, one in enumerate(runs):
@@ -248,26 +250,26 @@ def fractile_curves(
         fallen = np.isinf(one)
         starts = np.flatnonzero(fallen[1:] & ~fallen[:-1])
         axes.plot(one[starts], up[starts + 1], "o", color=GREY, ms=3)
-    shares = given["quantile"].to_numpy().round(9).tolist()
+    shares = data["quantile"].to_numpy().round(9).tolist()
     for number, share in enumerate(shares):
         colour, words = colour_of(number), f"{100.0 * share:.3g} %"
         # a high fractile of the response corresponds to a low one of the intensity
         rest = round(1.0 - share, 9)
         paired = colour_of(shares.index(rest)) if rest in shares else colour
-        one = given.isel(quantile=number)
+        one = data.isel(quantile=number)
         of_response = np.minimum(one["response_fractile"].to_numpy(), 2.0 * right)
         axes.plot(of_response, up, color=colour, lw=1.6, label=f"{words} of responses")
         reached = one["intensity_fractile"].where(np.isfinite)
         axes.plot(levels, reached, color=paired, lw=1.4, ls="--", label=f"{words} of intensities")
-    words = str(given.attrs["response"])
+    words = str(data.attrs["response"])
     axes.set(
-        xlabel=label_of(given["response_level"].rename(words)),
-        ylabel=label_of_intensity(given[name], given),
+        xlabel=label_of(data["response_level"].rename(words)),
+        ylabel=label_of_intensity(data[name], data),
         xlim=(0.0, right),
         # nothing is drawn above the intensity at which the last motion overturns
         ylim=(0.0, min(up[-1], _ROOM * up[np.isfinite(runs).any(axis=0)].max(initial=up[0]))),
     )
     grid(axes)
     on.name_lines()
-    on.entitle(raised(str(given.attrs["verdict"])), title)
+    on.entitle(raised(str(data.attrs["verdict"])), title)
     return axes

@@ -59,24 +59,24 @@ def ensemble(
     >>> rf.plot.ensemble(found).get_xlabel()
     'peak rotation [rad]'
     """
-    given = drawable(dataset, "ensemble", units)
+    data = drawable(dataset, "ensemble", units)
     on = single(ax, "ensemble", (5.6, 3.9))
     axes = on.axes
-    values = given["ordered_value"].rename(str(given.attrs["variable"]))
+    values = data["ordered_value"].rename(str(data.attrs["variable"]))
     for name, alpha, words in (
         ("simultaneous", 0.12, "bounds everywhere at once"),
         ("cumulative_probability", 0.25, "bounds at each value"),
     ):
-        low, high = (given[f"{name}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
+        low, high = (data[f"{name}_{end}_bound"].to_numpy() for end in ("lower", "upper"))
         label = words if np.isfinite(low).any() else None
         axes.fill_between(
             values, low, high, step="post", color=COLOURS[0], alpha=alpha, lw=0.0, label=label
         )
-    axes.step(values, given["cumulative_probability"], where="post", color=COLOURS[0])
+    axes.step(values, data["cumulative_probability"], where="post", color=COLOURS[0])
     axes.set(xlabel=label_of(values), ylabel="share of the ensemble [-]", ylim=(0.0, 1.02))
     grid(axes)
     on.name_lines()
-    on.entitle(raised(str(given.attrs["verdict"])), title)
+    on.entitle(raised(str(data.attrs["verdict"])), title)
     return axes
 
 
@@ -118,19 +118,19 @@ def probability(
     >>> [axes.get_xlabel() for axes in rf.plot.probability(found)]
     ['first-order index [-]', 'width [m]']
     """
-    given = drawable(dataset, "probability", units)
+    data = drawable(dataset, "probability", units)
     names = ("indices", "shares")
     on = sheet(ax, "probability", names, (7.6, 3.6), lambda figure: figure.subplots(1, 2))
     left, right = on.panels
-    names = [str(name).replace("_", " ") for name in given["parameter"].to_numpy()]
-    indices = given["first_order_index"].fillna(0.0).to_numpy()
+    names = [str(name).replace("_", " ") for name in data["parameter"].to_numpy()]
+    indices = data["first_order_index"].fillna(0.0).to_numpy()
     left.barh(names[::-1], indices[::-1], color=COLOURS[0])
     left.set(xlabel="first-order index [-]", xlim=(0.0, None), ylim=(-0.6, len(names) - 0.4))
-    if given["first_order_index"].isnull().all():
+    if data["first_order_index"].isnull().all():
         left.set_xticks([])
         left.text(0.5, 0.5, "all verdicts are alike", ha="center", transform=left.transAxes)
-    first = given[str(given["parameter"].to_numpy()[0])]
-    verdict = overturns(given).to_numpy()
+    first = data[str(data["parameter"].to_numpy()[0])]
+    verdict = overturns(data).to_numpy()
     known = ~np.isnan(verdict)
     if first.dtype.kind == "f":
         cuts = np.quantile(first.to_numpy()[known], np.linspace(0.0, 1.0, 13))
@@ -149,8 +149,8 @@ def probability(
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
-    told = units_of(units, "probability").reader.of_sentence(cases_verdict(dataset))
-    on.entitle(told, title)
+    words = units_of(units, "probability").reader.of_sentence(cases_verdict(dataset))
+    on.entitle(words, title)
     return on.panels
 
 
@@ -191,29 +191,29 @@ def subset_simulation(
     >>> rf.plot.subset_simulation(found).get_ylabel()
     'probability of reaching it [-]'
     """
-    given = drawable(dataset, "subset_simulation", units)
+    data = drawable(dataset, "subset_simulation", units)
     on = single(ax, "subset_simulation", (6.0, 4.1))
     axes = on.axes
-    known = given["demand"].notnull().to_numpy()
-    demand = given["demand"].to_numpy()[known]
+    known = data["demand"].notnull().to_numpy()
+    demand = data["demand"].to_numpy()[known]
     order = np.argsort(-demand, kind="stable")
-    demand, level = demand[order], given["sample_level"].to_numpy()[known][order]
-    reached = np.cumsum(given["sample_weight"].to_numpy()[known][order])
+    demand, level = demand[order], data["sample_level"].to_numpy()[known][order]
+    reached = np.cumsum(data["sample_weight"].to_numpy()[known][order])
     finite = np.isfinite(demand)
     # of samples with equal demand the last one has the weight of all
     last = np.flatnonzero(finite & np.append(demand[1:] != demand[:-1], True))
-    for number in given["sampling_level"].to_numpy():
+    for number in data["sampling_level"].to_numpy():
         those = last[level[last] == number]
         # near a threshold there are samples of both levels
         axes.plot(demand[those], reached[those], ".", ms=3.5, color=colour_of(int(number) - 1))
-    for threshold in given["demand_threshold"].to_numpy():
+    for threshold in data["demand_threshold"].to_numpy():
         if np.isfinite(threshold):
             axes.axvline(threshold, color="0.3", lw=0.8, ls=":")
-    limit = float(given["demand_threshold"][-1])
+    limit = float(data["demand_threshold"][-1])
     most = float(demand[finite].max(initial=0.0)) or 1.0
     place = limit if np.isfinite(limit) else 1.08 * most
-    probability = float(given[_NAME])
-    ends = [float(given[f"{_NAME}_{end}_bound"]) for end in ("lower", "upper")]
+    probability = float(data[_NAME])
+    ends = [float(data[f"{_NAME}_{end}_bound"]) for end in ("lower", "upper")]
     if probability > 0.0:
         reach = np.abs(np.array(ends) - probability)[:, None]
         axes.errorbar(place, probability, yerr=reach, fmt="D", ms=5.0, capsize=3.0, color="0.1")
@@ -224,7 +224,7 @@ def subset_simulation(
         ylabel="probability of reaching it [-]",
     )  # fmt: skip
     grid(axes)
-    on.entitle(raised(str(given.attrs["verdict"])), title)
+    on.entitle(raised(str(data.attrs["verdict"])), title)
     return axes
 
 
@@ -281,13 +281,13 @@ def fragility(
     >>> rf.plot.fragility(rf.fragility(counts, "PGA"), units={"acceleration": "g"}).get_xlabel()
     'peak ground acceleration [g]'
     """
-    given = drawable(dataset, "fragility", units)
-    if "limit_state" not in given.dims:
-        given = given.expand_dims("limit_state")
-    alone = [dim for dim, size in given["fragility_status"].sizes.items() if size == 1]
-    given = given.isel({dim: 0 for dim in alone if dim != "limit_state"})
-    measures = measures_of(given)
-    states = [given.isel(limit_state=k) for k in range(given.sizes["limit_state"])]
+    data = drawable(dataset, "fragility", units)
+    if "limit_state" not in data.dims:
+        data = data.expand_dims("limit_state")
+    alone = [dim for dim, size in data["fragility_status"].sizes.items() if size == 1]
+    data = data.isel({dim: 0 for dim in alone if dim != "limit_state"})
+    measures = measures_of(data)
+    states = [data.isel(limit_state=k) for k in range(data.sizes["limit_state"])]
     structures = [str(dim) for dim in states[0]["fragility_status"].dims]
     _check_structures(states[0], structures, 1 if len(measures) > 1 else _MOST_STRUCTURES)
     if len(measures) == 1 and not structures:
@@ -306,7 +306,7 @@ def fragility(
             _contours(axes, one, measures)
     if len(measures) == 1:
         on.name_lines()
-    on.entitle(raised(verdict_of_fragility(given)), title)
+    on.entitle(raised(verdict_of_fragility(data)), title)
     return on.axes if len(measures) == 1 and not structures else on.panels
 
 

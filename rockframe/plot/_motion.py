@@ -46,21 +46,21 @@ class Drawn:
     style: Any
 
 
-def motions_title(given: list[Drawn]) -> str:
+def motions_title(values: list[Drawn]) -> str:
     """Give the title of a figure: the name of a single motion, else none."""
-    if len(given) != 1:
+    if len(values) != 1:
         return ""
-    (one,) = given
+    (one,) = values
     return shown_name(one.motion.name, one.motion.history)
 
 
-def drawn_motions(given: object, function: str) -> list[Drawn]:
+def drawn_motions(value: object, function: str) -> list[Drawn]:
     """Read one or several motions."""
     labelled: dict[str, Any] = {}
-    if isinstance(given, Mapping):
-        labelled = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
-    elif isinstance(given, list | tuple):
-        several = cast("Sequence[Any]", given)
+    if isinstance(value, Mapping):
+        labelled = {str(key): one for key, one in cast("Mapping[Any, Any]", value).items()}
+    elif isinstance(value, list | tuple):
+        several = cast("Sequence[Any]", value)
         names = [
             shown_name(str(getattr(one, "name", "")), getattr(one, "history", ()))
             for one in several
@@ -77,9 +77,9 @@ def drawn_motions(given: object, function: str) -> list[Drawn]:
                 zip(labels_of_names(labelled), labelled.values(), strict=True)
             )
         ]
-    if not isinstance(given, GroundMotion):
-        raise ComponentError(refuse(function, given))
-    return [Drawn(given, None, colour_of(0), "-")]
+    if not isinstance(value, GroundMotion):
+        raise ComponentError(refuse(function, value))
+    return [Drawn(value, None, colour_of(0), "-")]
 
 
 _ROWS: Final = ("acceleration", "velocity", "displacement")
@@ -130,7 +130,7 @@ def motion(
     >>> panels[-1].get_xlabel()
     'time [s]'
     """
-    given = drawn_motions(motion, "motion")
+    data = drawn_motions(motion, "motion")
     cut = window_of(window, "motion")
     chosen = units_of(units, "motion")
     shown_in = (
@@ -138,17 +138,17 @@ def motion(
         chosen.of(VELOCITY, velocity=velocity),
         chosen.of(LENGTH, displacement=displacement),
     )
-    found = [_part(velocity_and_displacement(one.motion), cut) for one in given]
+    found = [_part(velocity_and_displacement(one.motion), cut) for one in data]
     upwards = None
-    if len(given) == 1 and given[0].motion.si.vertical is not None:
-        upwards = _part(velocity_and_displacement(given[0].motion, component="vertical"), cut)
+    if len(data) == 1 and data[0].motion.si.vertical is not None:
+        upwards = _part(velocity_and_displacement(data[0].motion, component="vertical"), cut)
     on = sheet(ax, "motion", _ROWS, (7.2, 5.4), lambda figure: figure.subplots(3, 1, sharex=True))
     colours = (ink(), BLUE, GREEN)
     for axes, name, unit, colour in zip(on.panels, _ROWS, shown_in, colours, strict=True):
         if upwards is not None:
             values = unit.of(upwards[f"vertical_ground_{name}"])
             axes.plot(upwards["time"], values, color=GREY, lw=0.8, label="vertical")
-        for one, history in zip(given, found, strict=True):
+        for one, history in zip(data, found, strict=True):
             single = one.label is None
             axes.plot(
                 history["time"], unit.of(history[f"ground_{name}"]), linestyle=one.style, lw=0.8,
@@ -165,12 +165,12 @@ def motion(
         )
     if upwards is not None:
         key(on.axes)
-    elif len(given) > 1:
+    elif len(data) > 1:
         on.legend(*on.axes.get_legend_handles_labels(), fontsize="small")
     on.panels[-1].set_xlabel("time [s]")
     if on.own is not None:
         on.own.align_ylabels(on.panels)
-    on.entitle(motions_title(given), title)
+    on.entitle(motions_title(data), title)
     return on.panels
 
 

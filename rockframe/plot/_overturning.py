@@ -73,30 +73,30 @@ def overturning_map(
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    given = drawable(dataset, "overturning_map", units)
-    asked = units_of(units, "overturning_map").reader.chose(ACCELERATION) is not None
-    relative = "relative_peak_ground_acceleration" in given.coords and not asked
-    across = given["relative_pulse_frequency" if relative else "frequency"]
-    up = given["relative_peak_ground_acceleration" if relative else "amplitude"]
-    told = int(given.attrs["impacts_told_apart"])
-    count = given["impacts_before_overturning"].transpose("amplitude", "frequency")
-    colours = [STANDS, *(_WAYS[min(k, len(_WAYS) - 1)] for k in range(told + 1))]
+    data = drawable(dataset, "overturning_map", units)
+    requested = units_of(units, "overturning_map").reader.chose(ACCELERATION) is not None
+    relative = "relative_peak_ground_acceleration" in data.coords and not requested
+    across = data["relative_pulse_frequency" if relative else "frequency"]
+    up = data["relative_peak_ground_acceleration" if relative else "amplitude"]
+    message = int(data.attrs["impacts_told_apart"])
+    count = data["impacts_before_overturning"].transpose("amplitude", "frequency")
+    colours = [STANDS, *(_WAYS[min(k, len(_WAYS) - 1)] for k in range(message + 1))]
     on = single(ax, "overturning_map", (6.0, 4.3))
     axes = on.axes
-    known = overturns(given).transpose(*count.dims).notnull()
+    known = overturns(data).transpose(*count.dims).notnull()
     axes.pcolormesh(
         across, up, count.fillna(-1.0).where(known), cmap=ListedColormap(colours), vmin=-1.5,
-        vmax=told + 0.5, shading="nearest",
+        vmax=message + 0.5, shading="nearest",
     )  # fmt: skip
-    middle = 0.5 * (given["amplitude_below"] + given["amplitude_above"])
-    size = float(up[-1] / given["amplitude"][-1])
-    for number in range(given.sizes.get("boundary", 0)):
+    middle = 0.5 * (data["amplitude_below"] + data["amplitude_above"])
+    size = float(up[-1] / data["amplitude"][-1])
+    for number in range(data.sizes.get("boundary", 0)):
         axes.plot(across, size * middle.isel(boundary=number), ".", color="black", ms=2.0)
     axes.set(
         xlabel=r"frequency over the block's, $\omega_p/p$ [-]" if relative else label_of(across),
         ylabel=r"peak acceleration over that of uplift [-]" if relative else label_of(up),
     )
-    words = ["stands", *(_after(k, told) for k in range(told + 1))]
+    words = ["stands", *(_after(k, message) for k in range(message + 1))]
     patches = [Patch(color=one, label=text) for one, text in zip(colours, words, strict=True)]
     if not known.all():
         words.append("no verdict")
@@ -140,13 +140,13 @@ def rocking_spectrum(
     >>> panels[0].get_title()
     'H/B = 5'
     """
-    given = drawable(dataset, "rocking_spectrum", units)
-    peaks = given["peak_relative_rotation"].clip(max=_CAPPED)
+    data = drawable(dataset, "rocking_spectrum", units)
+    peaks = data["peak_relative_rotation"].clip(max=_CAPPED)
     on = _by_slenderness(ax, "rocking_spectrum", peaks, ylim=(0.0, 1.06))
     for axes in on.panels:
         axes.axhline(_CAPPED, color="0.5", lw=0.8, ls=":")
     on.axes.set_ylabel(r"peak of $|\alpha|/\theta$ [-]")
-    if given.sizes["motion"] <= _MOST_NAMED:
+    if data.sizes["motion"] <= _MOST_NAMED:
         on.name_lines()
     on.entitle("Rocking spectrum", title)
     return on.panels
@@ -188,11 +188,11 @@ def overturning_spectrum(
     >>> panels[0].get_ylabel()
     'peak ground acceleration [g]'
     """
-    given = drawable(dataset, "overturning_spectrum", units)
-    measure = given["capacity_intensity"].rename(str(given.attrs["intensity"]))
+    data = drawable(dataset, "overturning_spectrum", units)
+    measure = data["capacity_intensity"].rename(str(data.attrs["intensity"]))
     on = _by_slenderness(ax, "overturning_spectrum", measure, yscale="log")
-    on.axes.set_ylabel(label_of_intensity(measure, given))
-    if given.sizes["motion"] <= _MOST_NAMED:
+    on.axes.set_ylabel(label_of_intensity(measure, data))
+    if data.sizes["motion"] <= _MOST_NAMED:
         on.name_lines()
     on.entitle("Least intensity that overturns", title)
     return on.panels

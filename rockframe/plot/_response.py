@@ -230,7 +230,7 @@ def response(
     'rotation [°]'
     >>> axes.figure.savefig("rotation.png")  # doctest: +SKIP
     """
-    given = runs_of(runs, "response", window)
+    data = runs_of(runs, "response", window)
     chosen = units_of(units, "response")
     shown_in = {
         "ground": chosen.of(ACCELERATION, acceleration=acceleration),
@@ -238,10 +238,10 @@ def response(
         "vertical": chosen.unless_relative(LENGTH, vertical=vertical),
     }
     marked = truth(events, owner="rf.plot.response", name="events")
-    strips = strips_of(given)
+    strips = strips_of(data)
     names = [
         name
-        for panel in (usual_panels(given) if panels is None else _chosen(panels, given))
+        for panel in (usual_panels(data) if panels is None else _chosen(panels, data))
         for name in (strips if panel == "contact" else {panel: None})
     ]
     heights = [
@@ -260,19 +260,19 @@ def response(
             state, words = strips[name]
             draw_contact(axes, state, words)
         elif name not in _DRAW:
-            _history(axes, given, name, chosen.reader)
+            _history(axes, data, name, chosen.reader)
         else:
-            _DRAW[name](axes, given, shown_in[name])
+            _DRAW[name](axes, data, shown_in[name])
     if marked and "rotation" in drawn:
-        draw_events(drawn["rotation"], given, shown_in["rotation"])
+        draw_events(drawn["rotation"], data, shown_in["rotation"])
     below = [axes for name, axes in drawn.items() if name in strips]
     if below:
         draw_contact_legend(below[-1], next(iter(strips.values()))[0])
     on.panels[-1].set_xlabel("time [s]")
-    ends = [run.time[[0, -1]] for run in given]
+    ends = [run.time[[0, -1]] for run in data]
     for axes in on.panels:
         axes.set_xlim(min(start for start, _ in ends), max(end for _, end in ends))
-    on.entitle(runs_title(given, chosen.reader), title)
+    on.entitle(runs_title(data, chosen.reader), title)
     return on.panels
 
 

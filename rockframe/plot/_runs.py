@@ -41,12 +41,12 @@ class Run:
         return np.where(times - self.time[before] <= self.time[after] - times, before, after)
 
 
-def runs_of(given: object, function: str, window: Window) -> list[Run]:
+def runs_of(value: object, function: str, window: Window) -> list[Run]:
     """Read one or several runs, and cut out the window that is drawn."""
     cut = window_of(window, function)
-    labelled = _labelled(given)
+    labelled = _labelled(value)
     if labelled is None:
-        return [Run(_part(checked_run(given, function), cut, function), None, colour_of(0), "-")]
+        return [Run(_part(checked_run(value, function), cut, function), None, colour_of(0), "-")]
     runs = [checked_run(one, function) for one in labelled.values()]
     return [
         Run(_part(one, cut, function), label, colour_of(number), style_of(number))
@@ -114,14 +114,14 @@ def _labels_of(run: xr.Dataset) -> str:
     return ", ".join(words) or "case of a sweep"
 
 
-def _labelled(given: object) -> dict[str, Any] | None:
+def _labelled(value: object) -> dict[str, Any] | None:
     """Give several runs by their labels; None for a single run."""
-    if isinstance(given, Mapping) and not isinstance(given, xr.Dataset):
-        told = {str(key): one for key, one in cast("Mapping[Any, Any]", given).items()}
-        return told if told and _all_runs(list(told.values())) else None
-    if not isinstance(given, list | tuple) or not given:
+    if isinstance(value, Mapping) and not isinstance(value, xr.Dataset):
+        messages = {str(key): one for key, one in cast("Mapping[Any, Any]", value).items()}
+        return messages if messages and _all_runs(list(messages.values())) else None
+    if not isinstance(value, list | tuple) or not value:
         return None
-    runs = list(cast("Sequence[Any]", given))
+    runs = list(cast("Sequence[Any]", value))
     if not _all_runs(runs):
         return None
     cases = [_labels_of(run) if "axes_json" in run.attrs else "" for run in runs]
@@ -132,8 +132,8 @@ def _labelled(given: object) -> dict[str, Any] | None:
     return {f"run {number}": run for number, run in enumerate(runs, start=1)}
 
 
-def _all_runs(given: list[Any]) -> bool:
-    return all(isinstance(one, xr.Dataset) for one in given)
+def _all_runs(values: list[Any]) -> bool:
+    return all(isinstance(one, xr.Dataset) for one in values)
 
 
 def _part(run: xr.Dataset, cut: tuple[float, float], function: str) -> xr.Dataset:

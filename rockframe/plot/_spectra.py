@@ -85,7 +85,7 @@ def spectra(
     >>> panels[0].get_xlabel()
     'time [s]'
     """
-    given = drawn_motions(motion, "spectra")
+    data = drawn_motions(motion, "spectra")
     cut = window_of(window, "spectra")
     chosen = units_of(units, "spectra")
     unit = chosen.of(ACCELERATION, acceleration=acceleration)
@@ -97,7 +97,7 @@ def spectra(
             response_spectrum(one.motion, periods, damping_ratios, component=component),
             fourier_spectrum(one.motion, resolution=_RESOLUTION, component=component),
         )
-        for one in given
+        for one in data
     ]
 
     def make(figure: Any) -> Any:
@@ -117,9 +117,9 @@ def spectra(
         values = amplitude.of(rest["fourier_amplitude"])
         on.panels[2].semilogx(rest["frequency"], values, color=colour, linewidth=0.7)
     _label(on.panels, found, unit, amplitude)
-    if len(given) > 1:
+    if len(data) > 1:
         on.legend(*on.panels[1].get_legend_handles_labels(), fontsize="small")
-    on.entitle(motions_title(given), title)
+    on.entitle(motions_title(data), title)
     return on.panels
 
 
@@ -233,13 +233,13 @@ def suite(
     >>> axes.get_ylabel()
     'pseudo-spectral acceleration [g]'
     """
-    given = drawn_motions(motions, "suite")
+    data = drawn_motions(motions, "suite")
     if target is not None:
         check_target(target, owner="rf.plot.suite")
     middle = one_of_words(Average, average, owner=_SUITE, name="average")
     cut = window_of(compared, "suite", "compared")
     unit = units_of(units, "suite").of(ACCELERATION, "g", acceleration=acceleration)
-    labelled = {one.label or motions_title(given): one.motion for one in given}
+    labelled = {one.label or motions_title(data): one.motion for one in data}
     found = response_spectrum(labelled, periods, damping_ratio, component=component)
     found = found.isel(period=np.flatnonzero(found["period"].to_numpy() > 0.0))
     values = unit.of(
@@ -247,17 +247,17 @@ def suite(
     )
     period = found["period"].to_numpy()
     on = single(ax, "suite", (6.0, 4.3))
-    few = len(given) <= _MOST_NAMED if named is None else truth(named, owner=_SUITE, name="named")
-    for place, (label, one) in enumerate(zip(labelled, given, strict=True)):
+    few = len(data) <= _MOST_NAMED if named is None else truth(named, owner=_SUITE, name="named")
+    for place, (label, one) in enumerate(zip(labelled, data, strict=True)):
         words: Any = label if few else ("motions" if place == 0 else None)
         on.axes.plot(
             period, values[place], label=words, linewidth=0.9 if few else 0.6,
             color=one.colour if few else GREY, linestyle=one.style if few else "-",
             alpha=0.8 if few else 0.5,
         )  # fmt: skip
-    if len(given) > 1 and middle is Average.MEDIAN:
+    if len(data) > 1 and middle is Average.MEDIAN:
         _draw_spread(on.axes, period, values)
-    elif len(given) > 1:
+    elif len(data) > 1:
         on.axes.plot(period, values.mean(axis=0), color=BLUE, linewidth=1.8, label="mean")
     if target is not None:
         low, high = target.limits
@@ -275,7 +275,7 @@ def suite(
     label_log_ticks(on.axes)
     grid(on.axes)
     key(on.axes)
-    count = len(given)
+    count = len(data)
     damping = float(found["damping_ratio"].to_numpy().ravel()[0])
     usual = f"{count} motion{'s' if count > 1 else ''}; damping {100.0 * damping:g} %"
     on.entitle(usual, title)

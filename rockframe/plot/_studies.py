@@ -72,16 +72,16 @@ def critical_scale(
     >>> axes.get_xlabel()
     'scale of the motion [-]'
     """
-    given = drawable(dataset, "critical_scale", units)
-    scale, outcome = given["scale"].to_numpy(), given["outcome"].to_numpy()
+    data = drawable(dataset, "critical_scale", units)
+    scale, outcome = data["scale"].to_numpy(), data["outcome"].to_numpy()
     reader = units_of(units, "critical_scale").reader
     angles = reader.chose(ANGLE) is not None
-    relative = "peak_relative_rotation" in given and not angles
+    relative = "peak_relative_rotation" in data and not angles
     name = "peak_relative_rotation" if relative else "peak_rotation"
-    peak = given[name].to_numpy()
+    peak = data[name].to_numpy()
     on = single(ax, "critical_scale", (6.4, 3.6))
-    ends = np.append(given["scale_above"].to_numpy(), scale.max())
-    falls = given["overturns_above"].to_numpy().astype(bool)
+    ends = np.append(data["scale_above"].to_numpy(), scale.max())
+    falls = data["overturns_above"].to_numpy().astype(bool)
     for number in np.flatnonzero(falls):
         on.axes.axvspan(ends[number], ends[number + 1], color=VERMILLION, alpha=0.15, linewidth=0.0)
     for value, colour, words, marker in (
@@ -90,10 +90,10 @@ def critical_scale(
     ):
         chosen = outcome == value
         on.axes.plot(scale[chosen], peak[chosen], marker, markersize=3.5, color=colour, label=words)
-    least = float(given["critical_scale"])
+    least = float(data["critical_scale"])
     if np.isfinite(least):
         on.axes.axvline(least, color=ink(), linestyle=":", linewidth=1.0, label=f"{least:.4g}")
-    on.axes.set(xlabel="scale of the motion [-]", ylabel=label_of(given[name]))
+    on.axes.set(xlabel="scale of the motion [-]", ylabel=label_of(data[name]))
     on.axes.set_ylim(bottom=0.0)
     grid(on.axes)
     key(on.axes)
@@ -147,22 +147,22 @@ def sweep(
     """
     if not isinstance(cast("object", runs), xr.Dataset) or not runs.data_vars:
         raise SchemaError(refuse("sweep", runs))
-    given = _without_single_values(runs, variable)
-    given = reader_units(units, owner="rf.plot.sweep").of_all(given)
-    values = _values(given, variable)
-    fell = overturns(given) == 1 if "status" in given else None
+    data = _without_single_values(runs, variable)
+    data = reader_units(units, owner="rf.plot.sweep").of_all(data)
+    values = _values(data, variable)
+    fell = overturns(data) == 1 if "status" in data else None
     fell = None if fell is None or set(fell.dims) != set(values.dims) else fell
-    dims = sorted((str(dim) for dim in values.dims), key=lambda dim: _is_axis(given, dim))
+    dims = sorted((str(dim) for dim in values.dims), key=lambda dim: _is_axis(data, dim))
     on = single(ax, "sweep", (6.4, 4.2))
     if len(dims) == 1 or min(values.sizes.values()) <= _MOST_LINES:
         # lines along the longest axis that has numbers
-        along = max(dims, key=lambda dim: (_is_axis(given, dim), values.sizes[dim]))
+        along = max(dims, key=lambda dim: (_is_axis(data, dim), values.sizes[dim]))
         others = [dim for dim in dims if dim != along]
-        _draw_lines(on.axes, given, values, fell, along, others)
+        _draw_lines(on.axes, data, values, fell, along, others)
     else:
-        _draw_map(on.axes, given, values.transpose(*dims), fell, dims)
-    told = reader_units(units, owner="rf.plot.sweep").of_sentence(cases_verdict(runs))
-    on.entitle(told or str(given.attrs.get("title", "")), title)
+        _draw_map(on.axes, data, values.transpose(*dims), fell, dims)
+    text = reader_units(units, owner="rf.plot.sweep").of_sentence(cases_verdict(runs))
+    on.entitle(text or str(data.attrs.get("title", "")), title)
     return on.axes
 
 
@@ -213,20 +213,20 @@ def free_decay(
     >>> panels[0].get_ylabel()
     'rotation [°]'
     """
-    given = drawable(dataset, "free_decay")
+    data = drawable(dataset, "free_decay")
     chosen = units_of(units, "free_decay")
     unit = chosen.of(ANGLE, "deg", rotation=rotation)
-    histories = "measured_rotation" in given
+    histories = "measured_rotation" in data
     if histories:
         names = ("measured_rotation", "fitted_rotation", "rotation_residual")
-        times = [given["time"].to_numpy()] * 3
+        times = [data["time"].to_numpy()] * 3
     else:
         names = ("measured_peak_rotation", "fitted_peak_rotation", "peak_rotation_residual")
-        place = given["measured_peak_rotation"].dims[0]
-        counted = np.arange(1, given.sizes[place] + 1)
-        timed = "measured_peak_time" in given
-        measured = given["measured_peak_time"].to_numpy() if timed else counted
-        fitted = given["fitted_peak_time"].to_numpy() if timed else counted
+        place = data["measured_peak_rotation"].dims[0]
+        counted = np.arange(1, data.sizes[place] + 1)
+        timed = "measured_peak_time" in data
+        measured = data["measured_peak_time"].to_numpy() if timed else counted
+        fitted = data["fitted_peak_time"].to_numpy() if timed else counted
         times = [measured, fitted, measured]
     on = sheet(
         ax, "free_decay", _PANELS, (7.2, 4.4),
@@ -234,39 +234,39 @@ def free_decay(
     )  # fmt: skip
     above, below = on.panels
     dots = "-" if histories else "o"
-    above.plot(times[0], unit.of(given[names[0]]), dots, color=ink(), lw=1.4, label="measured")
+    above.plot(times[0], unit.of(data[names[0]]), dots, color=ink(), lw=1.4, label="measured")
     style = "--" if histories else "x"
-    above.plot(times[1], unit.of(given[names[1]]), style, color=VERMILLION, lw=1.0, label="fitted")
-    below.plot(times[2], unit.of(given[names[2]]), dots, color=GREY, lw=0.8, markersize=3.0)
+    above.plot(times[1], unit.of(data[names[1]]), style, color=VERMILLION, lw=1.0, label="fitted")
+    below.plot(times[2], unit.of(data[names[2]]), dots, color=GREY, lw=0.8, markersize=3.0)
     for axes, words in ((above, "rotation"), (below, "measured\nless fitted")):
         zero_line(axes)
         axes.set_ylabel(axis_label(words, unit.words))
         grid(axes)
-    below.set_xlabel("time [s]" if histories or "measured_peak_time" in given else "peak")
+    below.set_xlabel("time [s]" if histories or "measured_peak_time" in data else "peak")
     key(above)
-    on.entitle(chosen.reader.of_sentence(str(given.attrs.get("verdict", ""))), title)
+    on.entitle(chosen.reader.of_sentence(str(data.attrs.get("verdict", ""))), title)
     return on.panels
 
 
-def _without_single_values(given: xr.Dataset, variable: object) -> xr.Dataset:
+def _without_single_values(dataset: xr.Dataset, variable: object) -> xr.Dataset:
     """Leave out axes of one value, such as a single motion, if there are too many axes."""
-    if not isinstance(variable, str) or variable not in given.data_vars:
-        return given
-    sizes = given[variable].sizes
+    if not isinstance(variable, str) or variable not in dataset.data_vars:
+        return dataset
+    sizes = dataset[variable].sizes
     if len(sizes) <= _MOST_AXES or max(sizes.values()) == 1:
-        return given
-    return given.isel({dim: 0 for dim, size in sizes.items() if size == 1})
+        return dataset
+    return dataset.isel({dim: 0 for dim, size in sizes.items() if size == 1})
 
 
-def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
-    if not isinstance(variable, str) or variable not in given.data_vars:
+def _values(dataset: xr.Dataset, variable: object) -> xr.DataArray:
+    if not isinstance(variable, str) or variable not in dataset.data_vars:
         known = ", ".join(
-            repr(str(name)) for name, one in given.data_vars.items() if 0 < one.ndim < 3
+            repr(str(name)) for name, one in dataset.data_vars.items() if 0 < one.ndim < 3
         )
-        near = nearest(variable, map(str, given.data_vars))
+        near = nearest(variable, map(str, dataset.data_vars))
         msg = f"rf.plot.sweep: the runs have no {shown(variable)}{near}; they have {known}"
         raise SchemaError(msg)
-    values = given[variable]
+    values = dataset[variable]
     if not 1 <= values.ndim <= _MOST_AXES:
         names = [str(dim) for dim in values.dims]
         as_label = next((name for name in reversed(names) if name.isidentifier()), "scale")
@@ -282,44 +282,44 @@ def _values(given: xr.Dataset, variable: object) -> xr.DataArray:
     return values
 
 
-def _is_axis(given: xr.Dataset, dim: str) -> bool:
+def _is_axis(dataset: xr.Dataset, dim: str) -> bool:
     """Whether the coordinate of a dimension has numbers."""
-    return dim in given.coords and given[dim].dtype.kind in "fiu"
+    return dim in dataset.coords and dataset[dim].dtype.kind in "fiu"
 
 
-def _along(given: xr.Dataset, dim: str) -> tuple[Any, str]:
+def _along(dataset: xr.Dataset, dim: str) -> tuple[Any, str]:
     """Give the places along a dimension, and its label."""
-    if _is_axis(given, dim):
-        return given[dim].to_numpy(), label_of(given[dim])
-    return np.arange(given.sizes[dim]), dim.replace("_", " ")
+    if _is_axis(dataset, dim):
+        return dataset[dim].to_numpy(), label_of(dataset[dim])
+    return np.arange(dataset.sizes[dim]), dim.replace("_", " ")
 
 
 def _draw_lines(
-    axes: Axes, given: xr.Dataset, values: xr.DataArray, fell: Any, along: str,
+    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, fell: Any, along: str,
     others: list[str],
 ) -> None:  # fmt: skip
-    places, words = _along(given, along)
+    places, words = _along(dataset, along)
     across, crosses = others[0] if others else "", list[tuple[Any, Any]]()
     for number in range(values.sizes.get(across, 1)):
         one = {across: number} if others else {}
         line = values.isel(one).to_numpy().astype(np.float64)
         label = None
         if others:
-            known = across in given.coords
-            text = label_of_value(given[across][number]) if known else str(number)
+            known = across in dataset.coords
+            text = label_of_value(dataset[across][number]) if known else str(number)
             named = across == "motion" or text.startswith(across)
             label = text if named else f"{across.replace('_', ' ')} {text}"
         axes.plot(
             places, line, marker="o", markersize=3.0, color=colour_of(number), linewidth=1.0,
-            linestyle=style_of(number // 6) if _is_axis(given, along) else "none", label=label,
+            linestyle=style_of(number // 6) if _is_axis(dataset, along) else "none", label=label,
         )  # fmt: skip
         down = np.zeros(line.shape, bool) if fell is None else fell.isel(one).to_numpy()
         crosses.append((places[down], line[down]))
     if any(across.size for across, _ in crosses):
         both = np.concatenate(crosses, axis=1)
         axes.plot(*both, "x", color=ink(), markersize=6.0, label="overturned")
-    if not _is_axis(given, along) and along in given.coords:
-        names = labels_of_names(map(str, given[along].to_numpy()), _MOST_LETTERS)
+    if not _is_axis(dataset, along) and along in dataset.coords:
+        names = labels_of_names(map(str, dataset[along].to_numpy()), _MOST_LETTERS)
         axes.set_xticks(places, names, rotation=30, ha="right", fontsize="small")
     elif places.dtype.kind in "iu":  # earthquakes and bodies are counted in integers
         axes.locator_params(axis="x", integer=True)
@@ -329,9 +329,9 @@ def _draw_lines(
 
 
 def _draw_map(
-    axes: Axes, given: xr.Dataset, values: xr.DataArray, fell: Any, dims: list[str]
+    axes: Axes, dataset: xr.Dataset, values: xr.DataArray, fell: Any, dims: list[str]
 ) -> None:
-    (up, up_words), (across, across_words) = (_along(given, dim) for dim in dims)
+    (up, up_words), (across, across_words) = (_along(dataset, dim) for dim in dims)
     mesh = axes.pcolormesh(
         across, up, values.to_numpy().astype(np.float64), cmap="viridis", shading="nearest"
     )

@@ -174,30 +174,30 @@ def doubts_of(
 
 
 def _compare_peak(source: Source, samples: Array, unit: RecordUnit, stated: Stated) -> list[str]:
-    said, digit = _printed(stated.text)
+    words, digit = _printed(stated.text)
     stated_unit = acceleration_unit(stated.unit)
-    if said is None or stated_unit is None or math.isclose(said, 0.0):
+    if words is None or stated_unit is None or math.isclose(words, 0.0):
         return []
     with np.errstate(over="ignore"):
         peak = float(np.max(np.abs(samples))) * (unit.factor / stated_unit.factor)
-    if abs(peak - abs(said)) <= PEAK_SHARE * abs(said) + digit:
+    if abs(peak - abs(words)) <= PEAK_SHARE * abs(words) + digit:
         return []
     return [
-        f"{source.path}, line {stated.line}: the header states a peak of {abs(said):g} "
+        f"{source.path}, line {stated.line}: the header states a peak of {abs(words):g} "
         f"{stated.unit}, but the samples have {peak:.6g} {stated.unit}"
     ]
 
 
 def _compare_length(source: Source, count: int, time_step: float, stated: Stated) -> list[str]:
     # some agencies state n dt, others (n - 1) dt
-    said, digit = _printed(stated.text)
-    if said is None or said <= 0.0:
+    words, digit = _printed(stated.text)
+    if words is None or words <= 0.0:
         return []
     length = count * time_step
-    if abs(length - said) <= max(2.0 * time_step, LENGTH_SHARE * said) + digit:
+    if abs(length - words) <= max(2.0 * time_step, LENGTH_SHARE * words) + digit:
         return []
     return [
-        f"{source.path}, line {stated.line}: the header states a length of {said:g} s, but "
+        f"{source.path}, line {stated.line}: the header states a length of {words:g} s, but "
         f"{count} samples at {time_step:g} s last {length - time_step:.6g} s"
     ]
 

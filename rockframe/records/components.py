@@ -187,19 +187,19 @@ class EveryComponentError(RecordError):
         super().__init__(path, found=_listed(components), expected="one component at a time")
 
 
-def component_names(given: object, *, owner: str) -> tuple[str | None, str | None]:
+def component_names(value: object, *, owner: str) -> tuple[str | None, str | None]:
     """Check the argument ``component``; give the horizontal and the vertical name."""
-    if given is None:
+    if value is None:
         return None, None
-    if isinstance(given, str) and given.strip():
-        return given, None
-    if isinstance(given, tuple | list):
-        names = cast("Sequence[object]", given)
+    if isinstance(value, str) and value.strip():
+        return value, None
+    if isinstance(value, tuple | list):
+        names = cast("Sequence[object]", value)
         if len(names) == 2 and all(isinstance(name, str) and name.strip() for name in names):
             return str(names[0]), str(names[1])
     msg = (
         f"{owner}: component needs a name such as component='N', or a horizontal and a "
-        f"vertical one such as component=('N', 'U'), got {given!r}"
+        f"vertical one such as component=('N', 'U'), got {value!r}"
     )
     raise ComponentError(msg)
 

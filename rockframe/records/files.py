@@ -41,24 +41,24 @@ def read_source(given: RecordLike) -> Source:
     return source_of(name, data)
 
 
-def as_given(given: object) -> tuple[str, bytes]:
+def as_given(value: object) -> tuple[str, bytes]:
     """Give name and bytes of an argument, without unpacking."""
-    if isinstance(given, bytes | bytearray | memoryview):
-        data = bytes(given)
+    if isinstance(value, bytes | bytearray | memoryview):
+        data = bytes(value)
         check_size(IN_MEMORY, len(data), MAXIMUM_BYTES)
         return IN_MEMORY, data
-    if hasattr(given, "read"):
-        return _from_open(cast("IO[bytes]", given))
-    path = path_of(given)
+    if hasattr(value, "read"):
+        return _from_open(cast("IO[bytes]", value))
+    path = path_of(value)
     return str(path), _from_path(path)
 
 
-def path_of(given: object) -> Path:
+def path_of(value: object) -> Path:
     """Read an argument that is the path of a file or a folder."""
     try:
-        return Path(cast("str", given)).expanduser()
+        return Path(cast("str", value)).expanduser()
     except (TypeError, ValueError, RuntimeError) as problem:
-        raise _no_name(given) from problem
+        raise _no_name(value) from problem
 
 
 def unzipped(name: str, data: bytes) -> bytes:
@@ -97,8 +97,8 @@ def _only_member(name: str, data: bytes) -> tuple[str, bytes]:
 
 
 def _from_open(file: IO[bytes]) -> tuple[str, bytes]:
-    told = getattr(file, "name", None)
-    name = told if isinstance(told, str) and told else _OPEN
+    text = getattr(file, "name", None)
+    name = text if isinstance(text, str) and text else _OPEN
     try:
         data: Any = file.read(MAXIMUM_BYTES + 1)
     except (OSError, ValueError) as problem:  # closed, or not open for reading
@@ -134,9 +134,9 @@ def _from_path(path: Path) -> bytes:
         raise _no_name(name) from problem
 
 
-def _no_name(given: object) -> RecordError:
-    found = f"{given!r}, which names no file"
-    return RecordError(str(given), found=found, expected="the path of a record file")
+def _no_name(value: object) -> RecordError:
+    found = f"{value!r}, which names no file"
+    return RecordError(str(value), found=found, expected="the path of a record file")
 
 
 MOST_FILES: Final = 20_000

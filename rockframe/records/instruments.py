@@ -128,9 +128,9 @@ def codes_of(name: str) -> tuple[str, str, str, str]:
     return network, station, location_code(location), channel
 
 
-def location_code(given: str) -> str:
+def location_code(value: str) -> str:
     """Give the code of the location of a sensor; two hyphens or blanks mean none."""
-    return given.strip(" -")
+    return value.strip(" -")
 
 
 def metadata_of_codes(name: str) -> Metadata:

@@ -147,9 +147,9 @@ def _quietly() -> Generator[list[warnings.WarningMessage]]:
     hook = sys.unraisablehook
     sys.unraisablehook = lambda _: None
     try:
-        with warnings.catch_warnings(record=True) as said:
+        with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("always")
-            yield said
+            yield warned
     finally:
         sys.unraisablehook = hook
 
@@ -182,7 +182,7 @@ def _channels(source: Source) -> tuple[dict[str, list[Any]], _Damage]:
     obspy = _obspy(source)
     _check_pieces(source)
     try:
-        with _quietly() as said:
+        with _quietly() as warned:
             # the headers first: they may announce more than fits in memory
             announced = obspy.read(io.BytesIO(source.data), format="MSEED", headonly=True)
             total = sum(int(trace.stats.npts) for trace in announced)
@@ -190,7 +190,7 @@ def _channels(source: Source) -> tuple[dict[str, list[Any]], _Damage]:
                 expected = f"at most {_MOST_SAMPLES_IN_ALL} in {_MOST_TRACES} pieces"
                 found = f"{total} samples in {len(announced)} pieces"
                 raise source.refuse(found=found, expected=expected)
-            said.clear()  # the second reading gives the same warnings
+            warned.clear()  # the second reading gives the same warnings
             stream = obspy.read(io.BytesIO(source.data), format="MSEED")
     except RecordError:
         raise
@@ -201,7 +201,7 @@ def _channels(source: Source) -> tuple[dict[str, list[Any]], _Damage]:
     channels = by_channel(stream)
     if not channels:
         raise source.refuse(found="no data records", expected=_EXPECTED)
-    return channels, _Damage.of(said)
+    return channels, _Damage.of(warned)
 
 
 def _component(
@@ -295,9 +295,9 @@ def components_of_traces(
         held = channels[name]
         values, time_step, start = joined_traces(source, held)
         check_time_step(source, time_step, None)
-        unit, as_read, said = choose_unit(source, request, _stated_unit(held[0].stats), None)
+        unit, as_read, text = choose_unit(source, request, _stated_unit(held[0].stats), None)
         metadata = {**metadata_of_codes(name), "record_time": start, "unit_as_read": as_read}
-        return Record(time_step, values, unit, metadata, warnings=tuple(said))
+        return Record(time_step, values, unit, metadata, warnings=tuple(text))
 
     return [
         FileComponent(

@@ -140,8 +140,8 @@ def _compare(source: Source, request: Request, stored: StoredMotion) -> None:
     if request.component is None:
         return
     keys = ("component",) if stored.si.vertical is None else ("component", "vertical_component")
-    given = [stored.metadata.get(key) for key in keys]
-    names = [None if name is None else str(name) for name in given]
+    values = [stored.metadata.get(key) for key in keys]
+    names = [None if name is None else str(name) for name in values]
     nothing = Record(stored.si.time_step, np.zeros(2), _SI, {})
     components = [
         FileComponent(name, lambda: nothing, orientation_of(name or "")) for name in names

@@ -62,8 +62,8 @@ def _read(source: Source, request: Request) -> Record:
     unit_name, unit_line = (None, None) if stated is None else (stated[0][1].rstrip("."), stated[1])
     chosen = choose_unit(source, request, unit_name, unit_line)
     metadata = _description(source, index)
-    given = metadata.get("component")
-    name = None if given is None else str(given)
+    value = metadata.get("component")
+    name = None if value is None else str(value)
 
     def samples() -> Record:
         values = all_numbers(source, index + 1, _end_mark(source), of=declared)

@@ -107,8 +107,8 @@ def read_traces(traces: list[Any], request: Request, *, owner: str) -> Reading:
     source = Source(owner, b"", "")
     record = choose_component(source, request, components_of_traces(source, request, traces))
     si, doubts = to_motion(source, record)
-    said = f"built from a trace: {record.samples.size} samples at {record.time_step!r} s"
-    return Reading(si, record.metadata, (said, *record.history), (*record.warnings, *doubts))
+    text = f"built from a trace: {record.samples.size} samples at {record.time_step!r} s"
+    return Reading(si, record.metadata, (text, *record.history), (*record.warnings, *doubts))
 
 
 def _one_of(entry: Format, source: Source, component: FileComponent) -> Reading | RecordError:
@@ -136,8 +136,8 @@ def _reading(entry: Format, source: Source, record: Record | StoredMotion) -> Re
         f"read {base} ({entry.title}, unit {record.metadata.get('unit_as_read', '')}): "
         f"{record.samples.size} samples at {record.time_step!r} s"
     )
-    said = tuple(dict.fromkeys((*record.warnings, *doubts)))
-    return Reading(si, metadata, (step, *record.history), said, file=base)
+    messages = tuple(dict.fromkeys((*record.warnings, *doubts)))
+    return Reading(si, metadata, (step, *record.history), messages, file=base)
 
 
 def to_motion(source: Source, record: Record) -> tuple[Motion, list[str]]:
@@ -192,8 +192,8 @@ def _checked(record: object) -> Record:
     return replace(record, samples=samples, vertical=vertical)
 
 
-def _checked_samples(given: object) -> Array:
-    samples = np.asarray(given, dtype=np.float64)
+def _checked_samples(value: object) -> Array:
+    samples = np.asarray(value, dtype=np.float64)
     if samples.ndim != 1 or not 2 <= samples.size <= MAXIMUM_SAMPLES:
         msg = f"its samples have the shape {samples.shape}"
         raise ValueError(msg)

@@ -87,8 +87,8 @@ def _kind(source: Source) -> str:
 
 
 def _component(source: Source, integers: Fields) -> tuple[str | None, Orientation]:
-    said = _NAMED.search("\n".join(source.top(_INTEGERS)))
-    name = said.group(1) if said else None
+    text = _NAMED.search("\n".join(source.top(_INTEGERS)))
+    name = text.group(1) if text else None
     direction = orientation_of(name or "")
     if direction != UNKNOWN:
         return name, direction
@@ -121,17 +121,17 @@ def _samples(source: Source, request: Request, kind: str, integers: Fields) -> R
     time_step = _time_step(source, request, reals)
     chosen = choose_unit(source, request, UNIT, None)
     values = _DATA_LAYOUT.read(source, first, count)
-    said, what = [], "integer 17 (line 14)"
+    messages, what = [], "integer 17 (line 14)"
     behind = surplus(source, first + _DATA_LAYOUT.rows(count), what, len(source.lines))
     if kind.upper() == UNKNOWN_KIND:
         words = f"{source.path}, line 1: the file does not state its quantity; an accelerogram "
-        said = [f"{words}in {chosen[1]} is assumed"]
+        messages = [f"{words}in {chosen[1]} is assumed"]
     if whole(integers.cell(18)) == 1:
         words = f"{source.path}, line 14: the file marks a problem (integer 18); see its comments"
         behind.append(words)
     stated, metadata = _stated_peak(reals), _description(source, kind)
     return record_of(
-        source, values, time_step, chosen, metadata, said=said, stated=stated, behind=behind
+        source, values, time_step, chosen, metadata, said=messages, stated=stated, behind=behind
     )
 
 

@@ -84,8 +84,8 @@ def _names(source: Source, table: Table, columns: int) -> tuple[list[str], int]:
                 expected = f"{columns}, as there are columns"
                 raise source.refuse(found=found, expected=expected, line=line)
         if table.separator is None:  # single blanks, and units in brackets after the names
-            told = _BRACKETED.sub(lambda match: match.group().replace(" ", ""), text)
-            parts = re.sub(r"\s+(?=[(\[])", "", told.lstrip("#% \t")).split()
+            words = _BRACKETED.sub(lambda match: match.group().replace(" ", ""), text)
+            parts = re.sub(r"\s+(?=[(\[])", "", words.lstrip("#% \t")).split()
             if len(parts) == columns > 1 and not all(map(_is_unit, parts)):
                 return parts, line
     return [], 1

@@ -200,9 +200,9 @@ class CodeCheck:
             HTML.
         """
         for one in self.verdicts:
-            said, kind = _SAID[one.passed]
+            text, kind = _SAID[one.passed]
             words = f"{units.of_sentence(one.words)} [{one.source}]. {self.code}."
-            yield page.banner(f"{one.title}: {said}", words, kind)
+            yield page.banner(f"{one.title}: {text}", words, kind)
 
     def tables(self, units: ReaderUnits) -> Iterator[tuple[str, list[str]]]:
         """Give titles and tables of the numbers, and of what is neglected, as pages show them.
@@ -294,9 +294,9 @@ class CodeCheck:
         return page.section(f"Check by {self.code.split(',')[0]}", pieces)
 
 
-def checks_of(given: object, owner: str) -> list[CodeCheck]:
+def checks_of(value: object, owner: str) -> list[CodeCheck]:
     """Read a check, or several."""
-    several = [given] if isinstance(given, CodeCheck) else given
+    several = [value] if isinstance(value, CodeCheck) else value
     if several is None:
         return []
     if not isinstance(several, Iterable) or isinstance(several, str):

@@ -54,30 +54,30 @@ class Aim:
         return first, last
 
 
-def aim_of(given: object, motions: object, owner: str) -> Aim | None:
+def aim_of(value: object, motions: object, owner: str) -> Aim | None:
     """Read a target, or take that of a suite that was scaled to one."""
-    if given is None:
+    if value is None:
         carried = motions.target if isinstance(motions, MotionSuite) else None
         return None if carried is None else Aim(carried, np.geomspace(*carried.limits, 40))
-    if isinstance(given, TargetSpectrum):
-        return Aim(given, usual_periods(given))
-    if isinstance(given, xr.Dataset) and "target_spectral_acceleration" in given:
-        target = compared_target(given)
+    if isinstance(value, TargetSpectrum):
+        return Aim(value, usual_periods(value))
+    if isinstance(value, xr.Dataset) and "target_spectral_acceleration" in value:
+        target = compared_target(value)
         if target is not None:
-            return Aim(target, given["period"].to_numpy())
+            return Aim(target, value["period"].to_numpy())
     msg = (
         f"{owner}: target must be a TargetSpectrum, or the result of suite.scaling_to or "
-        f"suite.selection_for for one at several periods, got {shown(given)}"
+        f"suite.selection_for for one at several periods, got {shown(value)}"
     )
     raise ComponentError(msg)
 
 
-def motions_of(dataset: xr.Dataset, given: object, owner: str) -> dict[str, GroundMotion]:
+def motions_of(dataset: xr.Dataset, value: object, owner: str) -> dict[str, GroundMotion]:
     """Give the available motions of a study: those given, else those in the dataset or process."""
-    named = _named(given, owner)
+    named = _named(value, owner)
     if "motions_json" not in dataset.attrs:
         return named
-    found = known_motions(dataset, given)
+    found = known_motions(dataset, value)
     digests = {str(one.get("sha256")) for one in json.loads(dataset.attrs["motions_json"]) if one}
     held = {motion.sha256 for motion in found.values()} | digests
     strange = [label for label, motion in named.items() if motion.sha256 not in held]
@@ -87,13 +87,13 @@ def motions_of(dataset: xr.Dataset, given: object, owner: str) -> dict[str, Grou
     return found
 
 
-def _named(given: object, owner: str) -> dict[str, GroundMotion]:
+def _named(value: object, owner: str) -> dict[str, GroundMotion]:
     """Read a motion, or several."""
-    if given is None:
+    if value is None:
         return {}
-    several = [given] if isinstance(given, GroundMotion) else given
+    several = [value] if isinstance(value, GroundMotion) else value
     if not isinstance(several, Iterable) or isinstance(several, str):
-        msg = f"{owner}: motions must be a GroundMotion, or several, got {shown(given)}"
+        msg = f"{owner}: motions must be a GroundMotion, or several, got {shown(value)}"
         raise ComponentError(msg)
     return dict(MotionSuite(cast("Iterable[GroundMotion]", several)))
 

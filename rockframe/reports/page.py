@@ -107,14 +107,14 @@ def banner(title: str, words: str, kind: str) -> str:
     return f'<div class="verdict {kind}">{inner}</div>'
 
 
-def rows(given: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
+def rows(values: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     """Give a table; the second column holds values."""
     lines = ['<div class="scroll"><table>']
     if head:
         names = "".join(f"<th>{escape(name)}</th>" for name in head)
         lines.append(f"<thead><tr>{names}</tr></thead>")
     lines.append("<tbody>")
-    for row in given:
+    for row in values:
         cells = "".join(
             f"<td{_class('value' if column == 1 else '')}>{escape(cell)}</td>"
             for column, cell in enumerate(row)
@@ -124,11 +124,11 @@ def rows(given: Iterable[Sequence[str]], *, head: Sequence[str] = ()) -> str:
     return "\n".join(lines)
 
 
-def columns(given: Iterable[Sequence[str]], head: Sequence[str]) -> str:
+def columns(values: Iterable[Sequence[str]], head: Sequence[str]) -> str:
     """Give a table in which all columns but the first hold values."""
     names = "".join(f"<th>{escape(name)}</th>" for name in head)
     lines = [f'<div class="scroll"><table class="many"><thead><tr>{names}</tr></thead><tbody>']
-    for first, *others in given:
+    for first, *others in values:
         cells = "".join(
             f"<td{_class('value' if len(cell) <= _LONGEST_VALUE else '')}>{escape(cell)}</td>"
             for cell in others
@@ -138,10 +138,10 @@ def columns(given: Iterable[Sequence[str]], head: Sequence[str]) -> str:
     return "\n".join(lines)
 
 
-def items(given: Iterable[str | tuple[str, str]]) -> str:
+def items(values: Iterable[str | tuple[str, str]]) -> str:
     """Give a numbered list; of pairs, the first is a title."""
     inner = list[str]()
-    for one in given:
+    for one in values:
         title, words = ("", one) if isinstance(one, str) else one
         strong = f"<strong>{escape(title)}.</strong> " if title else ""
         inner.append(f"<li>{strong}{escape(words)}</li>")

@@ -53,22 +53,22 @@ class Project:
             yield page.banner("Not checked", f"Requested: {'; '.join(self.checks)}{words}", "doubt")
 
 
-def project_of(given: object, dataset: xr.Dataset, owner: str) -> Project:
+def project_of(value: object, dataset: xr.Dataset, owner: str) -> Project:
     """Read a project, or that of the result if none is given."""
-    if given is None:
-        given = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}")))
-    return read_project(given, owner)
+    if value is None:
+        value = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}")))
+    return read_project(value, owner)
 
 
-def read_project(given: object, owner: str) -> Project:
+def read_project(value: object, owner: str) -> Project:
     """Read a project from a mapping."""
     known = (*LINES, CONCLUSION, ASSUMPTIONS, CHECKS)
-    if not isinstance(given, Mapping):
+    if not isinstance(value, Mapping):
         msg = (
-            f"{owner}: project must be a mapping with any of {', '.join(known)}, got {shown(given)}"
+            f"{owner}: project must be a mapping with any of {', '.join(known)}, got {shown(value)}"
         )
         raise ComponentError(msg)
-    values = cast("Mapping[Any, Any]", given)
+    values = cast("Mapping[Any, Any]", value)
     for name in values:
         if name not in known:
             called = f"{shown(name)}{nearest(name, known)}"
@@ -84,23 +84,23 @@ def read_project(given: object, owner: str) -> Project:
     )  # fmt: skip
 
 
-def project_json(given: Mapping[str, object], owner: str) -> str:
+def project_json(values: Mapping[str, object], owner: str) -> str:
     """Write a project in JSON, as results keep it."""
-    read_project(given, owner)
-    return json.dumps(given, default=str)
+    read_project(values, owner)
+    return json.dumps(values, default=str)
 
 
-def _texts(given: object, name: str, owner: str) -> tuple[str, ...]:
-    if not isinstance(given, list | tuple):
-        msg = f"{owner}: {name} must be a list of texts, got {shown(given)}"
+def _texts(value: object, name: str, owner: str) -> tuple[str, ...]:
+    if not isinstance(value, list | tuple):
+        msg = f"{owner}: {name} must be a list of texts, got {shown(value)}"
         raise ComponentError(msg)
-    return tuple(_text(one, name, owner) for one in cast("list[object]", given))
+    return tuple(_text(one, name, owner) for one in cast("list[object]", value))
 
 
-def _text(given: object, name: str, owner: str) -> str:
-    if isinstance(given, datetime.date):  # TOML has dates
-        return given.isoformat()
-    if isinstance(given, str | int):
-        return str(given)
-    msg = f"{owner}: {name} of the project must be text, got {shown(given)}"
+def _text(value: object, name: str, owner: str) -> str:
+    if isinstance(value, datetime.date):  # TOML has dates
+        return value.isoformat()
+    if isinstance(value, str | int):
+        return str(value)
+    msg = f"{owner}: {name} of the project must be text, got {shown(value)}"
     raise ComponentError(msg)

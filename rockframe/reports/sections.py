@@ -96,8 +96,8 @@ def verdict_section(dataset: xr.Dataset, reason: str, units: ReaderUnits) -> Ite
         sure = all(bool(dataset[name]) for name in _CERTIFICATE[:2] if name in dataset)
         words = units.of_sentence(str(dataset.attrs["certificate"]))
         near = words.startswith(NEAR_WORDS)
-        said = f"holds{', but near a boundary' * near}" if sure else "is in doubt"
-        title = f"Certificate: the verdict {said}"
+        text = f"holds{', but near a boundary' * near}" if sure else "is in doubt"
+        title = f"Certificate: the verdict {text}"
         yield page.banner(title, words, "good" if sure and not near else "doubt")
     elif "proof" not in dataset.attrs:
         yield page.banner("No certificate", reason or "none was requested.", "doubt")
@@ -120,8 +120,8 @@ def scene_section(dataset: xr.Dataset, system: System | None, units: ReaderUnits
         )
     yield page.subtitle("Model")
     # runs keep the description of their model, analyses do not
-    told = "not described" if system is None else system.describe()
-    yield page.verbatim(units.of_sentence(str(dataset.attrs.get("model_description", told))))
+    text = "not described" if system is None else system.describe()
+    yield page.verbatim(units.of_sentence(str(dataset.attrs.get("model_description", text))))
 
 
 def motion_section(
@@ -138,8 +138,8 @@ def motion_section(
         ("motion_time_step", "time step [s]"),
         ("motion_sha256", "digest (SHA-256)"),
     )
-    told = [(words, str(attributes[name])) for name, words in known if name in attributes]
-    yield page.rows([*told, *([] if found is None else record_rows(found, units))])
+    messages = [(words, str(attributes[name])) for name, words in known if name in attributes]
+    yield page.rows([*messages, *([] if found is None else record_rows(found, units))])
     if found is None:
         return
     across = found.si.vertical is not None  # of which nothing is shown
@@ -213,10 +213,10 @@ def limits_section(system: System | None, assumptions: Sequence[str] = ()) -> It
 def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
     """Give the provenance of the numbers, from which they can be computed again."""
     attributes = dataset.attrs
-    told = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
+    messages = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
     versions = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
     here = f"rockframe {__version__}, Python {python_version()}, {versions}"
-    yield page.rows([*([("file", file)] if file else []), *told, ("page written by", here)])
+    yield page.rows([*([("file", file)] if file else []), *messages, ("page written by", here)])
     for name, words in (("system_json", "System"), ("run_json", "Run")):
         if name in attributes:
             yield page.subtitle(f"{words}, to be built again")
@@ -274,15 +274,15 @@ def _meaning(one: Declared[Any, Any]) -> str:
     return words if one.condition is None else words.removesuffix(f"; {one.condition.words}")
 
 
-def _value(given: object, units: ReaderUnits) -> str:
+def _value(value: object, units: ReaderUnits) -> str:
     """Write a number with its unit, in six digits; the numbers of a list with commas."""
-    if isinstance(given, list):
-        return ", ".join(_value(one, units) for one in given)
-    number, blank, unit = units.of_sentence(str(given)).partition(" ")
+    if isinstance(value, list):
+        return ", ".join(_value(one, units) for one in value)
+    number, blank, unit = units.of_sentence(str(value)).partition(" ")
     try:
         return f"{float(number):.6g}{blank}{powers_in_html(unit)}"
     except ValueError:
-        return units.of_sentence(str(given))
+        return units.of_sentence(str(value))
 
 
 def _indented(text: str) -> str:

@@ -136,7 +136,7 @@ def report(
     ]
     dataset = dataset.reset_index(stacked)
     truth(certify, owner=_OWNER, name="certify")
-    given = "" if title is None else text(title, owner=_OWNER, name="title")
+    value = "" if title is None else text(title, owner=_OWNER, name="title")
     if motion is not None and not isinstance(cast("object", motion), GroundMotion):
         msg = f"{_OWNER}: motion must be a GroundMotion, got {shown(motion)}"
         raise ComponentError(msg)
@@ -162,7 +162,7 @@ def report(
         motion = None  # the run has its own motion, which is scaled
     if _is_run(dataset):
         model = str(dataset.attrs["model"])
-        heading = given or f"Rocking response, {model} model"
+        heading = value or f"Rocking response, {model} model"
         system = _system_of(dataset, motion)
         _warn_of_target(target, None if system is None else system.motion, "motion")
         dataset, reason = certified(dataset, system) if certify else (dataset, "")
@@ -170,7 +170,7 @@ def report(
         body = [page.section("Verdict", [*about.conclusions(), *verdict, *by_codes])]
         body += _of_run(dataset, system, about, chosen, aim)
     else:
-        heading = given or str(dataset.attrs.get("title", "Study"))
+        heading = value or str(dataset.attrs.get("title", "Study"))
         body = [*studies.verdict_sections(dataset, about, chosen, by_codes)]
         found = motions_of(dataset, motions, _OWNER)
         _warn_of_target(target, found, "motions")

@@ -112,14 +112,14 @@ def concat(
     >>> "overturned" in study.attrs
     False
     """
-    given = [checked_dataset(run, owner=_OWNER) for run in _each(runs)]
-    if not given:
+    data = [checked_dataset(run, owner=_OWNER) for run in _each(runs)]
+    if not data:
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)
-    _check_dimension(given, dim)
+    _check_dimension(data, dim)
     truth(histories, owner=_OWNER, name="histories")
     left_out = (*EVENT, *AFTER_END) if histories else (*EVENT, *AFTER_END, *TIME)
-    parts = [run.drop_dims(left_out, errors="ignore") for run in given]
+    parts = [run.drop_dims(left_out, errors="ignore") for run in data]
     common = set[Any].intersection(*(set(part.data_vars) for part in parts))
     if not common:
         msg = (
@@ -145,7 +145,7 @@ def concat(
         msg = f"{_OWNER}: the runs do not fit one another: {problem}"
         raise SchemaError(msg) from problem
     _type_flags(joined)
-    joined.attrs |= _as_one_sweep(given, dim, joined)
+    joined.attrs |= _as_one_sweep(data, dim, joined)
     joined.attrs["history"] = dated(f"{joined.sizes[dim]} joined along {dim!r}")
     if labels is not None:
         joined = _labelled(joined, dim, labels)
@@ -219,10 +219,10 @@ def _with_motions(rows: Sequence[xr.Dataset], dim: str) -> list[xr.Dataset]:
     ]
 
 
-def _shared(given: Sequence[Mapping[Any, Any]], context: object = None) -> dict[Any, Any]:
+def _shared(values: Sequence[Mapping[Any, Any]], context: object = None) -> dict[Any, Any]:
     """Give the attributes that are equal in all runs, without those of the outcome of one run."""
     del context
-    first, *others = given
+    first, *others = values
     return {
         name: value
         for name, value in first.items()
@@ -239,9 +239,9 @@ _ALIKE: Final = (
 """Attributes that are equal in sweeps that differ only along one axis or in their motions."""
 
 
-def _as_one_sweep(given: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
+def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> dict[str, Any]:
     """Give the attributes of one sweep to sweeps that differ only along `dim`; else none."""
-    attributes = [run.attrs for run in given]
+    attributes = [run.attrs for run in values]
     if not all(name in one for one in attributes for name in _OF_A_SWEEP):
         return {}
     first = attributes[0]
@@ -252,18 +252,18 @@ def _as_one_sweep(given: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) -> 
     if dim not in (MOTION, *axes) or dim not in joined.coords or not joined.indexes[dim].is_unique:
         return {}
     digests = " ".join(str(one["study_sha256"]) for one in attributes)
-    told = {
+    messages = {
         CASE_COUNT: joined["status"].size,
         "study_sha256": hashlib.sha256(f"joined along {dim}: {digests}".encode()).hexdigest(),
     }
     if dim != MOTION:
-        return told
+        return messages
     motions = {
         name: json.dumps([motion for one in attributes for motion in json.loads(one[name])])
         for name in OF_ITS_MOTIONS
     }
     names = json.loads(motions["motion_names"])
-    return told | motions if len(set(names)) == len(names) else {}
+    return messages | motions if len(set(names)) == len(names) else {}
 
 
 def _same(one: object, other: object) -> bool:

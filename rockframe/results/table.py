@@ -111,13 +111,13 @@ def table(
         labels, several = _keys(runs), runs.values()
     elif not isinstance(several, Iterable) or isinstance(several, str | xr.DataArray):
         several = [several]
-    given = [
+    items = [
         _each_alone(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in several
     ]
-    if not given:
+    if not items:
         msg = f"{_OWNER}: found no runs; expected one at least"
         raise SchemaError(msg)
-    return _below_one_another(given, kind, _labels(given) if labels is None else labels)
+    return _below_one_another(items, kind, _labels(items) if labels is None else labels)
 
 
 def _each_alone(run: xr.Dataset, kind: Contents) -> xr.Dataset:

@@ -126,20 +126,20 @@ def motions_with(record: NamedRecord | None) -> dict[str, str]:
     return {**own, **PULSES, EXAMPLE: "Example record (Loma Prieta 1989)"}
 
 
-def read_choice(given: Mapping[str, str], record: NamedRecord | None) -> tuple[Tried, list[str]]:
+def read_choice(values: Mapping[str, str], record: NamedRecord | None) -> tuple[Tried, list[str]]:
     """Read the address of the page; a wrong value is reported and replaced by its default."""
-    faults = [*_unknown(given)]
+    faults = [*_unknown(values)]
     numbers = dict[str, float]()
     for control in CONTROLS:
         numbers[control.name] = control.default
-        if control.name in given:
+        if control.name in values:
             try:
-                numbers[control.name] = _number(control, given[control.name])
+                numbers[control.name] = _number(control, values[control.name])
             except ValueError as problem:
                 faults.append(str(problem))
     words = dict[str, str]()
     for name, known in (("base", BASES), ("motion", motions_with(record))):
-        words[name] = given.get(name, next(iter(known)))
+        words[name] = values.get(name, next(iter(known)))
         if words[name] not in known:
             near = nearest(words[name], known)
             faults.append(
@@ -149,9 +149,9 @@ def read_choice(given: Mapping[str, str], record: NamedRecord | None) -> tuple[T
     return Tried(numbers, words["base"], words["motion"]), faults
 
 
-def _unknown(given: Mapping[str, str]) -> Iterator[str]:
+def _unknown(values: Mapping[str, str]) -> Iterator[str]:
     known = [*(one.name for one in CONTROLS), "base", "motion"]
-    for name in given:
+    for name in values:
         if name not in known:
             words = nearest(name, known) or f"; there are {', '.join(known)}"
             yield f"there is no {shown(name)}{words}"

@@ -95,12 +95,12 @@ class Server(ThreadingHTTPServer):
             return self._outcomes[toml]
 
     def _simulated(self, choice: Tried, toml: str) -> ToldOutcome:
-        with collected_warnings() as said:
+        with collected_warnings() as warned:
             motion = choice.ground(self.record)
             run = choice.system().simulate(motion, free_vibration=FREE_VIBRATION)
             player = plot.player(run, title=_MOVING).to_html()
         title, kind = _TITLES[verdict_of(run)]
-        return ToldOutcome(title, str(run.attrs["verdict"]), kind, tuple(said), toml, player)
+        return ToldOutcome(title, str(run.attrs["verdict"]), kind, tuple(warned), toml, player)
 
 
 class _Handler(BaseHTTPRequestHandler):

@@ -54,8 +54,8 @@ def outputs_of(
     """
     wanted: set[str] = set()
     diagnostics: set[str] = set()
-    for given in listed(outputs):
-        name = given if isinstance(given, str) else ""
+    for value in listed(outputs):
+        name = value if isinstance(value, str) else ""
         dims = SCHEMA[name].dims if name in SCHEMA else ()
         if dims == POINT_TIME:
             if not points:
@@ -70,8 +70,8 @@ def outputs_of(
             known = (*GROUPS, *ON_REQUEST, *DIAGNOSTICS)
             words = ", ".join(map(repr, known))
             found = (
-                f"outputs has no {shown(given)}; every run has its response, and on request "
-                f"{words}{nearest(given, known)}"
+                f"outputs has no {shown(value)}; every run has its response, and on request "
+                f"{words}{nearest(value, known)}"
             )
             if "time" in dims:
                 found = (
@@ -106,16 +106,16 @@ def lacking(system: Assembly, names: Iterable[str]) -> list[str]:
 
 
 def points_of(
-    given: object, faults: list[str], *, owner: str = "simulate"
+    value: object, faults: list[str], *, owner: str = "simulate"
 ) -> tuple[BodyPoint, ...]:
     """Read the argument ``points``: names and places on the body; add what is wrong to faults."""
-    if given is None:
+    if value is None:
         return ()
-    if not isinstance(given, Mapping):
-        faults.append(f"points must name places, such as {EXAMPLE}, got {shown(given)}")
+    if not isinstance(value, Mapping):
+        faults.append(f"points must name places, such as {EXAMPLE}, got {shown(value)}")
         return ()
     points: list[BodyPoint] = []
-    for name, place in cast("Mapping[Any, Any]", given).items():
+    for name, place in cast("Mapping[Any, Any]", value).items():
         if not (isinstance(name, str) and name.strip()):
             faults.append(f"points needs names, such as {EXAMPLE}, got {shown(name)}")
         elif not (isinstance(place, tuple | list) and len(cast("tuple[object]", place)) == 2):
@@ -307,32 +307,34 @@ def _time(value: float | None) -> str | None:
     return None if value is None else f"{value!r} {TIME.unit}"
 
 
-def plan_run(system: Assembly, motion: GroundMotion | None, **asked: Unpack[RunArguments]) -> Plan:
+def plan_run(
+    system: Assembly, motion: GroundMotion | None, **requested: Unpack[RunArguments]
+) -> Plan:
     """Check the arguments of a run against the system and one another."""
     faults: list[str] = []
     motion = system.parts.motion if motion is None else motion
     if not isinstance(motion, GroundMotion | None):  # pyright: ignore[reportUnnecessaryIsInstance]
         fault = f"motion must be a GroundMotion, got {shown(motion)}{_motion_hint(motion)}"
         raise AssemblyError([fault])
-    arguments = read_arguments(faults, **asked)
+    arguments = read_arguments(faults, **requested)
     plan = fit_plan(arguments, system, motion, faults)
     if faults:
         raise AssemblyError(faults)
     return plan
 
 
-def read_arguments(faults: list[str], **asked: Unpack[RunArguments]) -> RunRequest:
+def read_arguments(faults: list[str], **options: Unpack[RunArguments]) -> RunRequest:
     """Read the arguments of a run, as far as that needs neither system nor motion."""
-    duration = _read_time("duration", asked.get("duration"))
-    free_vibration = _read_time("free_vibration", asked.get("free_vibration"))
+    duration = _read_time("duration", options.get("duration"))
+    free_vibration = _read_time("free_vibration", options.get("free_vibration"))
     if duration is not None and free_vibration is not None:
         faults.append("give duration or free_vibration, not both: each fixes the run's length")
-    output_step = _read_time("output_step", asked.get("output_step"), TIME_STEP)
-    outputs, points = asked.get("outputs", ()), asked.get("points")
-    accuracy = asked.get("accuracy", AccuracyLevel.STANDARD)
-    verdict = asked.get("overturning", Overturning.STOP)
+    output_step = _read_time("output_step", options.get("output_step"), TIME_STEP)
+    outputs, points = options.get("outputs", ()), options.get("points")
+    accuracy = options.get("accuracy", AccuracyLevel.STANDARD)
+    verdict = options.get("overturning", Overturning.STOP)
     course = read_option(Overturning, verdict, "overturning", faults)
-    initial = _initial(asked.get("initial"), faults)
+    initial = _initial(options.get("initial"), faults)
     requested, diagnostics = outputs_of(outputs, points, faults)
     return RunRequest(
         duration=duration,
@@ -369,47 +371,47 @@ def fit_plan(
                 "friction"
             )
     faults += lacking(system, arguments.requested)
-    asked = {name: getattr(arguments, name) for name in _Requested.__annotations__}
-    asked["output_step"] = step
-    return Plan(motion=motion, duration=length, initial=beginning, **asked)
+    options = {name: getattr(arguments, name) for name in _Requested.__annotations__}
+    options["output_step"] = step
+    return Plan(motion=motion, duration=length, initial=beginning, **options)
 
 
-def _read_time(name: str, given: QuantityLike | None, measure: Measure = TIME) -> float | None:
-    if given is None:
+def _read_time(name: str, value: QuantityLike | None, measure: Measure = TIME) -> float | None:
+    if value is None:
         return None
-    return to_si(given, measure, owner="simulate", name=name, condition=POSITIVE)
+    return to_si(value, measure, owner="simulate", name=name, condition=POSITIVE)
 
 
-def _initial(given: object, faults: list[str]) -> "InitialState | xr.Dataset":
-    if given is None or isinstance(given, InitialState | xr.Dataset):
-        return _REST if given is None else given
+def _initial(value: object, faults: list[str]) -> "InitialState | xr.Dataset":
+    if value is None or isinstance(value, InitialState | xr.Dataset):
+        return _REST if value is None else value
     hint = ""
-    if isinstance(given, str | tuple):
-        hint = f"; write InitialState(rotation={given!r}), if that is its rotation"
+    if isinstance(value, str | tuple):
+        hint = f"; write InitialState(rotation={value!r}), if that is its rotation"
     faults.append(
-        f"initial must be an InitialState or the result of a run, got {shown(given)}{hint}"
+        f"initial must be an InitialState or the result of a run, got {shown(value)}{hint}"
     )
     return _REST
 
 
-def _motion_hint(given: object) -> str:
+def _motion_hint(value: object) -> str:
     """Say how to make a motion from what was given, if that is known."""
-    if isinstance(given, str | PathLike):
-        return f"; read the file first: GroundMotion.read({str(given)!r})"  # pyright: ignore[reportUnknownArgumentType]
-    if hasattr(given, "shape") or isinstance(given, list):
+    if isinstance(value, str | PathLike):
+        return f"; read the file first: GroundMotion.read({str(value)!r})"  # pyright: ignore[reportUnknownArgumentType]
+    if hasattr(value, "shape") or isinstance(value, list):
         return "; build one: GroundMotion.from_arrays((samples, 'm/s^2'), '0.01 s')"
-    if isinstance(given, HorizontalPair):
+    if isinstance(value, HorizontalPair):
         return "; give its component in one direction: pair.first, or pair.rotated('30 deg')"
     return ""
 
 
 def _beginning(
-    system: Assembly, given: "InitialState | xr.Dataset", faults: list[str]
+    system: Assembly, value: "InitialState | xr.Dataset", faults: list[str]
 ) -> Beginning:
     """Give the start of the run; add to faults what does not fit the system."""
-    if isinstance(given, xr.Dataset):
-        return continuation_of(given, system, faults)
-    start = given.si
+    if isinstance(value, xr.Dataset):
+        return continuation_of(value, system, faults)
+    start = value.si
     vertical_start = start.vertical_displacement is not None or start.vertical_velocity != 0.0
     rotation = system.setting.rest_rotation if start.rotation is None else start.rotation
     faults += system.setting.start_faults(rotation, vertical_start)
@@ -420,7 +422,7 @@ def _beginning(
             f"initial rotation {rotation:.6g} rad is not below the overturning angle "
             f"{theta:.6g} rad"
         )
-    return given
+    return value
 
 
 def usual_output_step(motion: GroundMotion | None) -> float:
@@ -435,16 +437,16 @@ def run_length(arguments: RunRequest, motion: GroundMotion | None) -> float:
     return (0.0 if motion is None else motion.si.duration) + (arguments.free_vibration or 0.0)
 
 
-def certification_of(given: object) -> Certification | Literal["proved"] | None:
+def certification_of(value: object) -> Certification | Literal["proved"] | None:
     """Read the argument ``certify`` of a run."""
-    if given is False:
+    if value is False:
         return None
-    if isinstance(given, str) and given == PROVED:
+    if isinstance(value, str) and value == PROVED:
         return PROVED
-    if given is True:
+    if value is True:
         return Certification()
-    if isinstance(given, Certification):
-        return given
+    if isinstance(value, Certification):
+        return value
     wanted = f"True, False, {PROVED!r} or a Certification(...)"
-    msg = f"simulate: certify must be {wanted}, got {shown(given)}"
+    msg = f"simulate: certify must be {wanted}, got {shown(value)}"
     raise ComponentError(msg)

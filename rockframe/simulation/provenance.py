@@ -145,9 +145,9 @@ def _joined(dataset: xr.Dataset, name: str, count: int) -> NDArray[Any]:
     return np.concatenate(parts)
 
 
-def description_by_names(given: object) -> Mapping[str, Any]:
+def description_by_names(value: object) -> Mapping[str, Any]:
     """Give the description of a system as a mapping; refuse anything else."""
-    return by_names(given, owner="System", name="description", example="that of to_dict()")
+    return by_names(value, owner="System", name="description", example="that of to_dict()")
 
 
 def parts_and_options(

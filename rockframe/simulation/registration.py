@@ -104,25 +104,25 @@ def register(
 
 
 def _register_diagnostic(
-    given: "Diagnostic | Callable[..., Any]",
+    value: "Diagnostic | Callable[..., Any]",
     columns: Sequence[Variable],
     name: str | None,
     unit: Unit | str | None,
     long_name: str | None,
 ) -> None:
     faults = ["columns are for bases and scenes"] if columns else []
-    if isinstance(given, Diagnostic):
+    if isinstance(value, Diagnostic):
         if (name, unit, long_name) != (None, None, None):
             faults.append("a Diagnostic has its name, unit and long_name itself")
     else:
-        words = (given.__doc__ or "").strip().split("\n")[0].rstrip(".")
-        called = name if name is not None else getattr(given, "__name__", "")
-        given = Diagnostic(
-            given, called, cast("str", unit), words if long_name is None else long_name
+        words = (value.__doc__ or "").strip().split("\n")[0].rstrip(".")
+        called = name if name is not None else getattr(value, "__name__", "")
+        value = Diagnostic(
+            value, called, cast("str", unit), words if long_name is None else long_name
         )
-    faults += _faults_in_diagnostic(given)
+    faults += _faults_in_diagnostic(value)
     _refuse(faults)
-    add_diagnostic(given)
+    add_diagnostic(value)
 
 
 def _refuse(faults: list[str]) -> None:
@@ -220,23 +220,23 @@ def _faults_in(row: Any, columns: Sequence[Any]) -> list[str]:
     return [*faults, *_faults_in_unit(row.unit, f"column {row.name!r}")]
 
 
-def _faults_in_diagnostic(given: Diagnostic) -> list[str]:
-    name = cast("Any", given.name)
+def _faults_in_diagnostic(value: Diagnostic) -> list[str]:
+    name = cast("Any", value.name)
     if not isinstance(name, str):
         return [f"the name of a diagnostic must be a word, got {shown(name)}"]
     faults = _faults_in_name(name, "a diagnostic")
-    if not callable(given.function):
-        faults.append(f"diagnostic {name!r} needs a function, got {shown(given.function)}")
-    if not isinstance(cast("Any", given.long_name), str) or not given.long_name:
+    if not callable(value.function):
+        faults.append(f"diagnostic {name!r} needs a function, got {shown(value.function)}")
+    if not isinstance(cast("Any", value.long_name), str) or not value.long_name:
         faults.append(f"diagnostic {name!r} needs a long_name, or a docstring")
-    if cast("Any", given.unit) is None:
+    if cast("Any", value.unit) is None:
         faults.append(f"diagnostic {name!r} needs a unit, such as 'm', or '1'")
     taken = (
-        [row.name for row in given.rows if row.name in SCHEMA] if name not in DIAGNOSTICS else []
+        [row.name for row in value.rows if row.name in SCHEMA] if name not in DIAGNOSTICS else []
     )
     taken += [name] if name in GROUPS else []
     faults += [f"there is a variable {one!r} of another meaning" for one in taken]
-    return [*faults, *_faults_in_unit(given.unit, f"diagnostic {name!r}")]
+    return [*faults, *_faults_in_unit(value.unit, f"diagnostic {name!r}")]
 
 
 def _faults_in_name(name: str, what: str) -> list[str]:

@@ -156,8 +156,8 @@ class Certification:
 
     def __init__(self, *, nudge: float = 1e-3, reach: float = 0.5, runs: int = 200) -> None:
         owner = type(self).__name__
-        given = {"nudge": (nudge, _SMALL), "reach": (reach, _REACH)}
-        for name, (value, condition) in given.items():
+        values = {"nudge": (nudge, _SMALL), "reach": (reach, _REACH)}
+        for name, (value, condition) in values.items():
             ratio = to_ratio(value, owner=owner, name=name, condition=condition)
             object.__setattr__(self, name, ratio)
         most = whole_number(runs, owner=owner, name="runs", lowest=FEWEST_RUNS, highest=MOST_RUNS)

@@ -385,8 +385,8 @@ class System(SystemValue):
         True
         """
         try:
-            given = description_by_names(description).get("motion")
-            motion = None if given is None else GroundMotion.from_dict(given)
+            value = description_by_names(description).get("motion")
+            motion = None if value is None else GroundMotion.from_dict(value)
             return cls._described(description, motion)
         except _DAMAGED as problem:
             msg = f"this does not describe a system: {problem}"

@@ -88,9 +88,9 @@ class SystemValue(metaclass=Proposing):
     def __repr__(self) -> str:
         parts = ", ".join(repr(part) for part in self.parts)
         coupling = f", coupling={str(self.coupling)!r}" if self.scene.coupling else ""
-        given = self.options.to_dict()
+        value = self.options.to_dict()
         others = "".join(
-            f", {name}={given[name]!r}" for name in ("inclination", "sliding") if name in given
+            f", {name}={value[name]!r}" for name in ("inclination", "sliding") if name in value
         )
         return (
             f"{type(self).__name__}({parts}, restraint={str(self.restraint)!r}, "

@@ -70,8 +70,8 @@ class Accuracy:
 
     def __post_init__(self) -> None:
         if (self.rtol is None) == (self.substeps is None):
-            given = "neither" if self.rtol is None else "both"
-            msg = f"Accuracy: give rtol (steps by tolerance) or substeps (fixed steps), got {given}"
+            both = "neither" if self.rtol is None else "both"
+            msg = f"Accuracy: give rtol (steps by tolerance) or substeps (fixed steps), got {both}"
             raise SolverError(msg)
         bounds = {
             "rtol": (1e-13, 1e-2),

@@ -322,8 +322,8 @@ def march(
         if tried >= counters[at.PAUSE_AT] and trial == 0.0:
             result = EXHAUSTED
             break
-        asked = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
-        h = trial if trial > 0.0 else min(asked, scheme.longest)
+        requested = fit_step(min(h_next, controls[at.MAX_STEP]), remaining)
+        h = trial if trial > 0.0 else min(requested, scheme.longest)
         span = Span(h, tau / time_step, h / time_step, degree_x, degree_y)
         here, there = half * stride, stride - half * stride
         state, new = part_of(ends, here), part_of(ends, there)
@@ -351,11 +351,11 @@ def march(
         found = may_fall(system, h, before, after)
         seen = begin + tau + h >= clock[at.NEXT_OUTPUT] or has_no_room(codes, counters)
         if found or peaks or seen:
-            clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, asked, excess
+            clock[at.STEP], clock[at.ASKED], clock[at.EXCESS] = h, requested, excess
             result = GUARDED if found else TO_BE_SEEN
             break
         if fixed:
-            h_next = rest_of(asked, h, shortest, controls)
+            h_next = rest_of(requested, h, shortest, controls)
         else:
             h_next = adapted(h, h_next, excess, controls)
             for i in range(width):

@@ -239,9 +239,9 @@ def fixed_step(
 
 
 @inlined
-def rest_of(asked: float, h: float, shortest: float, controls: Vector) -> float:
+def rest_of(requested: float, h: float, shortest: float, controls: Vector) -> float:
     """Give the next fixed step: the rest of the sub-step if only a part of it has been made."""
-    rest = asked - h
+    rest = requested - h
     return rest if rest > shortest else controls[at.MAX_STEP]
 
 

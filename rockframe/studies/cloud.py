@@ -265,11 +265,11 @@ def cloud_analysis(
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
     values = scalar_of(runs, response, label or "", owner=_OWNER)
     levels = listed_limits(limits, owner=_OWNER)
-    asked = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
+    requested = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
     floor = read_least(least, values, owner=_OWNER)
     found = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
     words = " ".join(filter(None, [response.replace("_", " "), label]))
-    named = {f"{words} {one:g}{unit_behind(values.attrs)}": one for one in asked}
+    named = {f"{words} {one:g}{unit_behind(values.attrs)}": one for one in requested}
     dataset = _labelled(found, named | {OVERTURNING: math.inf}, measure, level, seed)
     for one in ("cloud_response", "response_limit"):
         dataset[one].attrs["units"] = str(values.attrs.get("units", "1"))
@@ -315,14 +315,14 @@ def cloud_of(
     return CloudOfRuns(made, known, len(np.unique(used)) < len(used))
 
 
-def read_least(given: Any, values: xr.DataArray, *, owner: str) -> float:
+def read_least(value: Any, values: xr.DataArray, *, owner: str) -> float:
     """Read the response below which a run counts as one at rest, in the response's unit."""
-    return 0.0 if given is None else _read_level(given, values, owner, "least")
+    return 0.0 if value is None else _read_level(value, values, owner, "least")
 
 
-def _read_level(given: Any, values: xr.DataArray, owner: str, name: str) -> float:
+def _read_level(value: Any, values: xr.DataArray, owner: str, name: str) -> float:
     unit, words = str(values.attrs.get("units", "1")), f"a value of {values.name}"
-    return read_in_unit(given, unit, words, owner=owner, name=name, condition=POSITIVE)
+    return read_in_unit(value, unit, words, owner=owner, name=name, condition=POSITIVE)
 
 
 def _curve(

@@ -13,14 +13,14 @@ SHARE: Final = Condition("above 0 and below 1", lambda value: 0.0 < value < 1.0)
 _LEVEL: Final = Condition("from 0.5 to 0.9999", lambda value: 0.5 <= value <= 0.9999)
 
 
-def read_level(given: object, *, owner: str) -> float:
+def read_level(value: object, *, owner: str) -> float:
     """Read the argument ``confidence``."""
-    return to_ratio(given, owner=owner, name="confidence", condition=_LEVEL, example="0.95")
+    return to_ratio(value, owner=owner, name="confidence", condition=_LEVEL, example="0.95")
 
 
-def read_shares(given: object, name: str, *, owner: str) -> Array:
+def read_shares(value: object, name: str, *, owner: str) -> Array:
     """Read an argument that is several shares."""
-    listed = several(given, owner=owner, name=name, of="numbers")
+    listed = several(value, owner=owner, name=name, of="numbers")
     return np.array(
         [to_ratio(one, owner=owner, name=name, condition=SHARE, example="0.5") for one in listed]
     )

@@ -53,7 +53,7 @@ def critical_scale(
     period: QuantityLike | None = None,
     damping_ratio: RatioLike = 0.05,
     progress: bool | None = None,
-    **asked: Unpack[ScaleArguments],
+    **requested: Unpack[ScaleArguments],
 ) -> xr.Dataset:
     """Find the least factor of a ground motion that overturns a block, and every flip above.
 
@@ -152,7 +152,7 @@ def critical_scale(
     finest = read_resolution(resolution, owner=_OWNER)
     count = whole_number(scales, owner=_OWNER, name="scales", lowest=2, highest=MOST_RUNS)
     most = whole_number(runs, owner=_OWNER, name="runs", lowest=count, highest=MOST_RUNS)
-    plan = plan_run(system.assembly, motion, outputs=None, **asked)
+    plan = plan_run(system.assembly, motion, outputs=None, **requested)
     measure = None
     if intensity is not None:
         measure = ScaledIntensity(
@@ -189,11 +189,11 @@ def critical_scale(
 
         found = follow(look, row, most=most, width=share, resolution=finest, may_slide=rubs)
     critical = least_overturning(found.shown)
-    told = flips_sentence(found, width=share, resolution=finest)
+    text = flips_sentence(found, width=share, resolution=finest)
     if not found.whole:
-        warn(f"{_OWNER}: interrupted; {told}", SolverWarning)
+        warn(f"{_OWNER}: interrupted; {text}", SolverWarning)
     attributes = {
-        "verdict": told,
+        "verdict": text,
         "largest_scale": greatest_scale,
         "first_scales": count,
         "most_runs": most,

@@ -81,11 +81,11 @@ def ensemble_statistics(
     >>> found.sizes["rank"]
     20
     """
-    asked = read_level(confidence, owner=_OWNER)
+    requested = read_level(confidence, owner=_OWNER)
     shares = read_shares(quantiles, "quantiles", owner=_OWNER)
     values = _values(runs, name)
     together = several(pooled, owner=_OWNER, name="pooled", of="names")
-    level = np.nan if _dependent(values, runs.attrs, together) else asked
+    level = np.nan if _dependent(values, runs.attrs, together) else requested
     ordered = np.sort(values.to_numpy().ravel().astype(np.float64))
     ordered = ordered[~np.isnan(ordered)]
     if not len(ordered):
@@ -104,8 +104,8 @@ def ensemble_statistics(
         },
         {
             "variable": str(values.name),
-            "confidence": asked,
-            "verdict": _sentence(len(ordered), values.size - len(ordered), asked, level),
+            "confidence": requested,
+            "verdict": _sentence(len(ordered), values.size - len(ordered), requested, level),
         },
         title="Statistics of an ensemble",
         source="empirical distribution",
@@ -147,13 +147,13 @@ def _dependent(values: xr.DataArray, attributes: Mapping[Any, Any], pooled: Sequ
     return bool(count.max(initial=0) > 1)
 
 
-def _sentence(count: int, left_out: int, asked: float, level: float) -> str:
+def _sentence(count: int, left_out: int, requested: float, level: float) -> str:
     """Give the verdict in words: the number of members, and the bounds."""
     lacking = f"; {left_out} without a result are left out" if left_out else ""
     bounds = (
         "no bounds, for several members are of one motion"
         if np.isnan(level)
-        else f"bands of confidence {asked:g}"
+        else f"bands of confidence {requested:g}"
     )
     return f"{count} members{lacking}; {bounds}"
 

@@ -108,10 +108,10 @@ def _wide(
     for near, far in side.intervals():
         if side.shown[near].overturned and not beyond:
             return
-        told = None not in (side.shown[near].overturned, side.shown[far].overturned)
+        text = None not in (side.shown[near].overturned, side.shown[far].overturned)
         if near == 0.0 and far <= resolution * side.places[-1]:
             continue  # halving towards zero would not end
-        if told and far - near > resolution * far and (side.shown[far].lifted or may_slide):
+        if text and far - near > resolution * far and (side.shown[far].lifted or may_slide):
             yield near, far
 
 

@@ -119,9 +119,9 @@ def fractile_curves(
         )
         raise StudyError(msg)
     along = np.linspace(low, high, _POINTS)
-    asked = _levels(levels, values, lines)
+    requested = _levels(levels, values, lines)
     responses = np.stack([one.at(along) for one in lines])
-    reached = np.stack([one.first(asked) for one in lines])
+    reached = np.stack([one.first(requested) for one in lines])
     name = str(measure.name)
     found = build_dataset({}, {}, title=_TITLE, source="runs of scaled motions")
     for one, value, over in (
@@ -135,14 +135,14 @@ def fractile_curves(
     names = np.array([one.name for one in lines], dtype=object)
     found = with_variables(found, {MOTION: names, "quantile": shares})
     found = found.assign_coords({name: (name, along, measure.attrs)})
-    found = with_variables(found, {_LEVEL: asked})
+    found = with_variables(found, {_LEVEL: requested})
     unit = values.attrs.get("units", "1")
     for one in ("motion_response", "response_fractile", _LEVEL):
         found[one].attrs["units"] = unit
     found["intensity_fractile"].attrs["units"] = measure.attrs.get("units", "1")
-    told = period_attribute(runs, [intensity], period, owner=_OWNER)
+    text = period_attribute(runs, [intensity], period, owner=_OWNER)
     return found.assign_attrs(
-        {**attributes_of_system(runs), "intensity": name, **told,
+        {**attributes_of_system(runs), "intensity": name, **text,
          "response": response if label is None else f"{response} {label}",
          "verdict": _sentence(lines, low, high, measure) + _left_out(lines, runs)}
     )  # fmt: skip
@@ -196,8 +196,8 @@ def _lines(runs: xr.Dataset, measure: xr.DataArray, values: xr.DataArray) -> lis
     along = wide[0]
     others = [dim for dim in verdict.dims if dim not in (MOTION, along)]
 
-    def rows(given: xr.DataArray) -> Array:
-        laid = given.broadcast_like(verdict).isel(dict.fromkeys(others, 0))
+    def rows(array: xr.DataArray) -> Array:
+        laid = array.broadcast_like(verdict).isel(dict.fromkeys(others, 0))
         return laid.transpose(MOTION, along).to_numpy().astype(np.float64)
 
     intensities, responses, falls = rows(measure), rows(values), rows(verdict)
@@ -228,7 +228,7 @@ def _falls(
     above, below, after = (
         last[name].to_numpy() for name in ("scale_above", "scale_below", "exceeds_above")
     )
-    told = ~np.isnan(above)
+    text = ~np.isnan(above)
     scales = np.log(runs[SCALE].to_numpy())
     rising = np.argsort(scales)
 
@@ -236,8 +236,8 @@ def _falls(
         return float(np.exp(np.interp(np.log(scale), scales[rising], np.log(intensities[rising]))))
 
     ranges: list[tuple[float, float]] = []
-    start = None if not told.any() or after[told][0] == 1.0 else float(intensities.min())
-    for low, high, falls in zip(below[told], above[told], after[told], strict=True):
+    start = None if not text.any() or after[text][0] == 1.0 else float(intensities.min())
+    for low, high, falls in zip(below[text], above[text], after[text], strict=True):
         if falls == 1.0:
             start = of(high)
         elif start is not None:
@@ -284,22 +284,22 @@ def fractiles_of(rows: Array, shares: Array) -> Array:
     return np.sort(rows, axis=0)[np.clip(place, 0, len(rows) - 1)]
 
 
-def _levels(given: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
+def _levels(value: Any, values: xr.DataArray, lines: Sequence[_Line]) -> Array:
     """Read the levels of the response, or give those from the least to the greatest."""
-    if given is None:
+    if value is None:
         every = np.concatenate([one.values for one in lines])
         every = every[np.isfinite(every)]
         ends = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
         return np.linspace(*ends, _POINTS + 1)[1:]  # every motion has reached the least
     unit = str(values.attrs.get("units", "1"))
     if unit == Unit.ONE:
-        listed = several(given, owner=_OWNER, name="levels", of="numbers")
+        listed = several(value, owner=_OWNER, name="levels", of="numbers")
         found = np.array([to_ratio(one, owner=_OWNER, name="levels") for one in listed])
     else:
         measure = Measure("a response", Unit(unit), f"1 {unit}")
-        found = np.array(to_si_values(given, measure, owner=_OWNER, name="levels"))
+        found = np.array(to_si_values(value, measure, owner=_OWNER, name="levels"))
     if not len(found) or not (np.diff(found) > 0.0).all():
-        msg = f"{_OWNER}: levels must be one or more, and increase, got {shown(given)}"
+        msg = f"{_OWNER}: levels must be one or more, and increase, got {shown(value)}"
         raise ComponentError(msg)
     return found
 

@@ -126,14 +126,14 @@ def annual_rate(
     >>> f"{found.annual_rate.item():.2e}"
     '1.48e-04'
     """
-    given = checked_dataset(fragility, owner=_OWNER)
-    measure = _measure(given)
-    given = in_own_units(given, measure, owner=_OWNER)
-    curve = read_hazard(hazard, given[measure], between)
-    status = given["fragility_status"]
+    value = checked_dataset(fragility, owner=_OWNER)
+    measure = _measure(value)
+    value = in_own_units(value, measure, owner=_OWNER)
+    curve = read_hazard(hazard, value[measure], between)
+    status = value["fragility_status"]
     dims = tuple(map(str, status.dims))
     places = (dict(zip(status.dims, place, strict=True)) for place in np.ndindex(status.shape))
-    rows = [_of_one(given.isel(place), curve, measure) for place in places]
+    rows = [_of_one(value.isel(place), curve, measure) for place in places]
     arrays = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     found = build_dataset(
         {name: each.reshape((*status.shape, *each.shape[1:])) for name, each in arrays.items()},
@@ -144,23 +144,23 @@ def annual_rate(
         "contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
         "quantile": np.array(_SHARES),
     }
-    kept = [str(name) for name in given.coords if set(given[name].dims) <= set(dims)]
-    found = found.assign_coords({name: given[name].variable for name in kept})
+    kept = [str(name) for name in value.coords if set(value[name].dims) <= set(dims)]
+    found = found.assign_coords({name: value[name].variable for name in kept})
     found = with_variables(found, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
-        found[name].attrs["units"] = given[measure].attrs.get("units", "1")
-    told = {key: given.attrs[key] for key in (PERIOD_OF, "model") if key in given.attrs}
+        found[name].attrs["units"] = value[measure].attrs.get("units", "1")
+    messages = {key: value.attrs[key] for key in (PERIOD_OF, "model") if key in value.attrs}
     found = found.assign_attrs(
-        {**told, "intensity": measure, "confidence": given.attrs.get("confidence", math.nan)}
+        {**messages, "intensity": measure, "confidence": value.attrs.get("confidence", math.nan)}
     )
     _warn_beyond_curve(found, curve)
     return found.assign_attrs(verdict=_sentence(found))
 
 
-def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCurve:
+def read_hazard(value: object, along: xr.DataArray, between: object) -> HazardCurve:
     """Read a hazard curve over a measure, and refuse one that does not descend."""
     name, unit = str(along.name), str(along.attrs.get("units", "1"))
-    if callable(given):
+    if callable(value):
         if between is None:
             msg = f"{_OWNER}: a hazard that is a function needs between, such as ('0.01 g_0', ...)"
             raise ComponentError(msg)
@@ -169,15 +169,15 @@ def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCu
             msg = f"{_OWNER}: between must be two intensities that rise, got {shown(between)}"
             raise ComponentError(msg)
         values = np.geomspace(float(ends[0]), float(ends[1]), _OF_FUNCTIONS)
-        rate = function_of(given, "intensities", owner=_OWNER, name="hazard")
+        rate = function_of(value, "intensities", owner=_OWNER, name="hazard")
         rates = np.broadcast_to(np.asarray(rate(values), dtype=np.float64), values.shape)
-    elif isinstance(given, xr.DataArray) and given.ndim == 1:
-        (dim,) = given.dims
-        given_unit = str(given[dim].attrs.get("units", "1"))
-        values = _intensities((given[dim].to_numpy(), given_unit), name, unit)
-        rates = given.to_numpy().astype(np.float64)
-    elif isinstance(given, Mapping):
-        table = cast("Mapping[str, Any]", given)
+    elif isinstance(value, xr.DataArray) and value.ndim == 1:
+        (dim,) = value.dims
+        given_unit = str(value[dim].attrs.get("units", "1"))
+        values = _intensities((value[dim].to_numpy(), given_unit), name, unit)
+        rates = value.to_numpy().astype(np.float64)
+    elif isinstance(value, Mapping):
+        table = cast("Mapping[str, Any]", value)
         if set(table) not in (set(_BY_RATE), set(_BY_PROBABILITY)):
             wanted = " or ".join(
                 ", ".join(map(repr, names)) for names in (_BY_RATE, _BY_PROBABILITY)
@@ -187,7 +187,7 @@ def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCu
         values = _intensities(table["intensity"], name, unit)
         rates = _rates(table)
     else:
-        msg = f"{_OWNER}: hazard must be a table, a DataArray or a function, got {shown(given)}"
+        msg = f"{_OWNER}: hazard must be a table, a DataArray or a function, got {shown(value)}"
         raise ComponentError(msg)
     if rates.shape != values.shape or len(values) < 2:
         msg = (
@@ -205,15 +205,15 @@ def read_hazard(given: object, along: xr.DataArray, between: object) -> HazardCu
     return HazardCurve(values, rates)
 
 
-def _intensities(given: object, name: str, unit: str) -> Array:
-    pair = cast("tuple[Any, ...]", given) if isinstance(given, tuple) else ()
+def _intensities(value: object, name: str, unit: str) -> Array:
+    pair = cast("tuple[Any, ...]", value) if isinstance(value, tuple) else ()
     own_measure = unit == Unit.ONE or unit not in map(str, Unit)
     if len(pair) == 2 and pair[1] == unit and own_measure:
         check_own_unit(pair[0], unit, owner=_OWNER, name="intensity")
         return np.asarray(free_values(list(pair[0]), "intensity", owner=_OWNER)[0], float)
-    values, own = free_values(given, "intensity", owner=_OWNER, expected=unit)
+    values, own = free_values(value, "intensity", owner=_OWNER, expected=unit)
     if own != unit:
-        msg = f"{_OWNER}: {name} is in {unit}, got {shown(given)}"
+        msg = f"{_OWNER}: {name} is in {unit}, got {shown(value)}"
         raise UnitsError(msg)
     return np.asarray(values, dtype=np.float64)
 
@@ -230,12 +230,12 @@ def _rates(table: Mapping[str, Any]) -> Array:
     return -np.log1p(-chance) / years
 
 
-def _measure(given: xr.Dataset) -> str:
+def _measure(dataset: xr.Dataset) -> str:
     """Give the one measure of a fragility."""
-    if "exceedance_probability" not in given or "fragility_status" not in given:
+    if "exceedance_probability" not in dataset or "fragility_status" not in dataset:
         msg = f"{_OWNER}: found no fragility; expected one of rf.fragility or rf.cloud_analysis"
         raise SchemaError(msg)
-    several = measures_of(given)
+    several = measures_of(dataset)
     if len(several) != 1:
         msg = f"{_OWNER}: found a fragility over {' and '.join(several)}; expected one measure"
         raise SchemaError(msg)
@@ -342,10 +342,10 @@ def _interpolated(curve: xr.DataArray, along: xr.DataArray) -> Callable[[Array],
     logs = np.log(along.to_numpy())
     slope = [(eta[k] - eta[k - 1]) / (logs[k] - logs[k - 1]) for k in (1, len(logs) - 1)]
 
-    def at(given: Array) -> Array:
-        found = np.interp(given, logs, eta)
-        found = np.where(given < logs[0], eta[0] + max(slope[0], 0.0) * (given - logs[0]), found)
-        found = np.where(given > logs[-1], eta[-1] + max(slope[1], 0.0) * (given - logs[-1]), found)
+    def at(value: Array) -> Array:
+        found = np.interp(value, logs, eta)
+        found = np.where(value < logs[0], eta[0] + max(slope[0], 0.0) * (value - logs[0]), found)
+        found = np.where(value > logs[-1], eta[-1] + max(slope[1], 0.0) * (value - logs[-1]), found)
         return ndtr(found)
 
     return at
@@ -391,11 +391,11 @@ def _sentence(found: xr.Dataset) -> str:
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
     low, _, high = last["quantile_intensity"].to_numpy().ravel()
-    said = (
+    messages = (
         f"Annual rate of {state}: {known[0]:.3g}, a return period of {1.0 / known[0]:.4g} years; "
     )
-    said += f"nine tenths of it come from {measure} between {low:.3g} and {high:.3g}{unit}"
+    messages += f"nine tenths of it come from {measure} between {low:.3g} and {high:.3g}{unit}"
     outside = float(last["outside_trials_share"].max())
     if outside > _LACKING:
-        said += f", {100.0 * outside:.2g} % from intensities beyond those of the runs"
-    return f"{said}."
+        messages += f", {100.0 * outside:.2g} % from intensities beyond those of the runs"
+    return f"{messages}."

@@ -78,10 +78,10 @@ _SPECTRAL: Final = (*OSCILLATORS, AVERAGE)
 """Measures that depend on a period, or on several."""
 
 
-def spelled(given: object) -> object:
+def spelled(value: object) -> object:
     """Give the name of a measure for an abbreviation, or another spelling."""
-    written = " ".join(given.split()).casefold() if isinstance(given, str) else ""
-    return _SPELLED.get(written, given)
+    written = " ".join(value.split()).casefold() if isinstance(value, str) else ""
+    return _SPELLED.get(written, value)
 
 
 def measure_words(name: str, period: Any) -> str:
@@ -115,10 +115,10 @@ class Intensity:
     period: Periods  # of a spectral value
 
     @classmethod
-    def read(cls, given: object, period: PeriodLike | None, *, owner: str) -> "Intensity":
+    def read(cls, value: object, period: PeriodLike | None, *, owner: str) -> "Intensity":
         """Read the arguments ``intensity`` and ``period``."""
-        given = spelled(given)
-        name = one_of_names(given, [*POWERS, *SHORT], owner=owner, name="intensity")
+        value = spelled(value)
+        name = one_of_names(value, [*POWERS, *SHORT], owner=owner, name="intensity")
         if name not in _SPECTRAL:
             return cls(name, None)
         several = name == AVERAGE
@@ -155,7 +155,7 @@ class Intensity:
 
 
 def measure_in(
-    runs: xr.Dataset, given: object, period: PeriodLike | None, motions: object, *, owner: str
+    runs: xr.Dataset, value: object, period: PeriodLike | None, motions: object, *, owner: str
 ) -> xr.DataArray:
     """Give a measure of the motion of each case: a known one, a column, or given numbers.
 
@@ -164,47 +164,47 @@ def measure_in(
     dims = runs["status"].dims
     if motions is not None:
         named_motions(motions)  # also where they are not needed
-    given = named_column(runs, given)
-    named = str(spelled(given))
-    known = isinstance(given, str) and named in runs.variables
+    value = named_column(runs, value)
+    named = str(spelled(value))
+    known = isinstance(value, str) and named in runs.variables
     if known and (named not in _SPECTRAL or _same_period(runs, named, period, owner)):
         return runs[named]
-    if not isinstance(given, xr.DataArray):
-        which = Intensity.read(given, period, owner=owner)
+    if not isinstance(value, xr.DataArray):
+        which = Intensity.read(value, period, owner=owner)
         return intensity_in(runs, which, motions, owner=owner)
-    if given.name is None or not set(given.dims) <= set(dims):
+    if value.name is None or not set(value.dims) <= set(dims):
         msg = (
             f"{owner}: an intensity of one's own needs a name and dimensions among "
-            f"{', '.join(map(str, dims))}, got {given.name!r} over {given.dims}"
+            f"{', '.join(map(str, dims))}, got {value.name!r} over {value.dims}"
         )
         raise ComponentError(msg)
-    return _of_these_runs(runs, given, owner)
+    return _of_these_runs(runs, value, owner)
 
 
-def _of_these_runs(runs: xr.Dataset, given: xr.DataArray, owner: str) -> xr.DataArray:
+def _of_these_runs(runs: xr.Dataset, array: xr.DataArray, owner: str) -> xr.DataArray:
     """Give numbers of the user's in the order of the runs' labels; NaN where one is missing."""
-    for dim in given.dims:
-        twice = dim in given.indexes and not given.indexes[dim].is_unique
-        if twice and dim in runs.indexes and given.indexes[dim].equals(runs.indexes[dim]):
+    for dim in array.dims:
+        twice = dim in array.indexes and not array.indexes[dim].is_unique
+        if twice and dim in runs.indexes and array.indexes[dim].equals(runs.indexes[dim]):
             continue
-        if dim in given.indexes and dim in runs.indexes and not twice:
-            given = given.reindex({dim: runs.indexes[dim]})
-        elif twice or given.sizes[dim] != runs.sizes[dim]:
-            found = "labels that stand twice" if twice else f"{given.sizes[dim]} values"
+        if dim in array.indexes and dim in runs.indexes and not twice:
+            array = array.reindex({dim: runs.indexes[dim]})
+        elif twice or array.sizes[dim] != runs.sizes[dim]:
+            found = "labels that stand twice" if twice else f"{array.sizes[dim]} values"
             msg = (
-                f"{owner}: the intensity {given.name!r} has {found} along {str(dim)!r}, of which "
+                f"{owner}: the intensity {array.name!r} has {found} along {str(dim)!r}, of which "
                 f"the runs have {runs.sizes[dim]}"
             )
             raise ComponentError(msg)
-    return given
+    return array
 
 
-def named_column(runs: xr.Dataset, given: object) -> object:
+def named_column(runs: xr.Dataset, value: object) -> object:
     """Give a column of the runs by its name, unless a known measure has this name."""
-    known = spelled(given)
+    known = spelled(value)
     if isinstance(known, str) and known not in POWERS and known in runs.variables:
         return runs[known]
-    return given
+    return value
 
 
 def _same_period(runs: xr.Dataset, name: str, period: PeriodLike | None, owner: str) -> bool:
@@ -242,7 +242,7 @@ def intensity_in(
     return found.assign_attrs(intensity.attributes()).rename(intensity.name)
 
 
-def motions_of_runs(runs: xr.Dataset, given: object, *, owner: str) -> dict[str, GroundMotion]:
+def motions_of_runs(runs: xr.Dataset, value: object, *, owner: str) -> dict[str, GroundMotion]:
     """Give the motions of a sweep by their names, as they were before they were scaled."""
     if MOTION not in runs.coords:
         msg = f"{owner}: found runs without the coordinate {MOTION!r}; expected it, as sweeps have"
@@ -258,7 +258,7 @@ def motions_of_runs(runs: xr.Dataset, given: object, *, owner: str) -> dict[str,
         )
         raise StudyError(msg)
     which = [name for name in names if name in used]
-    every = unscaled_motions(runs.attrs, which, given, store_of(runs), owner=owner)
+    every = unscaled_motions(runs.attrs, which, value, store_of(runs), owner=owner)
     found = {name: motion for name, motion in every.items() if motion is not None}
     if len(found) < len(every):
         msg = f"{owner}: the sweep has no motions of its own, of which there is an intensity"

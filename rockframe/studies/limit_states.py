@@ -63,11 +63,11 @@ class LimitState:
 
 
 def limit_states(
-    given: Iterable[object], *, owner: str, name: str = "limits"
+    items: Iterable[object], *, owner: str, name: str = "limits"
 ) -> tuple[LimitState, ...]:
     """Read limit states, each once, in the order in which they are given; overturning is last."""
     found: dict[str, LimitState] = {}
-    for one in listed_limits(given, owner=owner, name=name):
+    for one in listed_limits(items, owner=owner, name=name):
         if isinstance(one, tuple):
             state = _of_variable(cast("tuple[Any, ...]", one), owner)
         elif isinstance(one, str) and one in (UPLIFT, OVERTURNING):
@@ -79,28 +79,28 @@ def limit_states(
     return (*found.values(), LimitState(1.0))
 
 
-def listed_limits(given: object, *, owner: str, name: str = "limits") -> list[Any]:
+def listed_limits(value: object, *, owner: str, name: str = "limits") -> list[Any]:
     """Give the given limit states as a list, also a single one."""
-    if isinstance(given, str | int | float):
-        return [given]
-    return several(given, owner=owner, name=name, of="limit states")
+    if isinstance(value, str | int | float):
+        return [value]
+    return several(value, owner=owner, name=name, of="limit states")
 
 
-def _share(given: Any, owner: str, name: str) -> float:
+def _share(value: Any, owner: str, name: str) -> float:
     """Read a rotation over the overturning angle."""
-    if isinstance(given, str) and not any(letter.isdigit() for letter in given):
+    if isinstance(value, str) and not any(letter.isdigit() for letter in value):
         words = (
             f"{owner}: {name} must be {UPLIFT!r}, {OVERTURNING!r}, a rotation over the overturning "
             "angle such as 0.5, or a variable of runs and a value such as ('peak_slip', '5 cm')"
         )
-        msg = f"{words}, got {shown(given)}{nearest(given, (UPLIFT, OVERTURNING))}"
+        msg = f"{words}, got {shown(value)}{nearest(value, (UPLIFT, OVERTURNING))}"
         raise ComponentError(msg)
-    return to_ratio(given, owner=owner, name=name, condition=SHARE, example="0.5")
+    return to_ratio(value, owner=owner, name=name, condition=SHARE, example="0.5")
 
 
-def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
+def _of_variable(items: tuple[Any, ...], owner: str) -> LimitState:
     """Read a limit state on a scalar of runs: its name, its limit, and the point or body."""
-    name, value, label = (*given, None, None)[:3] if len(given) in (2, 3) else ("", None, None)
+    name, value, label = (*items, None, None)[:3] if len(items) in (2, 3) else ("", None, None)
     if isinstance(name, str) and name and name not in SCHEMA:
         scalars = [row.name for row in SCHEMA.values() if TIME[0] not in row.dims]
         near = nearest(name, scalars)
@@ -113,7 +113,7 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
         msg = (
             f"{owner}: a limit state on a variable of runs is its name, a value with a unit or "
             "None, and of several points, bodies or restrainers which one, for example "
-            f"('peak_slip', '5 cm'); got {shown(given)}"
+            f"('peak_slip', '5 cm'); got {shown(items)}"
         )
         raise ComponentError(msg)
     row, least = SCHEMA[name], math.nan
@@ -124,13 +124,13 @@ def _of_variable(given: tuple[Any, ...], owner: str) -> LimitState:
 
 
 def read_in_unit(
-    given: Any, unit: str, words: str, *, owner: str, name: str, condition: Condition | None = None
+    value: Any, unit: str, words: str, *, owner: str, name: str, condition: Condition | None = None
 ) -> float:
     """Read a number in the unit of a variable; a ratio where this unit is 1."""
     if unit == Unit.ONE:
-        return to_ratio(given, owner=owner, name=name, condition=condition, example="0.5")
+        return to_ratio(value, owner=owner, name=name, condition=condition, example="0.5")
     measure = Measure(words, Unit(unit), f"1 {unit}")
-    return to_si(given, measure, owner=owner, name=name, condition=condition)
+    return to_si(value, measure, owner=owner, name=name, condition=condition)
 
 
 def labels_of_states(states: Sequence[LimitState]) -> dict[str, Generic]:
@@ -153,9 +153,9 @@ def states_of(analysis: xr.Dataset) -> tuple[LimitState, ...]:
     return tuple(state for state in every if state.name in names)
 
 
-def check_runs(given: object, *, owner: str) -> xr.Dataset:
+def check_runs(value: object, *, owner: str) -> xr.Dataset:
     """Refuse what is not the result of a sweep; give its variables in the units of the schema."""
-    runs = checked_dataset(given, owner=owner)
+    runs = checked_dataset(value, owner=owner)
     missing = [name for name in _NEEDED if name not in runs]
     if missing or not set(_TOLD) <= set(runs.attrs):
         what = f"a dataset without {', '.join(missing)}" if missing else "joined runs"

@@ -70,7 +70,7 @@ def over_rows(
 
 
 def read_line_axes(
-    given: object,
+    value: object,
     scene: SweptScene,
     *,
     owner: str,
@@ -78,22 +78,22 @@ def read_line_axes(
     beside: Sequence[Axis] = (),
 ) -> LineAxes:
     """Read the axes of an analysis; `others` are names of its arguments, `beside` its own axes."""
-    if given is None:
+    if value is None:
         return LineAxes()
-    if not isinstance(given, Mapping):
-        msg = f"{owner}: axes must be a mapping of names to values, got {shown(given)}"
+    if not isinstance(value, Mapping):
+        msg = f"{owner}: axes must be a mapping of names to values, got {shown(value)}"
         raise StudyError(msg)
     found, faults = list[Axis](), list[str]()
-    for name, values in cast("Mapping[Any, Any]", given).items():
+    for name, values in cast("Mapping[Any, Any]", value).items():
         if name in OF_A_SWEEP:
             faults.append(f"{owner} takes no {name!r}, as rf.sweep does")
             continue
         try:
             found.append(scene.axis(str(name), values))
         except RockframeError as problem:
-            told = problem.faults if isinstance(problem, StudyError) else (str(problem),)
+            text = problem.faults if isinstance(problem, StudyError) else (str(problem),)
             argument = nearest(name, others)
-            faults += [one if argument in one else f"{one}{argument}" for one in told]
+            faults += [one if argument in one else f"{one}{argument}" for one in text]
     for axis in found:
         if axis.changes is Changes.MOTION:
             faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")

@@ -78,11 +78,13 @@ class Rounds:
         Tell, too, whether this was not interrupted. Parts after the first are not recorded for
         :func:`rockframe.case`, as no result has them.
         """
-        asked = {**self.run, **more}
-        means: Any = {name: asked.pop(name, None) for name in ExecutionArguments.__annotations__}
+        requested = {**self.run, **more}
+        means: Any = {
+            name: requested.pop(name, None) for name in ExecutionArguments.__annotations__
+        }
         del means["progress"]
         means["store"] = None if self.store is None else self.store / part
-        study = plan_study(self.scene, self.motions, axes, cases, **asked)
+        study = plan_study(self.scene, self.motions, axes, cases, **requested)
         if not further:
             remember(study)
         self.bar.name(part)
@@ -98,8 +100,8 @@ def rounds_of(
     owner: str,
 ) -> Generator[Rounds]:
     """Make the folder of an analysis, if it has one, and its bar, which closes when it ends."""
-    given = run.get("store")
-    folder = None if given is None else folder_of(given, owner=owner)
+    value = run.get("store")
+    folder = None if value is None else folder_of(value, owner=owner)
     try:
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
@@ -328,15 +330,15 @@ class Lines:
             def look(part: str, wanted: Wanted) -> tuple[Array, bool]:
                 return self._at(rounds, part, wanted)[1:]
 
-            with collected_warnings() as said:
+            with collected_warnings() as warned:
                 seen = self._seen(scan)
                 if whole and resolution is not None:
                     seen, whole = self._finer(rounds, seen, resolution)
                 found = brackets_of(seen.scales, seen.verdicts)
                 if whole:
                     found, whole = narrowed(found, look, width=width)
-        if said and whole:
-            warn(f"{self.owner}: in further rounds: {said[0]}", ModelWarning)
+        if warned and whole:
+            warn(f"{self.owner}: in further rounds: {warned[0]}", ModelWarning)
         if not whole:
             scan.attrs["verdict"] = f"{str(scan.attrs['verdict']).removesuffix('.')}{INTERRUPTED}"
             goes_on = "; the same call goes on, as it has a store" if rounds.store else ""
@@ -396,30 +398,30 @@ def _moves(runs: xr.Dataset) -> xr.DataArray:
     return moves
 
 
-def read_resolution(given: object, *, owner: str) -> float:
+def read_resolution(value: object, *, owner: str) -> float:
     """Read the relative width of gaps below a capacity."""
-    return to_ratio(given, owner=owner, name="resolution", condition=_RESOLUTION, example="0.02")
+    return to_ratio(value, owner=owner, name="resolution", condition=_RESOLUTION, example="0.02")
 
 
-def read_rising(given: object, measure: Measure, name: str, *, owner: str) -> Array:
+def read_rising(value: object, measure: Measure, name: str, *, owner: str) -> Array:
     """Read values above zero, sorted, equal ones once."""
-    values = np.unique(numbers_of(given, measure, name))
+    values = np.unique(numbers_of(value, measure, name))
     if not len(values) or values[0] <= 0.0:
-        msg = f"{owner}: {name} must be above zero, got {shown(given)}"
+        msg = f"{owner}: {name} must be above zero, got {shown(value)}"
         raise ComponentError(msg)
     return values
 
 
-def read_scales(given: object, *, owner: str) -> Array:
+def read_scales(value: object, *, owner: str) -> Array:
     """Read the scales of a scan."""
-    values = np.unique(numbers_of(given, TARGETS[SCALE].measure, SCALE))
+    values = np.unique(numbers_of(value, TARGETS[SCALE].measure, SCALE))
     if not 2 <= len(values) <= _MOST_SCALES or values[0] <= 0.0:
         wanted = f"2 to {_MOST_SCALES} different numbers above zero"
-        msg = f"{owner}: scale needs {wanted}, got {shown(given)}"
+        msg = f"{owner}: scale needs {wanted}, got {shown(value)}"
         raise ComponentError(msg)
     return values
 
 
-def read_width(given: object, *, owner: str) -> float:
+def read_width(value: object, *, owner: str) -> float:
     """Read the relative width of brackets."""
-    return to_ratio(given, owner=owner, name="bracket_width", condition=_WIDTH, example="0.001")
+    return to_ratio(value, owner=owner, name="bracket_width", condition=_WIDTH, example="0.001")

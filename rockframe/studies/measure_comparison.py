@@ -129,7 +129,7 @@ def compare_intensities(
     )
     for one, period in listed:
         measure = measure_in(runs, one, period, motions, owner=_OWNER)
-        told = period_attribute(runs, [one], period, owner=_OWNER)
+        text = period_attribute(runs, [one], period, owner=_OWNER)
         cloud, those, _ = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
         if cloud.line is None:
             msg = (
@@ -138,7 +138,7 @@ def compare_intensities(
                 "or others"
             )
             raise StudyError(msg)
-        named.append(measure_words(str(measure.name), told.get(PERIOD_OF)))
+        named.append(measure_words(str(measure.name), text.get(PERIOD_OF)))
         clouds.append(cloud)
         kept.append(those)
     if not clouds or any(not np.array_equal(kept[0], one) for one in kept):
@@ -156,23 +156,23 @@ def compare_intensities(
     return found.assign_attrs(response=words, verdict=_sentence(found))
 
 
-def _with_period(given: object) -> tuple[Any, Any]:
-    if isinstance(given, tuple):
-        pair = cast("tuple[Any, ...]", given)
+def _with_period(value: object) -> tuple[Any, Any]:
+    if isinstance(value, tuple):
+        pair = cast("tuple[Any, ...]", value)
         if len(pair) == 2 and isinstance(pair[0], str):
             return pair[0], pair[1]
-        msg = f"{_OWNER}: a measure with a period is ('SA', '1 s'), got {shown(given)}"
+        msg = f"{_OWNER}: a measure with a period is ('SA', '1 s'), got {shown(value)}"
         raise ComponentError(msg)
-    return given, None
+    return value, None
 
 
-def _covariates(runs: xr.Dataset, given: Sequence[str] | Covariates) -> dict[str, xr.DataArray]:
+def _covariates(runs: xr.Dataset, values: Sequence[str] | Covariates) -> dict[str, xr.DataArray]:
     """Read what the response should not depend on: numbers of the motions by their names."""
-    if isinstance(given, Mapping):
-        table = given
+    if isinstance(values, Mapping):
+        table = values
         return {str(name): _of_motions(runs, str(name), one) for name, one in table.items()}
     found: dict[str, xr.DataArray] = {}
-    for name in several(given, owner=_OWNER, name="against", of="names"):
+    for name in several(values, owner=_OWNER, name="against", of="names"):
         one = named_column(runs, name)
         if not isinstance(one, xr.DataArray) or not set(one.dims) <= set(runs["status"].dims):
             msg = f"{_OWNER}: against names {shown(name)}, which is no coordinate of the runs"
@@ -181,20 +181,20 @@ def _covariates(runs: xr.Dataset, given: Sequence[str] | Covariates) -> dict[str
     return found
 
 
-def _of_motions(runs: xr.Dataset, name: str, given: Any) -> xr.DataArray:
+def _of_motions(runs: xr.Dataset, name: str, value: Any) -> xr.DataArray:
     """Give the numbers of the motions to the runs."""
-    if isinstance(given, xr.DataArray):
-        return given
+    if isinstance(value, xr.DataArray):
+        return value
     labels = runs[MOTION].to_numpy().astype(str)
-    if isinstance(given, Mapping | pd.Series):
-        table = dict(cast("Any", given).items())
+    if isinstance(value, Mapping | pd.Series):
+        table = dict(cast("Any", value).items())
         missing = [str(one) for one in np.unique(labels) if one not in table]
         if missing:
             msg = f"{_OWNER}: against has no {name} of the motion {missing[0]!r}"
             raise ComponentError(msg)
         values = [table[str(one)] for one in labels.ravel()]
     else:
-        values = several(given, owner=_OWNER, name=f"against[{name!r}]", of="numbers")
+        values = several(value, owner=_OWNER, name=f"against[{name!r}]", of="numbers")
         if runs[MOTION].dims != (MOTION,) or len(values) != labels.size:
             msg = (
                 f"{_OWNER}: against has {len(values)} numbers of {name} for {labels.size} motions; "

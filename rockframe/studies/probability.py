@@ -53,14 +53,14 @@ class Spread:
     distribution: Any  # in that unit
 
 
-def read_spread(given: object, scene: SweptScene, *, owner: str) -> tuple[Spread, ...]:
+def read_spread(value: object, scene: SweptScene, *, owner: str) -> tuple[Spread, ...]:
     """Read the argument ``spread``."""
-    if not isinstance(given, Mapping) or not given:
-        msg = f"{owner}: spread must give distributions by names of parameters, got {shown(given)}"
+    if not isinstance(value, Mapping) or not value:
+        msg = f"{owner}: spread must give distributions by names of parameters, got {shown(value)}"
         raise ComponentError(msg)
     found: list[Spread] = []
     faults: list[str] = []
-    for name, one in cast("Mapping[Any, Any]", given).items():
+    for name, one in cast("Mapping[Any, Any]", value).items():
         try:
             found.append(_read(str(name), one, scene, owner))
         except RockframeError as problem:
@@ -70,14 +70,14 @@ def read_spread(given: object, scene: SweptScene, *, owner: str) -> tuple[Spread
     return tuple(found)
 
 
-def read_correlation(given: object, names: Sequence[str], *, owner: str) -> Array | None:
+def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> Array | None:
     """Read the argument ``correlation``: a matrix in the order of the parameters, or its pairs."""
-    if given is None:
+    if argument is None:
         return None
     size = len(names)
-    if isinstance(given, Mapping):
+    if isinstance(argument, Mapping):
         matrix = np.eye(size)
-        for pair, value in cast("Mapping[Any, Any]", given).items():
+        for pair, value in cast("Mapping[Any, Any]", argument).items():
             two = pair if isinstance(pair, tuple) else (pair,)
             two = tuple(one if one in names else full_name(one) for one in two)
             if len(two) != 2 or two[0] == two[1] or not set(two) <= set(names):
@@ -92,14 +92,14 @@ def read_correlation(given: object, names: Sequence[str], *, owner: str) -> Arra
             )
     else:
         try:
-            matrix = np.asarray(given, dtype=np.float64)
+            matrix = np.asarray(argument, dtype=np.float64)
         except (TypeError, ValueError, OverflowError):  # no matrix of numbers
             matrix = np.empty(0)
     alike = matrix.shape == (size, size) and np.array_equal(matrix, matrix.T)
     if not alike or not np.allclose(np.diag(matrix), 1.0, rtol=0.0, atol=1e-12):
         msg = (
             f"{owner}: correlation must be a symmetric matrix of {size} rows with ones on its "
-            f"diagonal, in the order of {', '.join(names)}, got {shown(given)}"
+            f"diagonal, in the order of {', '.join(names)}, got {shown(argument)}"
         )
         raise ComponentError(msg)
     if float(np.linalg.eigvalsh(matrix)[0]) <= 0.0:
@@ -135,17 +135,17 @@ def drawn(spreads: tuple[Spread, ...], count: int, sampling: Sampling, seed: int
     return np.asarray(engine(size, rng=rng).random(count), dtype=np.float64)
 
 
-def _read(name: str, given: Any, scene: SweptScene, owner: str) -> Spread:
+def _read(name: str, value: Any, scene: SweptScene, owner: str) -> Spread:
     from scipy import stats
 
-    parts = list(given) if isinstance(given, tuple | list) else [given]
+    parts = list(value) if isinstance(value, tuple | list) else [value]
     if hasattr(parts[0], "ppf"):
         return _frozen(name, parts, scene, owner)
     if parts[0] not in _KINDS or len(parts) != 3:
         known = ", ".join(_KINDS.values())
         msg = (
             f"{owner}: {name} needs {known}, or a distribution of scipy.stats and its unit, "
-            f"got {shown(given)}"
+            f"got {shown(value)}"
         )
         raise ComponentError(msg)
     kind, first, second = parts
@@ -398,14 +398,14 @@ def _counted(runs: xr.Dataset, names: Sequence[str], *, several: bool, level: fl
         "chance_probability": np.array([one.chance for one in order.values()]),
     }
     most = next(iter(order), "")
-    said = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"
-    said += f" with confidence {level:g}, by {count} cases"
+    text = f"Overturns with probability {share:.3g}, from {float(lower):.3g} to {float(upper):.3g}"
+    text += f" with confidence {level:g}, by {count} cases"
     if several:
         # the bounds hold for further cases of the same motions
-        said += f" under these {len(np.unique(columns[MOTION]))} motions"
+        text += f" under these {len(np.unique(columns[MOTION]))} motions"
     lacking = len(verdict) - count
     if lacking:
-        said += f"; {lacking} without a verdict are left out"
+        text += f"; {lacking} without a verdict are left out"
     if most and not np.isnan(order[most].first_order):
-        said += f"; {most} matters most"
-    return with_variables(runs, added).assign_attrs(verdict=f"{said}.")
+        text += f"; {most} matters most"
+    return with_variables(runs, added).assign_attrs(verdict=f"{text}.")

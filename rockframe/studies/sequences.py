@@ -119,12 +119,12 @@ def earthquake_sequences(
     return found.assign_attrs(title="Earthquakes in sequence", verdict=verdict)
 
 
-def _sequences(given: object) -> dict[str, list[GroundMotion]]:
+def _sequences(value: object) -> dict[str, list[GroundMotion]]:
     """Read the sequences, and check that their motions fit."""
-    if isinstance(given, Mapping):
-        named = by_words(cast("Mapping[Any, Any]", given), owner=_OWNER)
-    elif isinstance(given, Iterable) and not isinstance(given, str):
-        listed = list(cast("Iterable[Any]", given))
+    if isinstance(value, Mapping):
+        named = by_words(cast("Mapping[Any, Any]", value), owner=_OWNER)
+    elif isinstance(value, Iterable) and not isinstance(value, str):
+        listed = list(cast("Iterable[Any]", value))
         if len(listed) > 1 and all(isinstance(one, GroundMotion) for one in listed):
             msg = (
                 f"{_OWNER}: found {len(listed)} motions in a row; expected a row of sequences: put "
@@ -144,7 +144,7 @@ def _sequences(given: object) -> dict[str, list[GroundMotion]]:
             raise ComponentError(msg)
         found[name] = motions
     if not found:
-        msg = f"{_OWNER}: found {shown(given)}; expected sequences of GroundMotions"
+        msg = f"{_OWNER}: found {shown(value)}; expected sequences of GroundMotions"
         raise ComponentError(msg)
     return {name: _of_one_step(each) for name, each in found.items()}
 
@@ -227,8 +227,8 @@ def _arranged(runs: xr.Dataset, there: Generic) -> xr.Dataset:
         if gaps and "flag_values" in attributes:
             attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
         found[str(name)] = xr.Variable(("sequence", NUMBER), values, attributes)
-    said = np.full(there.shape, NONE, dtype=object)
-    said[there] = runs[MESSAGE].to_numpy()
-    texts = xr.Variable(("sequence", NUMBER), said, runs[MESSAGE].attrs)
+    text = np.full(there.shape, NONE, dtype=object)
+    text[there] = runs[MESSAGE].to_numpy()
+    texts = xr.Variable(("sequence", NUMBER), text, runs[MESSAGE].attrs)
     attributes = {name: one for name, one in runs.attrs.items() if name != CASE_COUNT}
     return xr.Dataset(found, coords={MESSAGE: texts}, attrs=attributes)

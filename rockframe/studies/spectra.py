@@ -54,8 +54,8 @@ class BlockSizes:
         self.system = _by_shape_factor(system, owner)
         si = self.system.parts.the_block
         periods = read_rising(periods, PERIOD, "periods", owner=owner)
-        given = [si.height / si.width] if slenderness is None else slenderness
-        slenderness = read_rising(given, _SLENDER, "slenderness", owner=owner)
+        entries = [si.height / si.width] if slenderness is None else slenderness
+        slenderness = read_rising(entries, _SLENDER, "slenderness", owner=owner)
         # omega^2 = mu g / ((1 + mu) R0), Eq. (6)
         scale = si.frequency_at(system.options.gravity) ** 2 * si.radius
         radius = scale * (0.5 * periods / math.pi) ** 2

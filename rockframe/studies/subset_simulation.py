@@ -186,8 +186,8 @@ def subset_simulation(
     )
     if wrong:
         raise StudyError(*wrong)
-    asked = {**run, "points": points}
-    with rounds_of(system, named, asked, owner=_OWNER) as rounds:
+    requested = {**run, "points": points}
+    with rounds_of(system, named, requested, owner=_OWNER) as rounds:
         sampler = _Sampler(rounds, spreads, matrix, list(named or ()), state)
         every = subset_levels(
             sampler.demand,
@@ -216,15 +216,15 @@ def subset_simulation(
     })  # fmt: skip
 
 
-def _read_limit(given: object) -> LimitState:
+def _read_limit(argument: object) -> LimitState:
     """Read the limit state, which must have a demand that grows towards it."""
-    if not isinstance(given, str | int | float | tuple):
+    if not isinstance(argument, str | int | float | tuple):
         msg = (
             f"{_OWNER}: limit must be one limit state: 'overturning', a peak rotation over the "
-            f"overturning angle, or ('peak_slip', '5 cm') and the like, got {shown(given)}"
+            f"overturning angle, or ('peak_slip', '5 cm') and the like, got {shown(argument)}"
         )
         raise ComponentError(msg)
-    state = limit_states([given], owner=_OWNER, name="limit")[0]
+    state = limit_states([argument], owner=_OWNER, name="limit")[0]
     if not (state.rotation > 0.0 or state.value > 0.0):
         msg = (
             f"{_OWNER}: limit {state.name!r} is met or not, and no response tells how near it is; "
@@ -255,9 +255,9 @@ class _Sampler:
     def demand(self, part: str, scores: Array) -> Array:
         """Run samples, a row of normal scores each; give their demands."""
         table = self._table(scores)
-        with collected_warnings() if self.runs else nullcontext([]) as said:
+        with collected_warnings() if self.runs else nullcontext([]) as warned:
             runs, whole = self._rounds.sweep(part, table, {}, further=bool(self.runs))
-        self.said += said
+        self.said += warned
         if not whole:
             raise KeyboardInterrupt
         # of a function that makes the motion the sweep has a dimension for it

@@ -123,10 +123,10 @@ def usual_periods(target: TargetSpectrum) -> Array:
     return np.geomspace(low, high, _USUAL_COUNT) if high > low else np.array([low])
 
 
-def _bounds(given: "tuple[RatioLike, RatioLike] | None", owner: str) -> tuple[float, float]:
-    if given is None:
+def _bounds(items: "tuple[RatioLike, RatioLike] | None", owner: str) -> tuple[float, float]:
+    if items is None:
         return 0.0, np.inf
-    values = several(given, owner=owner, name="bounds", of="factors")
+    values = several(items, owner=owner, name="bounds", of="factors")
     if len(values) == 2:
         low, high = (
             to_ratio(one, owner=owner, name="bounds", condition=POSITIVE, example="(0.25, 4)")
@@ -134,7 +134,7 @@ def _bounds(given: "tuple[RatioLike, RatioLike] | None", owner: str) -> tuple[fl
         )
         if low <= high:
             return low, high
-    msg = f"{owner}: bounds must be the least and the greatest factor, got {shown(given)}"
+    msg = f"{owner}: bounds must be the least and the greatest factor, got {shown(items)}"
     raise ComponentError(msg)
 
 
@@ -164,8 +164,8 @@ def _spectra(
     return labels, found.isel(damping_ratio=0).to_numpy(), events
 
 
-def _conditioned(given: bool, fixed: Array) -> str:
-    if not given:
+def _conditioned(value: bool, fixed: Array) -> str:
+    if not value:
         return "the mean logarithm over all periods"
     if fixed.size == 1:
         return f"the pseudo-spectral acceleration at {fixed[0]:.6g} s"

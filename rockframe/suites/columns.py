@@ -104,8 +104,8 @@ def check_column(motions: Mapping[str, GroundMotion], name: object, *, owner: st
     """Refuse a column for which no motion has a value."""
     known = dict.fromkeys([*COLUMNS, *(key for one in motions.values() for key in one.metadata)])
     if not isinstance(name, str) or name not in known:
-        asked = f"{shown(name)}{nearest(name, known)}"
-        msg = f"{owner}: there is no column {asked}; known are {', '.join(known)}"
+        requested = f"{shown(name)}{nearest(name, known)}"
+        msg = f"{owner}: there is no column {requested}; known are {', '.join(known)}"
         raise ComponentError(msg)
 
 
@@ -126,31 +126,31 @@ def _missing(value: Any) -> bool:
     return value is None or value == "" or (isinstance(value, float) and math.isnan(value))
 
 
-def _test(name: str, given: Any) -> Test:
-    if callable(given):
-        return function_of(given, "value", owner=_OWNER, name=name)
-    if isinstance(given, tuple):
-        bounds = cast("tuple[Any, ...]", given)
+def _test(name: str, argument: Any) -> Test:
+    if callable(argument):
+        return function_of(argument, "value", owner=_OWNER, name=name)
+    if isinstance(argument, tuple):
+        bounds = cast("tuple[Any, ...]", argument)
         if len(bounds) != 2:
-            msg = f"{_OWNER}: {name} needs a range of two values, got {shown(given)}"
+            msg = f"{_OWNER}: {name} needs a range of two values, got {shown(argument)}"
             raise ComponentError(msg)
         low, high = (None if bound is None else _value(name, bound) for bound in bounds)
         return lambda value: (low is None or low <= value) and (high is None or value <= high)
-    if isinstance(given, Collection) and not isinstance(given, str):
-        wanted = [_value(name, one) for one in cast("Collection[Any]", given)]
+    if isinstance(argument, Collection) and not isinstance(argument, str):
+        wanted = [_value(name, one) for one in cast("Collection[Any]", argument)]
         return lambda value: _key(value) in map(_key, wanted)
-    one = _value(name, given)
+    one = _value(name, argument)
     return lambda value: _key(value) == _key(one)
 
 
-def _value(name: str, given: Any) -> Any:
+def _value(name: str, value: Any) -> Any:
     row = SCHEMA.get(name) if name in COLUMNS else None
     if row is None or row.dtype == "str":
-        return given
+        return value
     if row.unit in _EXAMPLES:
         words, example = _EXAMPLES[Unit(str(row.unit))]
-        return to_si(given, Measure(words, Unit(str(row.unit)), example), owner=_OWNER, name=name)
-    return to_ratio(given, owner=_OWNER, name=name, example="6")
+        return to_si(value, Measure(words, Unit(str(row.unit)), example), owner=_OWNER, name=name)
+    return to_ratio(value, owner=_OWNER, name=name, example="6")
 
 
 def _key(value: Any) -> Any:

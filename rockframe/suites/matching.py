@@ -52,14 +52,14 @@ def matched(suite: Suite, target: Target, **arguments: Any) -> Suite:
     True
     """
     motions: dict[str, GroundMotion] = {}
-    said: list[str] = []
+    messages: list[str] = []
     for label, motion in suite.items():
         with collected_warnings() as texts:
             motions[label] = motion.matched(target, **arguments)
-        said += [f"{label!r}: {text}" for text in texts]
+        messages += [f"{label!r}: {text}" for text in texts]
     owner = f"{type(suite).__name__}.matched"
-    if said:
-        msg = f"{owner}: of {len(motions)} motions\n" + "\n".join(said)
+    if messages:
+        msg = f"{owner}: of {len(motions)} motions\n" + "\n".join(messages)
         warn(msg, RecordWarning)
     compared = None
     if isinstance(target, TargetSpectrum):

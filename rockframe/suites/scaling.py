@@ -190,8 +190,8 @@ def scaled_motions(
     each = found.attrs["combination"] == Combination.EACH
     motions: dict[str, GroundMotion] = {}
     upwards: dict[str, GroundMotion] = {}
-    for place, given in enumerate(found[MOTION].to_numpy()):
-        label = str(given)
+    for place, value in enumerate(found[MOTION].to_numpy()):
+        label = str(value)
         factor = float(found["scale_factor"][place])
         misfit = float(found["spectral_misfit"][place])
         before = len(motions)

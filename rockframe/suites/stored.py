@@ -147,10 +147,10 @@ def _table_of(target: TargetSpectrum) -> dict[str, Any]:
 
 def _target_of(table: Mapping[str, Any]) -> TargetSpectrum:
     """Read a target from its table."""
-    given = dict(table)
-    periods = given.pop("periods"), str(Unit.SECOND)
-    values = given.pop("accelerations"), str(Unit.METRE_PER_SECOND_SQUARED)
-    return TargetSpectrum.from_table(periods, values, **given)
+    items = dict(table)
+    periods = items.pop("periods"), str(Unit.SECOND)
+    values = items.pop("accelerations"), str(Unit.METRE_PER_SECOND_SQUARED)
+    return TargetSpectrum.from_table(periods, values, **items)
 
 
 def is_stored_suite(source: "Source") -> bool:

@@ -189,8 +189,8 @@ class TargetSpectrum(metaclass=Proposing):
         [5.4]
         """
         owner = f"{cls.__name__}.from_spectrum"
-        given = checked_dataset(dataset, owner=owner)
-        spectrum = given.get("pseudo_spectral_acceleration")
+        data = checked_dataset(dataset, owner=owner)
+        spectrum = data.get("pseudo_spectral_acceleration")
         if spectrum is None or spectrum.sizes.get("damping_ratio") != 1:
             msg = f"{owner}: expected a dataset of rf.response_spectrum with one damping ratio"
             raise SchemaError(msg)
@@ -487,12 +487,12 @@ def _check_array(seconds: object, owner: str) -> None:
         raise ComponentError(msg)
 
 
-def check_target(given: object, *, owner: str) -> TargetSpectrum:
+def check_target(value: object, *, owner: str) -> TargetSpectrum:
     """Refuse what is no target."""
-    if isinstance(given, TargetSpectrum):
-        return given
+    if isinstance(value, TargetSpectrum):
+        return value
     msg = (
-        f"{owner}: target needs a TargetSpectrum, got {shown(given)}; write for example "
+        f"{owner}: target needs a TargetSpectrum, got {shown(value)}; write for example "
         "rf.TargetSpectrum.eurocode_8('0.2 g_0', 'B')"
     )
     raise ComponentError(msg)

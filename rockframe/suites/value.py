@@ -192,13 +192,13 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         <MotionSuite of 1 motion: '2 Hz'>
         """
         owner = f"{type(self).__name__}.only"
-        asked = several(labels, owner=owner, name="labels", of="labels")
-        unknown = [one for one in asked if not isinstance(one, str) or one not in self._motions]
+        requested = several(labels, owner=owner, name="labels", of="labels")
+        unknown = [one for one in requested if not isinstance(one, str) or one not in self._motions]
         if unknown:
             found = f"{shown(unknown[0])}{nearest(unknown[0], self._motions)}"
             msg = f"{owner}: there is no motion {found}"
             raise ComponentError(msg)
-        return self._with({label: self._motions[label] for label in asked})
+        return self._with({label: self._motions[label] for label in requested})
 
     def sort(self, by: str, *, descending: bool = False) -> Self:
         """Order the motions by a column; those without a value come last.
@@ -322,20 +322,20 @@ class LabelledMotions(Mapping[str, GroundMotion], metaclass=Proposing):
         )  # fmt: skip
 
 
-def _named(given: object, owner: str) -> dict[str, GroundMotion]:
+def _named(value: object, owner: str) -> dict[str, GroundMotion]:
     """Read motions with their labels."""
     motions: dict[str, Any] = {}
-    if isinstance(given, Mapping):
-        motions = by_words(cast("Mapping[Any, Any]", given), owner=owner)
-    elif isinstance(given, Iterable) and not isinstance(given, str):
-        for one in cast("Iterable[Any]", given):
+    if isinstance(value, Mapping):
+        motions = by_words(cast("Mapping[Any, Any]", value), owner=owner)
+    elif isinstance(value, Iterable) and not isinstance(value, str):
+        for one in cast("Iterable[Any]", value):
             name = str(getattr(one, "name", len(motions)))
             if name in motions:
                 msg = f"{owner}: two motions are called {name!r}; give a mapping of labels"
                 raise ComponentError(msg)
             motions[name] = one
     else:
-        msg = f"{owner}: motions must be several motions, got {shown(given)}; {_EXAMPLE}"
+        msg = f"{owner}: motions must be several motions, got {shown(value)}; {_EXAMPLE}"
         raise ComponentError(msg)
     for label, one in motions.items():
         if not isinstance(one, GroundMotion):

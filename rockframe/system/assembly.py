@@ -66,9 +66,9 @@ class Scene:
         """Whether the parts make this scene."""
         if self.made_of is None:
             return self.signature == parts.signature and self.coupling in (None, coupling)
-        given, kinds = parts.components, self.made_of
-        return given.keys() == kinds.keys() and all(
-            isinstance(part, kinds[slot]) for slot, part in given.items()
+        value, kinds = parts.components, self.made_of
+        return value.keys() == kinds.keys() and all(
+            isinstance(part, kinds[slot]) for slot, part in value.items()
         )
 
 
@@ -304,7 +304,7 @@ def assemble(
 ) -> Assembly:
     """Check parts and options together, and find the scene they make."""
     faults: list[str] = []
-    given = sort_parts(parts, faults)
+    value = sort_parts(parts, faults)
     options = Options(
         read_option(Restraint, restraint, "restraint", wrong := []),
         read_option(Rotation, rotation, "rotation", wrong),
@@ -313,24 +313,24 @@ def assemble(
         read_measured(inclination, "inclination", wrong),
         read_option(Sliding, sliding, "sliding", wrong),
     )
-    return assembly_of(given, options, faults, wrong)
+    return assembly_of(value, options, faults, wrong)
 
 
 def assembly_of(
-    given: Parts, options: Options, faults: Sequence[str] = (), wrong: Sequence[str] = ()
+    parts: Parts, options: Options, faults: Sequence[str] = (), wrong: Sequence[str] = ()
 ) -> Assembly:
     """Check sorted parts against one another, and find the scene they make."""
-    faults = [*faults, *misfits(given)]
-    scene = next((scene for scene in scenes() if scene.fits(given, options.coupling)), None)
+    faults = [*faults, *misfits(parts)]
+    scene = next((scene for scene in scenes() if scene.fits(parts, options.coupling)), None)
     if scene is None and not faults:
-        names = " and ".join(type(part).__name__ for part in given.structural())
+        names = " and ".join(type(part).__name__ for part in parts.structural())
         faults.append(f"no scene is made of {names} together")
     # the list of scenes helps where the parts make none, not where an option is wrong
     supported = [scene.title for scene in scenes()] if faults else []
-    faults += [*missizes(given, options), *wrong]
+    faults += [*missizes(parts, options), *wrong]
     if faults or scene is None:
         raise AssemblyError(faults, supported)
-    made = Assembly(given, options, scene)
-    if given.own or any(isinstance(part, OwnBase) for part in given.structural()):
+    made = Assembly(parts, options, scene)
+    if parts.own or any(isinstance(part, OwnBase) for part in parts.structural()):
         made.model  # noqa: B018 - refuses more contacts than can be numbered, and wrong sizes
     return made

@@ -32,9 +32,9 @@ class Restitutions(NamedTuple):
         return f"{self.left:.6g} (onto the left corner), {self.right:.6g} (onto the right one)"
 
 
-def resolve_restitution(given: float | None, greatest: Restitutions) -> Restitutions:
+def resolve_restitution(value: float | None, greatest: Restitutions) -> Restitutions:
     """Give the restitutions of a scene: eps_max of Eq. (4) unless the user chose one."""
-    return greatest if given is None else Restitutions(given, given)
+    return greatest if value is None else Restitutions(value, value)
 
 
 def restitution_cautions(chosen: Restitutions, greatest: Restitutions) -> list[str]:

@@ -207,7 +207,7 @@ def _outside_bodies(parts: Parts) -> list[str]:
 
     A bracket or the arm of a statue may reach beyond the base, by no more than the body's height.
     """
-    told = list[str]()
+    messages = list[str]()
     bodies = _bodies_of(parts)
     for name, link in zip(link_labels(parts.links), parts.links, strict=True):
         points = list[tuple[int | None, tuple[float, float]]]()
@@ -221,12 +221,12 @@ def _outside_bodies(parts: Parts) -> list[str]:
             body = bodies[number - 1]
             reach, most = body.half_width + body.height, body.height * (1.0 + _ROUNDING)
             if abs(x) > reach or not body.height - most <= y <= most:
-                told.append(
+                messages.append(
                     f"{name}: its point ({x:.6g}, {y:.6g}) m is outside of body {number}, "
                     f"{body.width:.6g} m wide at its base and {body.height:.6g} m high; points "
                     "count from the middle of the base of their body"
                 )
-    return told
+    return messages
 
 
 def _beyond_bodies(parts: Parts) -> list[str]:
@@ -259,23 +259,23 @@ def _beyond_bodies(parts: Parts) -> list[str]:
 
 def unused(parts: Parts, options: Options) -> list[str]:
     """Say which of the chosen options have no effect in a scene of these parts."""
-    told: list[str] = []
+    messages: list[str] = []
     between = () if parts.stack is None else parts.stack.interfaces
     bases = (*parts.structural(), *between)
     if options.coupling is not Coupling.COUPLED and not {"pads", "cap", "soil"} <= parts.signature:
-        told.append(
+        messages.append(
             f"coupling={str(options.coupling)!r} changes nothing here: it is how pads, a "
             "CushionCap and soil are joined, and the scene has not all of them"
         )
     yielding = any(slot_of_kind(type(part)) in ("pads", "soil") for part in bases)
     if options.restraint is not Restraint.CONTACT_STATE and not yielding and not parts.own:
-        told.append(
+        messages.append(
             f"restraint={str(options.restraint)!r} changes nothing here: on rigid ground it is the "
             "corner that bears which is held"
         )
     has_friction = any(getattr(part.si, "friction", None) is not None for part in bases)
     if options.sliding is Sliding.CHECKED and not has_friction and not parts.own:
-        told.append(
+        messages.append(
             f"sliding={str(options.sliding)!r} changes nothing here: no base has a friction that "
             "could be compared with what is needed"
         )
@@ -284,11 +284,11 @@ def unused(parts: Parts, options: Options) -> list[str]:
             continue
         ends = getattr(link.si, "breaking_elongation", None) is not None
         if not ends and link.si.brittle != type(link).brittle.default:
-            told.append(
+            messages.append(
                 f"{name}: brittle={link.si.brittle} changes nothing: it has no strength at which "
                 "it could break or yield"
             )
-    return told
+    return messages
 
 
 class BaseFriction(NamedTuple):

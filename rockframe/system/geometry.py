@@ -217,12 +217,12 @@ def system_html(scene: Assembly, name: str) -> str:
     """Give a drawing and the numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
-    given = [one for part in scene.parts.structural() for one in _pieces(part)]
-    for number, (words, part) in enumerate(given):
-        alike = [other for other, _ in given[: number + 1]].count(words)
+    values = [one for part in scene.parts.structural() for one in _pieces(part)]
+    for number, (words, part) in enumerate(values):
+        alike = [other for other, _ in values[: number + 1]].count(words)
         numbers = arguments_in_words(part.to_dict())
-        told = ", ".join(f"{one} {value}" for one, value in numbers.items())
-        rows[words if alike == 1 else f"{words} {alike}"] = told
+        text = ", ".join(f"{one} {value}" for one, value in numbers.items())
+        rows[words if alike == 1 else f"{words} {alike}"] = text
     left, right = setting.overturning_angles
     to_left, to_right = (f"{np.degrees(side):.4g}°" for side in (left, right))
     both = f"{to_left} to the left, {to_right} to the right"

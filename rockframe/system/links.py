@@ -142,10 +142,10 @@ class PlacedLink:
                 f"{-up:.6g} N down"
             )
         if isinstance(self.part, RearWall):
-            given = self.part.si
+            numbers = self.part.si
             return (
-                f"behind body {self.on + 1} at ({x:.6g}, {y:.6g}) m, {given.stiffness:.6g} N/m, "
-                f"damping {given.damping or 0.0:.6g} N s/m, gap {given.gap or 0.0:.6g} m; acts "
+                f"behind body {self.on + 1} at ({x:.6g}, {y:.6g}) m, {numbers.stiffness:.6g} N/m, "
+                f"damping {numbers.damping or 0.0:.6g} N s/m, gap {numbers.gap or 0.0:.6g} m; acts "
                 "while touched"
             )
         other = "the ground" if self.to < 0 else f"body {self.to + 1}"
@@ -160,19 +160,19 @@ class PlacedLink:
 
 def tie_words(part: Restrainer | Tendon) -> list[str]:
     """Describe the law of a restrainer or of a tendon."""
-    given = part.si
-    found = [f"{given.stiffness:.6g} N/m"]
+    numbers = part.si
+    found = [f"{numbers.stiffness:.6g} N/m"]
     found += [
         f"{name} {value:.6g} {unit}"
         for name, unit in (("slack", "m"), ("preload", "N"), ("damping", "N s/m"))
-        if (value := getattr(given, name, None))
+        if (value := getattr(numbers, name, None))
     ]
-    if given.strength is not None:
-        verb = "breaks" if given.brittle else "yields"
-        found.append(f"{verb} at {given.strength:.6g} N")
-    if getattr(given, "breaking_elongation", None):
-        found.append(f"breaks as it is {given.breaking_elongation:.6g} m longer")
-    pushes = getattr(given, "compression", False)
+    if numbers.strength is not None:
+        verb = "breaks" if numbers.brittle else "yields"
+        found.append(f"{verb} at {numbers.strength:.6g} N")
+    if getattr(numbers, "breaking_elongation", None):
+        found.append(f"breaks as it is {numbers.breaking_elongation:.6g} m longer")
+    pushes = getattr(numbers, "compression", False)
     return [*found, "pulls and pushes" if pushes else "pulls only"]
 
 
@@ -180,16 +180,16 @@ def tie_of(part: Restrainer | Tendon, mass: float) -> LinkNumbers:
     """Give the law of a restrainer, :eq:`eq-tie`, or of a tendon, per unit of a mass [kg]."""
     from rockframe.dynamics.links import LinkNumbers, Tie
 
-    given = part.si
-    slack, damping = (getattr(given, name, None) or 0.0 for name in ("slack", "damping"))
-    stiffness, damping = given.stiffness / mass, damping / mass
-    free = slack - (given.preload or 0.0) / given.stiffness
-    most = math.inf if given.strength is None else given.strength / given.stiffness
-    breaking = getattr(given, "breaking_elongation", None)
+    numbers = part.si
+    slack, damping = (getattr(numbers, name, None) or 0.0 for name in ("slack", "damping"))
+    stiffness, damping = numbers.stiffness / mass, damping / mass
+    free = slack - (numbers.preload or 0.0) / numbers.stiffness
+    most = math.inf if numbers.strength is None else numbers.strength / numbers.stiffness
+    breaking = getattr(numbers, "breaking_elongation", None)
     if breaking is not None:
         most = breaking - free
-    pushes = float(getattr(given, "compression", False))
-    law = Tie(stiffness, damping, free, most, float(given.brittle), pushes)
+    pushes = float(getattr(numbers, "compression", False))
+    law = Tie(stiffness, damping, free, most, float(numbers.brittle), pushes)
     size = most if math.isfinite(most) else 1.0
     return LinkNumbers(law, stiffness, damping, (size,))
 

@@ -134,13 +134,13 @@ def read_option(kind: type[Option], value: object, name: str, faults: list[str])
         return next(iter(kind))
 
 
-def read_measured(given: object, name: str, faults: list[str]) -> float:
+def read_measured(argument: object, name: str, faults: list[str]) -> float:
     """Give an option that is a number; if it is wrong, add to faults and give the default."""
     one = MEASURED[name]
-    if given is None:
+    if argument is None:
         return one.otherwise
     try:
-        value = to_si(given, one.measure, owner="System", name=name, condition=one.condition)
+        value = to_si(argument, one.measure, owner="System", name=name, condition=one.condition)
     except RockframeError as problem:
         faults.append(str(problem))
         return one.otherwise

@@ -195,10 +195,10 @@ class Parts:
     def of(cls, by_slot: Mapping[str, Component | GroundMotion | None]) -> "Parts":
         """Make parts from a mapping by slots, in any order; None leaves a slot empty."""
         order = {slot: i for i, slot in enumerate(slots())}
-        given = [slot for slot, part in by_slot.items() if part is not None]
+        values = [slot for slot, part in by_slot.items() if part is not None]
         # several parts of one slot keep their order
-        given.sort(key=lambda slot: order[kind_of_slot(slot)])
-        return cls(tuple((slot, by_slot[slot]) for slot in given))  # type: ignore[misc]
+        values.sort(key=lambda slot: order[kind_of_slot(slot)])
+        return cls(tuple((slot, by_slot[slot]) for slot in values))  # type: ignore[misc]
 
     def __getitem__(self, slot: str) -> Component:
         """Give the part in a slot; LabelError if it is empty."""
@@ -249,10 +249,10 @@ class Parts:
         return cap_under(self.the_block, self.cap.si)
 
 
-def sort_parts(given: Sequence[object], faults: list[str]) -> Parts:
+def sort_parts(values: Sequence[object], faults: list[str]) -> Parts:
     """Put each part in its slot; duplicate parts, and things that are no parts, become faults."""
     found: dict[str, Any] = {}
-    for part in given:
+    for part in values:
         kind = known_kind(type(part))
         if kind is None:
             faults.append(f"{shown(part)} is not a part of a system{hint_for(part)}")

@@ -186,9 +186,9 @@ class TiedSlidingSetting(TiedSetting):
 
     def words(self) -> Words:
         """Describe the block, its links and its friction."""
-        told = super().words()
+        text = super().words()
         slides = sliding_words(
-            told,
+            text,
             ("friction at rest, and of slip", self.friction.words()),
             ("friction to land without slip", f"{friction_to_roll_over(self.body):.6g}"),
             restraint=HELD_BY_FRICTION,
@@ -204,7 +204,7 @@ class TiedSlidingSetting(TiedSetting):
                 ("flight", "nothing bears: N = 0"),
                 ("impact", f"{self.impact}: {impact_words(self.impact)}; restrainers, whose forces "
                  "are finite, have no part in it"),
-                *(one for one in told.equations if one[0] == "restrainers"),
+                *(one for one in text.equations if one[0] == "restrainers"),
             ],
         )  # fmt: skip
 

@@ -135,13 +135,13 @@ def foreign_quantity(value: object) -> str:
     )
 
 
-def _weight(given: Any, text: str, measure: Measure) -> str:
+def _weight(value: Any, text: str, measure: Measure) -> str:
     """Say how to get the mass from a weight that was given for a mass."""
     if measure.unit not in _HEAVY:
         return ""
     over_g = re.search(r"/\s*g$", text)  # read as the gram
     try:
-        heavy = given.is_compatible_with(f"{measure.unit} m s^-2{' g^-1' if over_g else ''}")
+        heavy = value.is_compatible_with(f"{measure.unit} m s^-2{' g^-1' if over_g else ''}")
     except Exception:  # offset units such as degC cannot be compared
         return ""
     if over_g:
@@ -149,9 +149,9 @@ def _weight(given: Any, text: str, measure: Measure) -> str:
     return f" (a force is no mass; divide it by g_0: {shown(f'{text}/g_0')})" if heavy else ""
 
 
-def _subgrade(given: Any, measure: Measure) -> str:
+def _subgrade(value: Any, measure: Measure) -> str:
     """Name the constructor for a subgrade modulus that was given for the stiffness of a bed."""
-    if measure.unit != BED_STIFFNESS.unit or not _is_in(given, SUBGRADE_MODULUS.unit):
+    if measure.unit != BED_STIFFNESS.unit or not _is_in(value, SUBGRADE_MODULUS.unit):
         return ""
     return (
         " (a subgrade modulus; WinklerSoil.from_subgrade_modulus(modulus, depth=...) multiplies "
@@ -159,19 +159,19 @@ def _subgrade(given: Any, measure: Measure) -> str:
     )
 
 
-def _period(given: Any, measure: Measure) -> str:
+def _period(value: Any, measure: Measure) -> str:
     """Give the frequency of a period that was given for a frequency."""
-    if measure.unit != FREQUENCY.unit or not _is_in(given, TIME.unit):
+    if measure.unit != FREQUENCY.unit or not _is_in(value, TIME.unit):
         return ""
-    seconds = float(given.m_as(str(TIME.unit)))
+    seconds = float(value.m_as(str(TIME.unit)))
     if not seconds > 0.0:
         return ""
     return f" (a period; its frequency is {shown(f'{1.0 / seconds:.6g} {FREQUENCY.unit}')})"
 
 
-def _is_in(given: Any, unit: Unit) -> bool:
+def _is_in(value: Any, unit: Unit) -> bool:
     try:
-        return given.is_compatible_with(str(unit)) and getattr(given.magnitude, "ndim", 0) == 0
+        return value.is_compatible_with(str(unit)) and getattr(value.magnitude, "ndim", 0) == 0
     except Exception:  # offset units such as degC cannot be compared
         return False
 
@@ -221,9 +221,9 @@ def to_si(
     number = _in_si(value, measure)
     if number is not None:
         return _check_value(number, value, condition, owner=owner, name=name)
-    given = _parse(value, measure, owner=owner, name=name)
-    _check_kind(given, value, measure, owner=owner, name=name)
-    magnitude = _converted(given, measure)
+    argument = _parse(value, measure, owner=owner, name=name)
+    _check_kind(argument, value, measure, owner=owner, name=name)
+    magnitude = _converted(argument, measure)
     if not isinstance(magnitude, Real) and getattr(magnitude, "ndim", 1) != 0:
         msg = (
             f"{owner}: {name} needs {measure.name}, one value only, got {shown(value)}; "
@@ -238,8 +238,8 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
     if isinstance(value, str):
         return [to_si(value, measure, owner=owner, name=name)]
     if isinstance(value, pint.Quantity):
-        given: Any = value
-        return [to_si(one, measure, owner=owner, name=name) for one in _each(given)]
+        argument: Any = value
+        return [to_si(one, measure, owner=owner, name=name) for one in _each(argument)]
     if isinstance(value, Iterable):
         items: list[Any] = list(value)
         alone = isinstance(items[0], str | pint.Quantity | None) if items else True
@@ -318,14 +318,14 @@ def _float(number: Real) -> float:
         return math.inf
 
 
-def _converted(given: Any, measure: Measure) -> Any:
+def _converted(value: Any, measure: Measure) -> Any:
     """Convert a magnitude to SI units; a single number without rounding by the factor."""
-    unit, number = str(measure.unit), given.magnitude
+    unit, number = str(measure.unit), value.magnitude
     if getattr(number, "ndim", None) == 0:  # other registries may make arrays of single numbers
         number = number.item()
     if not isinstance(number, int | float):
-        return given.m_as(unit)
-    size = float(type(given)(1.0, given.units).m_as(unit))
+        return value.m_as(unit)
+    size = float(type(value)(1.0, value.units).m_as(unit))
     rounded = float(f"{size:.15g}")  # a foot of 0.30479999999999996 m is 0.3048 m
     short = len(repr(rounded)) <= _LONGEST_FACTOR
     return _product(float(number), rounded if short else size)
@@ -360,8 +360,8 @@ def products(numbers: Sequence[float], factor: float) -> list[float]:
     ]
 
 
-def _each(given: Any) -> Iterable[Any]:
-    return given if getattr(given.magnitude, "ndim", 0) == 1 else [given]
+def _each(value: Any) -> Iterable[Any]:
+    return value if getattr(value.magnitude, "ndim", 0) == 1 else [value]
 
 
 def to_ratio(
@@ -376,9 +376,9 @@ def to_ratio(
     number: object = value
     ratio = Measure("a pure ratio", Unit.ONE, example)
     if isinstance(value, str | pint.Quantity):
-        given = _parse(value, ratio, owner=owner, name=name)
-        _check_kind(given, value, ratio, owner=owner, name=name)
-        magnitude: Any = given.m_as("")
+        argument = _parse(value, ratio, owner=owner, name=name)
+        _check_kind(argument, value, ratio, owner=owner, name=name)
+        magnitude: Any = argument.m_as("")
         number = magnitude.item() if getattr(magnitude, "ndim", 1) == 0 else magnitude
     if isinstance(number, bool) or not isinstance(number, Real):
         msg = (
@@ -453,19 +453,25 @@ def _joined(value: object) -> object:
         return f"{math.inf} {unit}"
 
 
-def _check_kind(given: Quantity, value: object, measure: Measure, *, owner: str, name: str) -> None:
-    wanted = type(given)(1.0, "" if measure.unit == Unit.ONE else str(measure.unit))
+def _check_kind(
+    argument: Quantity, value: object, measure: Measure, *, owner: str, name: str
+) -> None:
+    wanted = type(argument)(1.0, "" if measure.unit == Unit.ONE else str(measure.unit))
     try:
-        same_kind = given.is_compatible_with(wanted) and _roots(given) == _roots(wanted)
+        same_kind = argument.is_compatible_with(wanted) and _roots(argument) == _roots(wanted)
     except Exception:  # offset units such as degC cannot be compared
         same_kind = False
     if same_kind:
         return
-    unit = f"{given.units:~}" or "no unit"
+    unit = f"{argument.units:~}" or "no unit"
     unit_needed = "" if measure.unit == Unit.ONE else f" in a unit such as {measure.unit}"
     text = str(value)
     # for a related quantity: how to convert it to the one that is needed
-    hint = _weight(given, text, measure) or _subgrade(given, measure) or _period(given, measure)
+    hint = (
+        _weight(argument, text, measure)
+        or _subgrade(argument, measure)
+        or _period(argument, measure)
+    )
     msg = (
         f"{owner}: {name} needs {measure.name}{unit_needed}, got {shown(text)} ({unit})"
         f"{hint or misread(text, measure)}; "
@@ -474,11 +480,11 @@ def _check_kind(given: Quantity, value: object, measure: Measure, *, owner: str,
     raise UnitsError(msg)
 
 
-def _roots(given: Any) -> dict[str, float]:
+def _roots(value: Any) -> dict[str, float]:
     # For pint the radian is dimensionless, so that a ratio would pass for an angle and rad/s for
     # Hz (a factor of 2 pi); the root units differ. They are those of one unit, as a huge value
     # would overflow.
-    one: Any = type(given)(1.0, given.units)
+    one: Any = type(value)(1.0, value.units)
     return {unit: float(power) for unit, power in one.to_root_units().unit_items()}
 
 

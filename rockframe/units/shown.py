@@ -69,14 +69,14 @@ class Shown:
         return np.asarray(values, np.float64) / self.size
 
 
-def shown_unit(given: object, measure: Measure, *, owner: str, name: str) -> Shown:
+def shown_unit(value: object, measure: Measure, *, owner: str, name: str) -> Shown:
     """Read the unit in which numbers of a kind are shown."""
-    if not isinstance(given, str):
-        msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(given)}"
+    if not isinstance(value, str):
+        msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(value)}"
         raise ComponentError(msg)
-    read = _READ.get((given, measure), given)
+    read = _READ.get((value, measure), value)
     size = to_si(f"1 {read}", measure, owner=owner, name=name)
-    return Shown(_spelled(given), size)
+    return Shown(_spelled(value), size)
 
 
 def _spelled(unit: str) -> str:
@@ -110,11 +110,11 @@ class ReaderUnits:
                 shown_in = dataset[name].copy(data=unit.of(values.to_numpy()))
                 found[str(name)] = shown_in.assign_attrs(units=unit.words)
         coords = {name: found.pop(name) for name in list(found) if name in dataset.coords}
-        told = {name: self.of_sentence(str(dataset.attrs[name])) for name in _SENTENCES
+        messages = {name: self.of_sentence(str(dataset.attrs[name])) for name in _SENTENCES
                 if name in dataset.attrs}  # fmt: skip
         return (
             dataset.assign(found)
-            .assign_attrs(told)
+            .assign_attrs(messages)
             .assign_coords({name: (one.dims, one.data, one.attrs) for name, one in coords.items()})
         )
 
@@ -142,23 +142,23 @@ def _with_digits(number: str, size: float) -> str:
     The conversion of a rounded number costs one digit, unless the size is a power of ten. A number
     of one or two digits may be exact and is written with four.
     """
-    told = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
+    text = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
     moved = float(f"1e{round(math.log10(size))}") == size
-    digits = max(_DIGITS, told) if moved or told < _DIGITS - 1 else max(_DIGITS - 1, told - 1)
+    digits = max(_DIGITS, text) if moved or text < _DIGITS - 1 else max(_DIGITS - 1, text - 1)
     value = f"{float(number) / size:.{digits}g}"
     return np.format_float_positional(float(value), trim="-") if "e+" in value else value
 
 
-def reader_units(given: object, *, owner: str) -> ReaderUnits:
+def reader_units(value: object, *, owner: str) -> ReaderUnits:
     """Read units by kind of quantity, such as ``{"force": "kN"}``."""
-    if given is None:
+    if value is None:
         return ReaderUnits()
     example = "such as units={'force': 'kN', 'angle': 'deg'}"
-    if not isinstance(given, Mapping):
-        msg = f"{owner}: units must be a mapping, {example}, got {shown(given)}"
+    if not isinstance(value, Mapping):
+        msg = f"{owner}: units must be a mapping, {example}, got {shown(value)}"
         raise ComponentError(msg)
     chosen = dict[str, Shown]()
-    for name, unit in cast("Mapping[Any, Any]", given).items():
+    for name, unit in cast("Mapping[Any, Any]", value).items():
         if name not in KINDS:
             found = f"found {shown(name)}{nearest(name, KINDS)}"
             known = f"known are {', '.join(KINDS)}; times stay in s, and frequencies in Hz"
@@ -166,4 +166,4 @@ def reader_units(given: object, *, owner: str) -> ReaderUnits:
             raise ComponentError(msg)
         kind = KINDS[name]
         chosen[str(kind.unit)] = shown_unit(unit, kind, owner=owner, name=f"units[{name!r}]")
-    return ReaderUnits(chosen, dict(cast("Mapping[str, str]", given)))
+    return ReaderUnits(chosen, dict(cast("Mapping[str, str]", value)))

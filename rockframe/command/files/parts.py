@@ -50,17 +50,17 @@ def part_slots() -> tuple[str, ...]:
     return tuple(slot for slot in slots() if slot != _MOTION)
 
 
-def described_parts(file: TomlFile, slot: str, given: object) -> list[Component | None]:
+def described_parts(file: TomlFile, slot: str, value: object) -> list[Component | None]:
     """Build the part that a table describes, or those of an array of tables."""
-    several = slot == RESTRAINER and isinstance(given, list)
-    return _each(file, (slot,), classes_in(slot), given, several=several)
+    several = slot == RESTRAINER and isinstance(value, list)
+    return _each(file, (slot,), classes_in(slot), value, several=several)
 
 
 def _each(
-    file: TomlFile, where: Place, known: Mapping[str, type[Component]], given: Any, *, several: bool
+    file: TomlFile, where: Place, known: Mapping[str, type[Component]], value: Any, *, several: bool
 ) -> list[Component | None]:
     """Build the part of a table, or those of several; parts with faults are None."""
-    items: list[Any] = given if several else [given]
+    items: list[Any] = value if several else [value]
     found: list[Component | None] = []
     for number, item in enumerate(items):
         place = (*where, number) if several else where
@@ -116,14 +116,14 @@ def _described(
 def _inner(file: TomlFile, where: Place, wanted: InnerParts, table: dict[str, Any]) -> bool:
     """Build the parts of an inner table; false if one of them has faults."""
     name = str(where[-1])
-    given = table[name]
-    if wanted.several and not isinstance(given, list):
+    value = table[name]
+    if wanted.several and not isinstance(value, list):
         header = f"[[{table_title(where)}]]"
-        words = f"{name} must be an array of tables, {header} above each, got {shown(given)}"
+        words = f"{name} must be an array of tables, {header} above each, got {shown(value)}"
         file.fault(where, words)
         return False
     known = {key: kind for slot in wanted.slots for key, kind in classes_in(slot).items()}
-    parts = _each(file, where, known, given, several=wanted.several)
+    parts = _each(file, where, known, value, several=wanted.several)
     table[name] = parts if wanted.several else parts[0]
     return None not in parts
 

@@ -45,9 +45,9 @@ def motion_keys() -> dict[str, bool]:
     return {_FILE: True, **arguments, _OPERATIONS: False}
 
 
-def described_motion(file: TomlFile, where: Place, given: object) -> GroundMotion | None:
+def described_motion(file: TomlFile, where: Place, value: object) -> GroundMotion | None:
     """Build the motion that a table describes."""
-    table = file.table(where, given)
+    table = file.table(where, value)
     if table is None:
         return None
     operations = table.pop(_OPERATIONS, [])
@@ -111,19 +111,19 @@ def _operated(
                 f"an operation is written {{ scaled = {{ factor = 1.5 }} }}, got {shown(one)}",
             )  # pyright: ignore[reportUnknownArgumentType]
             return None
-        ((name, given),) = one.items()  # pyright: ignore[reportUnknownVariableType]
+        ((name, value),) = one.items()  # pyright: ignore[reportUnknownVariableType]
         if found is None:
             return None
-        found = _done(file, (*here, str(name)), found, given)  # pyright: ignore[reportUnknownArgumentType]
+        found = _done(file, (*here, str(name)), found, value)  # pyright: ignore[reportUnknownArgumentType]
     return found
 
 
-def _done(file: TomlFile, where: Place, motion: GroundMotion, given: object) -> GroundMotion | None:
+def _done(file: TomlFile, where: Place, motion: GroundMotion, value: object) -> GroundMotion | None:
     name = str(where[-1])
     if name not in OPERATIONS:
         file.unknown(where[:-1], name, OPERATIONS)
         return None
-    table = file.table(where, given)
+    table = file.table(where, value)
     if table is None:
         return None
     arguments: Mapping[str, bool] = arguments_of(getattr(motion, name))
@@ -207,10 +207,10 @@ def described_run(file: TomlFile, where: Place, table: dict[str, Any]) -> dict[s
         if not isinstance(inner, dict):
             continue
         here = (*where, name)
-        given = file.table(here, inner) or {}
+        value = file.table(here, inner) or {}
         declared = kind.declared() if issubclass(kind, Component) else {}
-        if checked(file, here, given, arguments_of(kind), declared):
-            found[name] = made(file, here, kind, given)
+        if checked(file, here, value, arguments_of(kind), declared):
+            found[name] = made(file, here, kind, value)
         if not isinstance(found[name], kind):  # its fault has been noted
             del found[name]
     return found
@@ -224,8 +224,8 @@ _OBJECTS: Final[Mapping[str, type]] = {
 """Classes of the objects that inner tables of the table of a run describe."""
 
 
-def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
-    table = file.table((RUN,), given)
+def _run_of(file: TomlFile, argument: object) -> dict[str, Any]:
+    table = file.table((RUN,), argument)
     hints = hints_of(System.simulate)
     if table is None:
         return {}
@@ -236,32 +236,32 @@ def _run_of(file: TomlFile, given: object) -> dict[str, Any]:
     return arguments
 
 
-def described_project(file: TomlFile, given: object) -> str:
+def described_project(file: TomlFile, value: object) -> str:
     """Read the description of the project for reports."""
-    table = file.table((PROJECT,), given)
+    table = file.table((PROJECT,), value)
     if table is None:
         return ""
     return made(file, (PROJECT,), _read_project, table) or ""
 
 
-def _read_project(**given: Any) -> str:
+def _read_project(**values: Any) -> str:
     """Read a project and its checks by codes, before there is a result."""
-    text = project_json(given, PROJECT)
-    for one in given.get(CHECKS, ()):
+    text = project_json(values, PROJECT)
+    for one in values.get(CHECKS, ()):
         check_of(str(one), CHECKS)
     return text
 
 
-def _read_arguments(**given: Any) -> None:
+def _read_arguments(**values: Any) -> None:
     """Check the arguments of a run before it begins, so that faults have their lines."""
     usual: dict[str, Any] = {
         "accuracy": AccuracyLevel.STANDARD,
         "outputs": (),
         "overturning": Overturning.STOP,
     }
-    certification_of(given.pop("certify", False))
+    certification_of(values.pop("certify", False))
     faults: list[str] = []
-    read_arguments(faults, **(usual | given))
+    read_arguments(faults, **(usual | values))
     if faults:
         raise AssemblyError(faults)
 
@@ -278,11 +278,11 @@ def _unknown_table(file: TomlFile, name: str) -> None:
 
 def import_modules(file: TomlFile) -> None:
     """Import the files in which users declare their own parts."""
-    given = file.values.get(MODULES, [])
-    if not isinstance(given, list):
-        file.fault((MODULES,), f'modules must be a list such as ["mine.py"], got {shown(given)}')
+    value = file.values.get(MODULES, [])
+    if not isinstance(value, list):
+        file.fault((MODULES,), f'modules must be a list such as ["mine.py"], got {shown(value)}')
         return
-    for name in given:  # pyright: ignore[reportUnknownVariableType]
+    for name in value:  # pyright: ignore[reportUnknownVariableType]
         try:
             _import(file, str(name))  # pyright: ignore[reportUnknownArgumentType]
         except RockframeError as problem:

@@ -67,8 +67,8 @@ class DescribedStudy:
 
     def at_lines(self, problem: StudyError) -> FileError:
         """Give the faults of a study with the lines of its file."""
-        given = {name: self.source.values.get(name) for name in (AXES, SWEEP)}
-        tables = {name: table for name, table in given.items() if isinstance(table, dict)}
+        arguments = {name: self.source.values.get(name) for name in (AXES, SWEEP)}
+        tables = {name: table for name, table in arguments.items() if isinstance(table, dict)}
         for words in problem.faults:
             places = [key_in(words, (name,), table) for name, table in tables.items()]
             self.source.fault(max(places, key=len, default=(CASES,)), words)
@@ -128,11 +128,11 @@ def _scene_of(file: TomlFile) -> Described | None:
 
 def _motions_of(file: TomlFile) -> Motions:
     """Read motions: a list of files, folders and patterns, or of tables."""
-    given = file.values.get(MOTIONS)
-    if given is None:
+    value = file.values.get(MOTIONS)
+    if value is None:
         return None
     where = (MOTIONS,)
-    items: list[Any] = given if isinstance(given, list) else [given]
+    items: list[Any] = value if isinstance(value, list) else [value]
     if items and all(isinstance(item, dict) for item in items):
         found = [
             described_motion(file, (MOTIONS, number), item) for number, item in enumerate(items)
@@ -140,7 +140,7 @@ def _motions_of(file: TomlFile) -> Motions:
         return [one for one in found if one is not None]
     if not items or not all(isinstance(item, str) for item in items):
         words = 'motions must be a list of files, folders or patterns such as ["records/*.AT2"]'
-        file.fault(where, f"{words}, or of tables [[motions]]; got {shown(given)}")
+        file.fault(where, f"{words}, or of tables [[motions]]; got {shown(value)}")
         return None
     paths: list[str] = []
     for item in items:
@@ -170,12 +170,12 @@ def _axes_of(file: TomlFile) -> dict[str, Any]:
     return found
 
 
-def _axis(file: TomlFile, name: str, given: object) -> Any:
+def _axis(file: TomlFile, name: str, value: object) -> Any:
     """Give the values of an axis: a list, or a table of values and their unit."""
-    if not isinstance(given, dict):
-        return given
+    if not isinstance(value, dict):
+        return value
     where = (AXES, name)
-    table = file.table(where, given) or {}
+    table = file.table(where, value) or {}
     if table and not {"values", "unit"}.intersection(table):
         written = f'"{name}.{next(iter(table))}" = [...]'
         file.fault(where, f"write the axis of a part in quotation marks: {written}")
@@ -200,16 +200,16 @@ def _beside(file: TomlFile, table: dict[str, Any]) -> dict[str, Any]:
     """Give a table with the paths of known stores, relative to the folder of the file."""
     if KNOWN not in table:
         return table
-    given = table[KNOWN]
-    paths = given if isinstance(given, list) else [given]
+    value = table[KNOWN]
+    paths = value if isinstance(value, list) else [value]
     return table | {KNOWN: [file.path_of(one) if isinstance(one, str) else one for one in paths]}
 
 
 def _path_of(file: TomlFile, name: str) -> Path | None:
-    given = file.values.get(name)
-    if given is None:
+    value = file.values.get(name)
+    if value is None:
         return None
-    if not isinstance(given, str) or not given:
-        file.fault((name,), f"{name} must be a path, got {shown(given)}")
+    if not isinstance(value, str) or not value:
+        file.fault((name,), f"{name} must be a path, got {shown(value)}")
         return None
-    return file.path_of(given)
+    return file.path_of(value)

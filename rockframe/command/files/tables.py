@@ -169,14 +169,14 @@ class TomlFile:
         """Give the error with all faults, in the order of their lines."""
         return FileError(str(self.path), sorted(self._faults, key=lambda fault: fault[0] or 0))
 
-    def table(self, where: Place, given: object) -> dict[str, Any] | None:
+    def table(self, where: Place, argument: object) -> dict[str, Any] | None:
         """Give a value that must be a table, or note a fault."""
-        if isinstance(given, dict):
-            return {str(name): value for name, value in given.items()}  # pyright: ignore[reportUnknownVariableType]
+        if isinstance(argument, dict):
+            return {str(name): value for name, value in argument.items()}  # pyright: ignore[reportUnknownVariableType]
         self.fault(
             where,
             f"{where[-1]} must be a table, [{table_title(where)}] with its keys below it, "
-            f"got {shown(given)}",
+            f"got {shown(argument)}",
         )
         return None
 

@@ -114,7 +114,7 @@ def _side(start: Array, end: Array, point: Array) -> npt.NDArray[Any]:
 
 
 def outline_mass(
-    points: object, given: Mapping[str, object], owner: str, name: str
+    points: object, values: Mapping[str, object], owner: str, name: str
 ) -> tuple[PlaneMass, list[OutlineCorner]]:
     """Read an outline, check that it is a simple polygon, and give its mass and corners."""
     read = read_points(points, owner=owner, name=name)
@@ -123,7 +123,7 @@ def outline_mass(
     corners = [OutlineCorner(f"{name}[{k}]", float(read[k, 0]), float(read[k, 1])) for k in kept]
     _check_simple(read[kept], corners, owner)
     area, x, y, mean_square = polygon(read[kept])
-    mass = read_mass(given, area, owner=owner)
+    mass = read_mass(values, area, owner=owner)
     return PlaneMass(mass, x, y, mass * mean_square), corners
 
 
@@ -236,12 +236,12 @@ def from_outline(
     >>> round(wall.mass.m_as("kg"), 6), round(wall.eccentricity.m_as("m"), 4)
     (1920.0, -0.0833)
     """
-    owner, given = (
+    owner, value = (
         f"{cls.__name__}.from_outline",
         {"mass": mass, "density": density, "depth": depth},
     )
     whole, corners = outline_mass(
-        points if unit is None else (points, unit), given, owner, "points"
+        points if unit is None else (points, unit), value, owner, "points"
     )
     ground, top = (of(corner.y for corner in corners) for of in (min, max))
     slack = ROUNDING * extent_of(np.array([(corner.x, corner.y) for corner in corners]))
@@ -301,8 +301,8 @@ def cylinder(
     """
     owner = f"{cls.__name__}.cylinder"
 
-    def positive(given: object, name: str, measure: Measure) -> float:
-        return to_si(given, measure, owner=owner, name=name, condition=POSITIVE)
+    def positive(value: object, name: str, measure: Measure) -> float:
+        return to_si(value, measure, owner=owner, name=name, condition=POSITIVE)
 
     outer, inner = 0.5 * positive(diameter, "diameter", LENGTH), 0.0
     top = positive(height, "height", LENGTH)

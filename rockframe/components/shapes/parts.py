@@ -77,15 +77,15 @@ class PlacedPart:
         return min(corner.y for corner in self.corners)
 
 
-def read_part(name: str, given: Mapping[str, Any], owner: str) -> PlacedPart:
+def read_part(name: str, arguments: Mapping[str, Any], owner: str) -> PlacedPart:
     """Read a part."""
     place = f"{owner}: part {name!r}"
-    values = {word: value for word, value in given.items() if value is not None}
+    values = {word: value for word, value in arguments.items() if value is not None}
     kind = next((word for word in _KINDS if word in values), None)
     if kind is None:
         msg = (
             f"{place} needs width and height, an outline, a body, or its mass alone; got "
-            f"{', '.join(map(shown, given)) or 'nothing'}"
+            f"{', '.join(map(shown, arguments)) or 'nothing'}"
         )
         raise ComponentError(msg)
     foreign = [word for word in values if word not in _KINDS[kind]]
@@ -160,9 +160,9 @@ def _positive(values: Mapping[str, Any], name: str, measure: Measure, *, owner: 
     return to_si(values[name], measure, owner=owner, name=name, condition=POSITIVE)
 
 
-def _standing(kind: type[Made], given: object, base: object, owner: str) -> Made:
+def _standing(kind: type[Made], value: object, base: object, owner: str) -> Made:
     """Make a body of parts that are fixed to one another, on their common base."""
-    parts = _read(given, owner)
+    parts = _read(value, owner)
     corners = [corner for part in parts for corner in part.corners]
     top = max(part.top for part in parts)
     reach = max(corner.x for corner in corners) - min(corner.x for corner in corners)
@@ -186,12 +186,12 @@ def _standing(kind: type[Made], given: object, base: object, owner: str) -> Made
     return shaped_body(kind, whole, stance, top, corners, owner)
 
 
-def _read(given: object, owner: str) -> list[PlacedPart]:
+def _read(value: object, owner: str) -> list[PlacedPart]:
     example = "{'case': {'width': '0.8 m', 'height': '1.9 m', 'mass': '60 kg'}, ...}"
-    if not isinstance(given, Mapping) or not given:
+    if not isinstance(value, Mapping) or not value:
         msg = f"{owner}: parts needs a mapping from names to parts, such as {example}; got "
-        raise ComponentError(msg + shown(cast("object", given)))
-    parts = cast("Mapping[object, object]", given)
+        raise ComponentError(msg + shown(cast("object", value)))
+    parts = cast("Mapping[object, object]", value)
     for name, part in parts.items():
         if not isinstance(part, Mapping):
             msg = f"{owner}: part {name!r} needs a mapping, as in {example}; got {shown(part)}"

@@ -74,25 +74,25 @@ Points: TypeAlias = Iterable[Place] | Iterable[tuple[float, float]] | Quantity |
 MASS_WAYS: Final = OneOf("mass", ("density", "depth"))
 
 
-def read_points(given: object, *, owner: str, name: str) -> Array:
+def read_points(value: object, *, owner: str, name: str) -> Array:
     """Read points from pairs of lengths or an array with a unit, shape (n, 2) [m]."""
     wanted = (
         f"{owner}: {name} needs pairs of lengths, such as [('0 m', '0 m'), ('1 m', '0 m'), ...], "
         "or numbers of shape (n, 2) with their unit, (points, 'm')"
     )
-    if isinstance(given, pint.Quantity):
-        whole: Any = given
+    if isinstance(value, pint.Quantity):
+        whole: Any = value
         factor = to_si(type(whole)(1.0, whole.units), LENGTH, owner=owner, name=name)
         return _array(whole.magnitude, factor, wanted)
-    if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
-        msg = f"{wanted}; got {shown(given)}"
+    if isinstance(value, str | Mapping) or not isinstance(value, Iterable):
+        msg = f"{wanted}; got {shown(value)}"
         raise ComponentError(msg)
-    each: list[Any] = list(given)
+    each: list[Any] = list(value)
     if len(each) == 2 and isinstance(each[1], str) and not isinstance(each[0], str):
         check_own_unit(each[0], each[1], owner=owner, name=name)
         return _array(each[0], to_si(f"1 {each[1]}", LENGTH, owner=owner, name=name), wanted)
-    if isinstance(given, np.ndarray) or _is_bare(each):
-        msg = f"{wanted}; got {shown(given)}, bare numbers"
+    if isinstance(value, np.ndarray) or _is_bare(each):
+        msg = f"{wanted}; got {shown(value)}, bare numbers"
         raise UnitsError(msg)
     pairs = [read_place(one, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(each)]
     return np.array(pairs, dtype=np.float64).reshape(-1, 2)
@@ -106,27 +106,27 @@ def _is_bare(points: list[Any]) -> bool:
     )
 
 
-def read_place(given: object, *, owner: str, name: str) -> tuple[float, float]:
+def read_place(value: object, *, owner: str, name: str) -> tuple[float, float]:
     """Read a pair of lengths, or a Quantity of shape (2,) [m]."""
-    iterable = isinstance(given, Iterable) and not isinstance(given, str | Mapping)
-    if isinstance(given, pint.Quantity):
-        iterable = getattr(given.magnitude, "ndim", 0) == 1
-    pair: list[Any] = list(given) if iterable else []  # type: ignore[call-overload]
+    iterable = isinstance(value, Iterable) and not isinstance(value, str | Mapping)
+    if isinstance(value, pint.Quantity):
+        iterable = getattr(value.magnitude, "ndim", 0) == 1
+    pair: list[Any] = list(value) if iterable else []  # type: ignore[call-overload]
     if len(pair) != 2:
-        msg = f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got {shown(given)}"
+        msg = f"{owner}: {name} needs two lengths, such as ('0.2 m', '1.5 m'), got {shown(value)}"
         raise ComponentError(msg)
     x, y = (to_si(one, LENGTH, owner=owner, name=f"{name}[{k}]") for k, one in enumerate(pair))
     return x, y
 
 
-def read_mass(given: Mapping[str, object], area: float, *, owner: str) -> float:
+def read_mass(values: Mapping[str, object], area: float, *, owner: str) -> float:
     """Read a mass, or compute it from density, depth and the area in the plane [kg]."""
-    MASS_WAYS.check(given, owner)
+    MASS_WAYS.check(values, owner)
 
     def positive(name: str, measure: Any) -> float:
-        return to_si(given[name], measure, owner=owner, name=name, condition=POSITIVE)
+        return to_si(values[name], measure, owner=owner, name=name, condition=POSITIVE)
 
-    if given.get("mass") is not None:
+    if values.get("mass") is not None:
         return positive("mass", MASS)
     mass = positive("density", DENSITY) * (positive("depth", LENGTH) * area)
     if 0.0 < mass < math.inf:

@@ -157,8 +157,8 @@ def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, 
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         place = rest
-        told = start.rotation is not None or start.vertical_displacement is not None
-        if told or rest == UPRIGHT:
+        text = start.rotation is not None or start.vertical_displacement is not None
+        if text or rest == UPRIGHT:
             turned = rest.rotation
             if start.rotation is not None:
                 turned = start.rotation - rest.cap_rotation

@@ -66,7 +66,7 @@ def rises(
 @kernel
 def slide_both(
     pair: Pair, modes: Modes, states: States, place: Configuration, block: SlidingEnd,
-    cap: SlidingEnd, forces: Forces, given: KnownTerms, normal: float,
+    cap: SlidingEnd, forces: Forces, known: KnownTerms, normal: float,
 ) -> Slips:  # fmt: skip
     """Give the slips that keep sliding ends at their levels, :eq:`eq-sliding-contact`.
 
@@ -75,7 +75,7 @@ def slide_both(
     acceleration along the cap's normal.
     """
     cap_rate, block_rate = states.lower.angular_velocity, states.upper.angular_velocity
-    motion = solve_motion(pair, place, forces, given)
+    motion = solve_motion(pair, place, forces, known)
     found = rises(place, motion, forces.press, block, cap)
     # an end below its base's level rises with the base, which returns without a force
     of_block = found.block + normal + block.bend * block_rate * block_rate
@@ -96,7 +96,7 @@ def slide_both(
         determinant = by_block.block * by_cap.cap - by_cap.block * by_block.cap
         drift = (by_cap.block * of_cap - by_cap.cap * of_block) / determinant
         swing = (by_block.cap * of_block - by_block.block * of_cap) / determinant
-    with_slips = KnownTerms(given.swing + swing, given.drift + drift, given.load_x, given.load_y)
+    with_slips = KnownTerms(known.swing + swing, known.drift + drift, known.load_x, known.load_y)
     motion = solve_motion(pair, place, forces, with_slips)
     power = 0.0
     if modes.upper.slides:
@@ -105,5 +105,5 @@ def slide_both(
     if modes.lower.slides:
         slip = states.lower.horizontal_velocity - place.cap_reach.rate * cap_rate
         hold = place.cosine * motion.thrust + place.sine * forces.press
-        power += (pair.cap_mass * (motion.cap_horizontal + given.load_x) + hold) * slip
+        power += (pair.cap_mass * (motion.cap_horizontal + known.load_x) + hold) * slip
     return Slips(swing, drift, power)

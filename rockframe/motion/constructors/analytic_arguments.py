@@ -121,9 +121,9 @@ def pulse(
         checked = hinted()(declared)
 
         @wraps(checked)
-        def construct(kind: type[Any], *given: Any, **named: Any) -> Any:
-            checked(kind, *given, **named)  # raises the error of missing or unknown arguments
-            values = own.bind(kind, *given, **named)
+        def construct(kind: type[Any], *items: Any, **named: Any) -> Any:
+            checked(kind, *items, **named)  # raises the error of missing or unknown arguments
+            values = own.bind(kind, *items, **named)
             values.apply_defaults()
             reader = ArgumentReader(f"{kind.__name__}.{declared.__name__}", cycles)
             for name in list(own.parameters)[1:]:

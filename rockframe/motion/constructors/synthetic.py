@@ -175,17 +175,17 @@ def stochastic(
         warn(message, ModelWarning)
     across = accelerogram(earthquake, step, first)
     upwards = None if ratio is None else ratio * accelerogram(earthquake, step, first, stream=1)
-    given = _arguments(earthquake, first, ratio, step)
+    arguments = _arguments(earthquake, first, ratio, step)
     what = f"magnitude {earthquake.magnitude:.6g} at {earthquake.distance / 1e3:.6g} km"
     return kind(
         Motion.of_samples(step, across, upwards),
         name=f"stochastic motion, {what}, {earthquake.site}, seed {first}",
-        metadata={"model": MODEL, **given},
+        metadata={"model": MODEL, **arguments},
         history=(
             "drawn from a stochastic point source: "
-            + ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in given.items()),
+            + ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in arguments.items()),
         ),
-        recipe={"constructor": "stochastic", **given},
+        recipe={"constructor": "stochastic", **arguments},
     )
 
 

@@ -107,8 +107,8 @@ def scaled(
         "peak_velocity": peak_velocity,
         "spectral_acceleration": spectral_acceleration,
     }
-    given = {name: value for name, value in targets.items() if value is not None}
-    if len(given) != 1:
+    values = {name: value for name, value in targets.items() if value is not None}
+    if len(values) != 1:
         msg = f"{owner}: give one of {', '.join(targets)}, for example peak='0.3 g_0'"
         raise ComponentError(msg)
     if (period is None) != (spectral_acceleration is None) or (
@@ -119,7 +119,7 @@ def scaled(
     if factor is not None:
         ratio = to_ratio(factor, owner=owner, name="factor", example="2")
         return _times(motion, ratio, f"scaled by {ratio!r}", {"factor": ratio})
-    ((name, value),) = given.items()
+    ((name, value),) = values.items()
     what, measure = _TARGETS[name]
     wanted = to_si(value, measure, owner=owner, name=name, condition=POSITIVE)
     words = f"{what} of {wanted:.9g} {measure.unit}"
@@ -157,7 +157,7 @@ def times(signal: Signal, ratio: float) -> Signal:
         return replace(signal, samples=signal.samples * ratio, polynomials=pieces)
 
 
-def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str]) -> Made:
+def _times(motion: Made, ratio: float, step: str, values: dict[str, float | str]) -> Made:
     added: dict[str, str | float] = {"scale_factor": ratio}
     known = motion.metadata
     sense, azimuth, component = (known.get(key) for key in (SENSE, "azimuth", "component"))
@@ -174,7 +174,7 @@ def _times(motion: Made, ratio: float, step: str, given: dict[str, float | str])
         if isinstance(factor, int | float):
             added[name] = factor * ratio
     return following(
-        motion, multiplied(motion.si, ratio), step, operation={"scaled": given}, metadata=added,
+        motion, multiplied(motion.si, ratio), step, operation={"scaled": values}, metadata=added,
         same_spectrum=abs(ratio) == 1.0,
     )  # fmt: skip
 

@@ -63,10 +63,10 @@ _WAYS: Final = (
 
 
 def _read_building(
-    given: Mapping[str, Any], damping_ratio: object, owner: str
+    entries: Mapping[str, Any], damping_ratio: object, owner: str
 ) -> tuple[FloorModes, str, dict[str, Any]]:
     """Give the modes of a building, its description in words, and its arguments."""
-    values = {name: value for name, value in given.items() if value is not None}
+    values = {name: value for name, value in entries.items() if value is not None}
     ways = [set(needed) <= set(values) <= {*needed, *more} for needed, more in _WAYS]
     if True not in ways:
         found = ", ".join(values) or "none of them"
@@ -94,14 +94,14 @@ def _listed(names: tuple[str, ...]) -> str:
 
 def _of_modes(values: Mapping[str, Any], owner: str) -> _Read:
     periods = _values(values["periods"], PERIOD, owner, "periods", zero=True)
-    given = values.get("floor_participations")
-    if given is None and periods.size > 1:
+    value = values.get("floor_participations")
+    if value is None and periods.size > 1:
         msg = (
             f"{owner}: {periods.size} periods need floor_participations, for each mode the "
             "participation factor times the displacement of the floor in the mode shape"
         )
         raise ComponentError(msg)
-    each = [1.0] if given is None else _ratios(given, owner, "floor_participations", "1.2")
+    each = [1.0] if value is None else _ratios(value, owner, "floor_participations", "1.2")
     if len(each) != periods.size:
         msg = (
             f"{owner}: floor_participations needs one value for each of the {periods.size} "
@@ -147,29 +147,29 @@ def _of_masses(values: Mapping[str, Any], owner: str) -> _Read:
     return periods, participations, words, arguments
 
 
-def _values(given: object, measure: Measure, owner: str, name: str, *, zero: bool = False) -> Array:
-    values = np.array(to_si_values(given, measure, owner=owner, name=name))
+def _values(value: object, measure: Measure, owner: str, name: str, *, zero: bool = False) -> Array:
+    values = np.array(to_si_values(value, measure, owner=owner, name=name))
     least = "zero or more" if zero else "greater than zero"
     if values.size == 0 or not ((values >= 0.0) if zero else (values > 0.0)).all():
-        msg = f"{owner}: {name} must be one or more values, each {least}, got {shown(given)}"
+        msg = f"{owner}: {name} must be one or more values, each {least}, got {shown(value)}"
         raise ComponentError(msg)
     return values
 
 
 def _ratios(
-    given: Any, owner: str, name: str, example: str, condition: Condition | None = None
+    value: Any, owner: str, name: str, example: str, condition: Condition | None = None
 ) -> list[float]:
-    several = isinstance(given, Iterable) and not isinstance(given, str)
-    if not several or getattr(given, "ndim", 1) == 0:  # a scalar Quantity calls itself iterable
-        return [to_ratio(given, owner=owner, name=name, condition=condition, example=example)]
+    several = isinstance(value, Iterable) and not isinstance(value, str)
+    if not several or getattr(value, "ndim", 1) == 0:  # a scalar Quantity calls itself iterable
+        return [to_ratio(value, owner=owner, name=name, condition=condition, example=example)]
     return [
         to_ratio(one, owner=owner, name=f"{name}[{k}]", condition=condition, example=example)
-        for k, one in enumerate(given)
+        for k, one in enumerate(value)
     ]
 
 
-def _damping_ratios(given: object, modes: int, owner: str) -> list[float]:
-    ratios = _ratios(given, owner, "damping_ratio", "0.05", DAMPING_RATIO)
+def _damping_ratios(value: object, modes: int, owner: str) -> list[float]:
+    ratios = _ratios(value, owner, "damping_ratio", "0.05", DAMPING_RATIO)
     if len(ratios) not in (1, modes):
         msg = (
             f"{owner}: damping_ratio needs one value, or one for each of the {modes} modes, "
@@ -359,9 +359,9 @@ def _floor(ground: Signal, modes: FloorModes, parts: int) -> tuple[Signal, float
     return replace(ground, time_step=step, samples=samples, polynomials=None), deviation
 
 
-def _still_time(given: QuantityLike | None, moving: FloorModes, owner: str) -> float:
-    if given is not None:
-        return to_si(given, TIME, owner=owner, name="free_vibration", condition=NOT_NEGATIVE)
+def _still_time(value: QuantityLike | None, moving: FloorModes, owner: str) -> float:
+    if value is not None:
+        return to_si(value, TIME, owner=owner, name="free_vibration", condition=NOT_NEGATIVE)
     needed = decay_time(moving)
     if math.isfinite(needed):
         return needed
@@ -372,10 +372,10 @@ def _still_time(given: QuantityLike | None, moving: FloorModes, owner: str) -> f
     raise ComponentError(msg)
 
 
-def _parts(given: QuantityLike | None, own: float, owner: str) -> int:
-    if given is None:
+def _parts(value: QuantityLike | None, own: float, owner: str) -> int:
+    if value is None:
         return 1
-    step = to_si(given, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
+    step = to_si(value, TIME_STEP, owner=owner, name="time_step", condition=POSITIVE)
     if step > own * (1.0 + _SNAP):
         msg = (
             f"{owner}: time_step = {step:.6g} s is longer than that of the motion, {own:.6g} s; "

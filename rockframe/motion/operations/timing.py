@@ -112,7 +112,7 @@ def window(
     if any(abs(places[n] - k) > _SNAP for n, k in (("start", first), ("end", final))):
         step += f", the samples nearest to {ends['start']:.9g} s and {ends['end']:.9g} s"
     part = si.each(lambda signal: _between(signal, first, final))
-    given = {name: f"{value!r} {TIME.unit}" for name, value in ends.items()}
+    values = {name: f"{value!r} {TIME.unit}" for name, value in ends.items()}
     steps = [step]
     if taper is not None:
         length = to_si(taper, TIME, owner=owner, name="taper", condition=POSITIVE)
@@ -122,11 +122,11 @@ def window(
                 f"{part.duration:.6g} s"
             )
             raise ComponentError(msg)
-        given["taper"] = f"{length!r} {TIME.unit}"
+        values["taper"] = f"{length!r} {TIME.unit}"
         steps += [f"tapered over {length!r} s at both ends, half a cosine", *lost_pieces(si)]
         part = with_samples(part, lambda signal: tapered(signal.samples, length / si.time_step))
-    told = starting_later(motion, first * si.time_step)
-    return following(motion, part, *steps, operation={"window": given}, metadata=told)
+    text = starting_later(motion, first * si.time_step)
+    return following(motion, part, *steps, operation={"window": values}, metadata=text)
 
 
 def _between(signal: Signal, first: int, final: int) -> Signal:
@@ -184,8 +184,8 @@ def resampled(
     if si.duration / step > MAXIMUM_SAMPLES:
         msg = f"{owner}: time_step = {step:.6g} s would give more than {MAXIMUM_SAMPLES} samples"
         raise ComponentError(msg)
-    given = {"time_step": f"{step!r} {TIME.unit}", "interpolation": str(between)}
-    operation = {"resampled": given}
+    values = {"time_step": f"{step!r} {TIME.unit}", "interpolation": str(between)}
+    operation = {"resampled": values}
     if math.isclose(step, si.time_step, rel_tol=SAME_STEP):
         same = f"resampled to {step!r} s: the time step that it had"
         return following(motion, si, same, operation=operation, same_spectrum=True)

@@ -136,8 +136,8 @@ def shortened(accuracy: Accuracy, system: Assembly, step: float, interval: float
     """Give settings with shorter steps than the mean one of a run; interval of its motion [s]."""
     wanted = step / SHORTER
     if accuracy.substeps is not None:
-        given = accuracy.substeps if isinstance(accuracy.substeps, int) else 1
-        substeps = math.ceil(max(interval / wanted, SHORTER * given))
+        value = accuracy.substeps if isinstance(accuracy.substeps, int) else 1
+        substeps = math.ceil(max(interval / wanted, SHORTER * value))
         return replace(accuracy, substeps=min(substeps, MOST_SUBSTEPS))
     period = 2.0 * math.pi / system.model.fastest_frequency
     per_period = max(period / wanted, SHORTER * accuracy.steps_per_period)

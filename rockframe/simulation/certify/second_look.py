@@ -57,8 +57,8 @@ def look_at(setting: Setting, summary: Summary, duration: float) -> Look:
 
 def second_look(system: Assembly, plan: Plan) -> Plan:
     """Give the plan of the second run: more steps in each interval of the motion, at least one."""
-    given = max(substeps_of(plan.accuracy, system.model, plan.interval), 1)
-    return replace(plan.bare(), accuracy=Accuracy(substeps=given + math.ceil(MORE * given)))
+    value = max(substeps_of(plan.accuracy, system.model, plan.interval), 1)
+    return replace(plan.bare(), accuracy=Accuracy(substeps=value + math.ceil(MORE * value)))
 
 
 def is_sure(first: Look, second: Look) -> bool:

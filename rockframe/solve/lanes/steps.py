@@ -149,9 +149,9 @@ def choose_step(room: Vector, lane: int) -> None:
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
     own = lane_of(room, fields.OWN, lane)
     remaining = own[fields.LENGTH] - clock[at.INTO_INTERVAL]
-    asked = fit_step(min(clock[at.NEXT_STEP], controls[at.MAX_STEP]), remaining)
-    clock[at.ASKED] = asked
-    own[fields.STEP] = min(asked, own[fields.LONGEST])
+    requested = fit_step(min(clock[at.NEXT_STEP], controls[at.MAX_STEP]), remaining)
+    clock[at.ASKED] = requested
+    own[fields.STEP] = min(requested, own[fields.LONGEST])
 
 
 @inlined
@@ -243,9 +243,9 @@ def begin_step(system: Equations, room: Vector, lane: int) -> None:
     there, own = places_of(system), lane_of(room, fields.OWN, lane)
     clock, controls = lane_of(room, fields.CLOCK, lane), lane_of(room, fields.CONTROLS, lane)
     remaining = own[fields.LENGTH] - clock[at.INTO_INTERVAL]
-    asked = fit_step(min(clock[at.NEXT_STEP], controls[at.MAX_STEP]), remaining)
-    clock[at.ASKED] = asked
-    own[fields.STEP] = asked
+    requested = fit_step(min(clock[at.NEXT_STEP], controls[at.MAX_STEP]), remaining)
+    clock[at.ASKED] = requested
+    own[fields.STEP] = requested
     begin_stages(
         system, lane_of(room, there.state, lane), lane_of(room, there.first, lane),
         lane_of(room, there.stages, lane),

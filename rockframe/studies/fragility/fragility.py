@@ -178,19 +178,19 @@ def fragility(
     0.429
     """
     if isinstance(runs, dict):
-        given = {"limits": limits, "motions": motions, "pooled": pooled or None}
-        others = [name for name, one in given.items() if one is not None]
+        arguments = {"limits": limits, "motions": motions, "pooled": pooled or None}
+        others = [name for name, one in arguments.items() if one is not None]
         return _of_counts(runs, intensity, period, bands, confidence, others)
     runs = check_runs(runs, owner=_OWNER)
-    given = [named_column(runs, one) for one in _several(intensity)]
+    arguments = [named_column(runs, one) for one in _several(intensity)]
     together = several(pooled, owner=_OWNER, name="pooled", of="names")
-    structures = structures_of(runs, together, given, owner=_OWNER)
+    structures = structures_of(runs, together, arguments, owner=_OWNER)
     of_capacities = one_of_names(trials, _TRIALS, owner=_OWNER, name="trials") == _CAPACITIES
     if of_capacities and "capacity_scale" not in runs:
         msg = f"{_OWNER}: capacities are those of rf.incremental_dynamic_analysis, found a sweep"
         raise SchemaError(msg)
     states = _states(runs, limits)
-    measures = [measure_in(runs, one, period, motions, owner=_OWNER) for one in given]
+    measures = [measure_in(runs, one, period, motions, owner=_OWNER) for one in arguments]
     if len({one.name for one in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
@@ -229,7 +229,7 @@ def fragility(
     dataset = fragility_dataset(
         found, {**over, "limit_state": len(states)},
         [(str(one.name), dict(one.attrs)) for one in measures], means,
-        about | period_attribute(runs, given, period, owner=_OWNER), fits,
+        about | period_attribute(runs, arguments, period, owner=_OWNER), fits,
     )  # fmt: skip
     dataset = dataset.assign_coords(structures.coordinates)
     dataset = with_variables(dataset, labels_of_states(states))
@@ -239,8 +239,8 @@ def fragility(
         dataset = with_variables(dataset, {"below_scan_count": below}, over=(*over, *LIMIT_STATE))
     dataset.attrs["verdict"] = f"{sentences(dataset)}{_sliding(runs, of_capacities=of_capacities)}"
     # a system that the sweep changed is not that of the runs
-    told = ("model",) if structures.coordinates or together else ("model", "system_json")
-    return dataset.assign_attrs({name: runs.attrs[name] for name in told if name in runs.attrs})
+    messages = ("model",) if structures.coordinates or together else ("model", "system_json")
+    return dataset.assign_attrs({name: runs.attrs[name] for name in messages if name in runs.attrs})
 
 
 def _of_counts(
@@ -346,20 +346,20 @@ def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
     return f" {words[0].upper()}{words[1:]}; these count as if it were held." if words else ""
 
 
-def _several(given: object) -> list[object]:
-    if isinstance(given, str | xr.DataArray):
-        return [given]
-    listed = list(cast("Iterable[object]", given)) if isinstance(given, Iterable) else []
+def _several(value: object) -> list[object]:
+    if isinstance(value, str | xr.DataArray):
+        return [value]
+    listed = list(cast("Iterable[object]", value)) if isinstance(value, Iterable) else []
     if not 1 <= len(listed) <= _MOST_MEASURES:
-        msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(given)}"
+        msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(value)}"
         raise ComponentError(msg)
     return listed
 
 
-def _bands(given: str | None, usual: Bands, measures: int) -> Bands:
-    if given is None:
+def _bands(value: str | None, usual: Bands, measures: int) -> Bands:
+    if value is None:
         return usual if measures == 1 or usual is not Bands.PROFILE else Bands.SANDWICH
-    found = one_of_words(Bands, given, owner=_OWNER, name="bands")
+    found = one_of_words(Bands, value, owner=_OWNER, name="bands")
     if found is Bands.PROFILE and measures > 1:
         msg = f"{_OWNER}: bands by profile are those of one intensity measure; use 'jackknife'"
         raise ComponentError(msg)

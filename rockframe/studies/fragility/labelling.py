@@ -92,8 +92,8 @@ def fragility_dataset(
 
     For each structure and limit state, whose numbers `over` tells, the last one fastest.
     """
-    given = [None] * len(found) if fits is None else fits
-    every = [_Fitted.of(one, means, each) for one, each in zip(found, given, strict=True)]
+    items = [None] * len(found) if fits is None else fits
+    every = [_Fitted.of(one, means, each) for one, each in zip(found, items, strict=True)]
     values: dict[str, Any] = {
         "fragility_status": [one.fit.status for one in every],
         "trial_count": [one.trials.weight.sum() for one in found],

@@ -47,10 +47,10 @@ class Structures:
 
 
 def structures_of(
-    runs: xr.Dataset, pooled: Sequence[str], given: Sequence[object], *, owner: str
+    runs: xr.Dataset, pooled: Sequence[str], items: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
-    axes, own = _axes(runs), _own(given)
+    axes, own = _axes(runs), _own(items)
     changed = _changed(axes, own)
     dims = [str(dim) for dim in runs["status"].dims]
     differing = [name for name in changed if name in runs.coords or name in dims]
@@ -63,7 +63,7 @@ def structures_of(
         for dim in runs[name].dims
     }  # fmt: skip
     foreign = [dim for dim in dims if dim not in {*explained, *axes, *own, MOTION, CASE}]
-    _check_motions(runs, foreign, owner, named=len(own) < len(given))
+    _check_motions(runs, foreign, owner, named=len(own) < len(items))
     known = [*(name for name in differing if runs[name].dims), *foreign]
     if CASE in pooled and CASE in dims:  # stands for all columns of its table
         columns = [name for name in known if CASE in runs[name].dims]
@@ -84,10 +84,10 @@ def structures_of(
 
 
 def check_one_structure(
-    runs: xr.Dataset, pooled: Sequence[str], given: Sequence[object], *, owner: str
+    runs: xr.Dataset, pooled: Sequence[str], values: Sequence[object], *, owner: str
 ) -> None:
     """Refuse runs of several structures, but for those that are taken for one."""
-    changed = _changed(_axes(runs), _own(given))
+    changed = _changed(_axes(runs), _own(values))
     several = [
         name
         for name in changed
@@ -131,9 +131,9 @@ def _axes(runs: xr.Dataset) -> dict[str, str]:
     return {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
 
 
-def _own(given: Sequence[object]) -> list[str]:
+def _own(values: Sequence[object]) -> list[str]:
     """Give the names of intensities that are numbers of the runs."""
-    return [str(one.name) for one in given if isinstance(one, xr.DataArray)]
+    return [str(one.name) for one in values if isinstance(one, xr.DataArray)]
 
 
 def _changed(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:
@@ -280,10 +280,10 @@ def trials_of_capacities(
         np.log(np.column_stack([at_scales(row, scales, scale) for row in rows]))
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
-    told = has_lower | has_upper
-    count = int(told.sum())
-    found = Trials(lower[told], upper[told], has_lower[told], has_upper[told], np.ones(count), None)
-    return StructureTrials(found, None, len(told) - count, count)
+    text = has_lower | has_upper
+    count = int(text.sum())
+    found = Trials(lower[text], upper[text], has_lower[text], has_upper[text], np.ones(count), None)
+    return StructureTrials(found, None, len(text) - count, count)
 
 
 def _first_brackets(

@@ -56,42 +56,42 @@ def sentences(fragility: xr.Dataset) -> str:
     last = fragility.isel({dim: -1 for dim in LIMIT_STATE if dim in fragility.dims})
     status = last["fragility_status"].to_numpy().ravel()
     fitted = status == FragilityStatus.FITTED
-    said = [_fit(last, status, fitted)]
+    messages = [_fit(last, status, fitted)]
     if fitted.any():
-        said += _near_separation(last, fitted)
+        messages += _near_separation(last, fitted)
         independent, trials = (
             last[f"{name}_count"].to_numpy().ravel()[fitted] for name in ("independent", "trial")
         )
         bands, kind = Bands(last.attrs["bands"]), last.attrs["trials"]
-        said += words_of_bounds(
+        messages += words_of_bounds(
             bands, last.attrs["confidence"], independent, trials,
             kind="trials" if kind == "trials" else "motions", measures=len(measures_of(last)),
         )  # fmt: skip
     else:
-        said += _of_another(fragility)
+        messages += _of_another(fragility)
     if last.attrs.get("dispersions") == "common":
-        said.append("One dispersion is common to all limit states.")
+        messages.append("One dispersion is common to all limit states.")
     known, lacking = (int(last[f"{name}_count"].sum()) for name in ("trial", "left_out"))
     below = int(last["below_scan_count"].sum()) if "below_scan_count" in last else 0
     if below:  # a scan that starts too high does not part them from zero
-        said.append(
+        messages.append(
             f"{below} of {known} capacities are only known to lie at or below the least scale."
         )
     if lacking:
-        said.append(
+        messages.append(
             f"{lacking} of {lacking + known} {last.attrs['trials']} are left out: they have no "
             "verdict, or no intensity above zero."
         )
-    return " ".join(said)
+    return " ".join(messages)
 
 
 def verdict_of_fragility(dataset: xr.Dataset) -> str:
     """Say what was fitted, of a part of a fragility what was fitted of that; else nothing new."""
-    said = str(dataset.attrs.get("verdict", ""))
+    text = str(dataset.attrs.get("verdict", ""))
     if "independent_count" not in dataset:  # as of a cloud
-        return said
+        return text
     own = sentences(dataset)
-    return said if said.startswith(own) else own
+    return text if text.startswith(own) else own
 
 
 def _of_another(fragility: xr.Dataset) -> list[str]:

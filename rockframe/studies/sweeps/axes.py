@@ -74,37 +74,37 @@ class Axis:
         return cls(values=values, **{**described, "changes": Changes(described["changes"])})
 
 
-def numbers_of(given: object, measure: Measure, name: str, *, owner: str = OWNER) -> Generic:
+def numbers_of(value: object, measure: Measure, name: str, *, owner: str = OWNER) -> Generic:
     """Read the values of an axis that has a unit, or is a pure number."""
-    given = _with_own_unit(given)
+    value = _with_own_unit(value)
     if measure.unit == Unit.ONE:
-        if (pair := _with_unit(given)) is not None:
+        if (pair := _with_unit(value)) is not None:
             check_own_unit(*pair, owner=owner, name=name)
             factor = to_ratio(f"1 {pair[1]}", owner=owner, name="unit")
             if np.ma.isMaskedArray(pair[0]) and np.ma.getmaskarray(pair[0]).any():
                 msg = f"{owner}: {name} has masked values; fill them in first"
                 raise ComponentError(msg)
-            given = products([float(one) for one in items_of(pair[0])], factor)
-        found = items_of(_as_python(given))
+            value = products([float(one) for one in items_of(pair[0])], factor)
+        found = items_of(_as_python(value))
         if not all(type(one) is float and math.isfinite(one) for one in found):
             example = measure.example
             found = [to_ratio(one, owner=owner, name=name, example=example) for one in found]
     else:
-        _refuse_bare(given, measure, name, owner)
-        found = to_si_values(_as_python(given), measure, owner=owner, name=name)
+        _refuse_bare(value, measure, name, owner)
+        found = to_si_values(_as_python(value), measure, owner=owner, name=name)
     return np.array(found, dtype=np.float64)
 
 
-def _with_own_unit(given: object) -> object:
+def _with_own_unit(value: object) -> object:
     """Give an array with an attribute ``units`` beside it, as values and their unit are given."""
-    own = None if isinstance(given, pint.Quantity | tuple) else own_unit(given)
-    return given if own in (None, "", str(Unit.ONE)) else (given, own)
+    own = None if isinstance(value, pint.Quantity | tuple) else own_unit(value)
+    return value if own in (None, "", str(Unit.ONE)) else (value, own)
 
 
-def _refuse_bare(given: object, measure: Measure, name: str, owner: str) -> None:
+def _refuse_bare(value: object, measure: Measure, name: str, owner: str) -> None:
     """Refuse numbers without a unit, and say how several are given one."""
-    first = next(iter(items_of(given)), None)
-    if isinstance(given, tuple) or not isinstance(first, Real | np.number):
+    first = next(iter(items_of(value)), None)
+    if isinstance(value, tuple) or not isinstance(first, Real | np.number):
         return
     msg = (
         f"{owner}: {name} needs {measure.needed}, got bare numbers; write for example "
@@ -113,30 +113,30 @@ def _refuse_bare(given: object, measure: Measure, name: str, owner: str) -> None
     raise UnitsError(msg)
 
 
-def words_of(given: object, read: Callable[[object], object]) -> Generic:
+def words_of(value: object, read: Callable[[object], object]) -> Generic:
     """Read the values of an axis that are words."""
-    return np.array([str(read(word)) for word in items_of(given)])
+    return np.array([str(read(word)) for word in items_of(value)])
 
 
 def free_values(
-    given: object, name: str, *, owner: str = OWNER, expected: str = ""
+    value: object, name: str, *, owner: str = OWNER, expected: str = ""
 ) -> tuple[Generic, str | None]:
     """Read values for an argument of which only the user knows what it is.
 
     A unit of several quantities, such as ``g``, is of that which is `expected`.
     """
-    given = _with_own_unit(given)
-    unit = _unit_in(given)
+    value = _with_own_unit(value)
+    unit = _unit_in(value)
     if unit is not None:
         measure = _measure_of(unit, name, owner, expected)
-        return numbers_of(given, measure, name, owner=owner), str(measure.unit)
-    items = _as_python(items_of(given))
+        return numbers_of(value, measure, name, owner=owner), str(measure.unit)
+    items = _as_python(items_of(value))
     array = np.array(items)
     if array.ndim != 1 or array.dtype.kind not in "iufbU":
-        msg = f"{owner}: {name} needs numbers, words or quantities in a row, got {shown(given)}"
+        msg = f"{owner}: {name} needs numbers, words or quantities in a row, got {shown(value)}"
         raise ComponentError(msg)
     if array.dtype.kind == "U" and not all(isinstance(item, str) for item in items):
-        msg = f"{owner}: {name} needs values of one sort, got {shown(given)}"
+        msg = f"{owner}: {name} needs values of one sort, got {shown(value)}"
         raise ComponentError(msg)
     if array.dtype.kind in "iu":
         return array.astype(np.int64), str(Unit.ONE)
@@ -146,21 +146,21 @@ def free_values(
     return array, None
 
 
-def _with_unit(given: object) -> tuple[Any, str] | None:
+def _with_unit(value: object) -> tuple[Any, str] | None:
     """Give values and their unit, where it was given for all of them."""
-    pair = cast("tuple[Any, ...]", given) if isinstance(given, tuple) else ()
+    pair = cast("tuple[Any, ...]", value) if isinstance(value, tuple) else ()
     if len(pair) == 2 and isinstance(pair[1], str) and not isinstance(pair[0], str):
         return pair
     return None
 
 
-def _unit_in(given: object) -> str | None:
+def _unit_in(value: object) -> str | None:
     """Give the unit that values were given with; None of bare numbers and of words."""
-    if (pair := _with_unit(given)) is not None:
+    if (pair := _with_unit(value)) is not None:
         return pair[1]
-    first = next(iter(items_of(given)), None)
-    if isinstance(given, pint.Quantity):
-        first = given
+    first = next(iter(items_of(value)), None)
+    if isinstance(value, pint.Quantity):
+        first = value
     if isinstance(first, pint.Quantity):
         return f"{first.units:~}" or None
     if isinstance(first, str):
@@ -188,25 +188,25 @@ def _measure_of(unit: str, name: str, owner: str, expected: str) -> Measure:
     raise UnitsError(msg)
 
 
-def items_of(given: object) -> list[Any]:
+def items_of(value: object) -> list[Any]:
     """Give values one by one; one alone is a row of one."""
-    if isinstance(given, str | bytes) or not isinstance(given, Iterable):
-        return [given]
-    if isinstance(given, pint.Quantity) and getattr(cast("Any", given).magnitude, "ndim", 0) == 0:
-        return [given]
-    return list(cast("Iterable[Any]", given))
+    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+        return [value]
+    if isinstance(value, pint.Quantity) and getattr(cast("Any", value).magnitude, "ndim", 0) == 0:
+        return [value]
+    return list(cast("Iterable[Any]", value))
 
 
-def _as_python(given: Any) -> Any:
+def _as_python(value: Any) -> Any:
     """Give numbers of numpy and pandas as Python's."""
-    if hasattr(given, "to_numpy"):
-        given = given.to_numpy()
-    if isinstance(given, np.ndarray):
-        return given.tolist()
-    if isinstance(given, list):
-        items = cast("list[Any]", given)
+    if hasattr(value, "to_numpy"):
+        value = value.to_numpy()
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, list):
+        items = cast("list[Any]", value)
         return [one.item() if isinstance(one, np.generic) else one for one in items]
-    return given
+    return value
 
 
 def in_unit(labels: xr.DataArray, unit: str | None, *, owner: str) -> xr.DataArray:

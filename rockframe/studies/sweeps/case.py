@@ -271,12 +271,12 @@ def _value_of(along: xr.DataArray, place: Mapping[str, int]) -> Any:
     return along.isel({dim: place[str(dim)] for dim in along.dims}).item()
 
 
-def _scene(given: SweptScene | None, attributes: Mapping[str, Any], owner: str) -> SweptScene:
+def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) -> SweptScene:
     if "system_json" in attributes:
         system = System.from_dict(json.loads(attributes["system_json"]))
         return SystemScene(system.assembly)
-    if given is not None:
-        return given
+    if swept is not None:
+        return swept
     if (known := remembered(attributes)) is not None:
         return known.scene
     msg = f"{owner}: the scene was the function {attributes['function']}; give it as scene="
@@ -294,7 +294,7 @@ def _system(scene: SweptScene, values: dict[Axis, Any]) -> System:
 def unscaled_motions(
     attributes: Mapping[str, Any],
     names: Iterable[str],
-    given: object = None,
+    value: object = None,
     kept: Store | None = None,
     *,
     needed: bool = True,
@@ -307,7 +307,7 @@ def unscaled_motions(
     at_hand = {} if study is None else study.motions
     if kept is not None:
         at_hand = kept.motions()
-    records = {} if given is None else {one.sha256: one for one in named_motions(given).values()}
+    records = {} if value is None else {one.sha256: one for one in named_motions(value).values()}
     found: dict[str, GroundMotion | None] = {}
     for name in names:
         one = described[name]
@@ -318,7 +318,7 @@ def unscaled_motions(
         elif one["sha256"] in records:
             found[name] = records[one["sha256"]]
         elif needed:
-            has = "must be given, as motions=" if given is None else "is not among those given"
+            has = "must be given, as motions=" if value is None else "is not among those given"
             digest = one["sha256"][:12]
             msg = f"{owner}: the record {one['name']!r} (sha256 {digest}...) {has}"
             raise StudyError(msg)
@@ -336,11 +336,11 @@ def store_of(runs: xr.Dataset) -> Store | None:
     return found if same else None
 
 
-def known_motions(runs: xr.Dataset, given: object = None) -> dict[str, GroundMotion]:
+def known_motions(runs: xr.Dataset, value: object = None) -> dict[str, GroundMotion]:
     """Give those motions of a sweep that can be had, by their names, before they were scaled."""
     names: list[str] = json.loads(runs.attrs["motion_names"])
     if MOTION in runs:
         used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
         names = [name for name in names if name in used]
-    found = unscaled_motions(runs.attrs, names, given, store_of(runs), needed=False)
+    found = unscaled_motions(runs.attrs, names, value, store_of(runs), needed=False)
     return {name: motion for name, motion in found.items() if motion is not None}

@@ -65,8 +65,8 @@ class CasesOfJob:
         found = self._scenes.get(key)
         if found is None:
             values = {axis: each[case] for axis, each in self._of_scene}
-            with collected_warnings() as said:
-                found = self._scenes[key] = (self.job.scene.assembled(values), said)
+            with collected_warnings() as warned:
+                found = self._scenes[key] = (self.job.scene.assembled(values), warned)
         return found
 
     @property
@@ -86,8 +86,8 @@ class CasesOfJob:
     def scene_of_many(self, which: Places) -> tuple[Assembly, list[str]]:
         """Give the scene of many cases; what is warned of is the same in all."""
         values = {axis: self._of(axis, each, which) for axis, each in self._of_scene}
-        with collected_warnings() as said:
-            return self.job.scene.assembled(values), said
+        with collected_warnings() as warned:
+            return self.job.scene.assembled(values), warned
 
     def unscaled(self, case: int) -> GroundMotion | None:
         """Give the motion of a case before it is scaled; the scene's unless there are others."""
@@ -127,15 +127,15 @@ class CasesOfJob:
 
     def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
         """Give the scene of a case, what is warned of when it is assembled, and the plan."""
-        system, said = self.scene(case)
+        system, text = self.scene(case)
         start = {axis.parameter: each[case] for axis, each in self._start}
-        return system, said, self._plan(system, start, self.motion(case))
+        return system, text, self._plan(system, start, self.motion(case))
 
     def plan_of_many(self, which: Places) -> tuple[Assembly, list[str], Plan]:
         """Give the same of many cases, with the motion of the first before it is scaled."""
-        system, said = self.scene_of_many(which)
+        system, text = self.scene_of_many(which)
         start = {axis.parameter: self._of(axis, each, which) for axis, each in self._start}
-        return system, said, self._plan(system, start, self.unscaled(int(which[0])))
+        return system, text, self._plan(system, start, self.unscaled(int(which[0])))
 
     def _plan(
         self, system: Assembly, start: Mapping[str, float], motion: GroundMotion | None

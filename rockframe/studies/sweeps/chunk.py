@@ -106,8 +106,8 @@ class CollectedResults:
             self._texts.setdefault(rows.texts[message[first]], len(self._texts))
         places = np.array([self._texts.get(text, NO_TEXT) for text in rows.texts])
         self._message[here] = places[message]
-        for kept, given in ((self._scalars, rows.scalars), (self._histories, rows.histories)):
-            for name, values in given.items():
+        for kept, value in ((self._scalars, rows.scalars), (self._histories, rows.histories)):
+            for name, values in value.items():
                 _put_into(kept, self._count, name, here, values[which])
 
     def rows(self) -> CaseResults:
@@ -140,12 +140,12 @@ def each_run(
         if stopped():
             return
         try:
-            system, said, plan = cases.planned(case)
+            system, messages, plan = cases.planned(case)
             response = respond(system, plan)
             if (fault := faults.get(case)) is not None:  # that it alone does not have
                 words = f"its run beside others failed ({type(fault).__name__}: {fault})"
-                said = [*said, f"{words}, and it ran alone: {PLEASE_REPORT}"]
-            yield Finished(case, system, response.trajectory, said, response)
+                messages = [*messages, f"{words}, and it ran alone: {PLEASE_REPORT}"]
+            yield Finished(case, system, response.trajectory, messages, response)
         except Exception as problem:  # whatever it is, it is this case's alone
             yield Failed(case, problem)
 

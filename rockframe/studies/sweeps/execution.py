@@ -87,33 +87,33 @@ class _Bar(ProgressBar):
 
 
 @contextmanager
-def bar_of(given: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
+def bar_of(value: object, *, owner: str, unit: str = "case") -> Generator[ProgressBar]:
     """Show a bar while something is done."""
-    if isinstance(given, ProgressBar):  # of the caller, who closes it
-        yield given
+    if isinstance(value, ProgressBar):  # of the caller, who closes it
+        yield value
         return
-    with closing(_made(given, owner, unit)) as bar:
+    with closing(_made(value, owner, unit)) as bar:
         yield bar
 
 
-def _made(given: object, owner: str, unit: str) -> ProgressBar:
-    if given is not None and not isinstance(given, bool):
-        msg = f"{owner}: progress must be True, False or None, got {shown(given)}"
+def _made(value: object, owner: str, unit: str) -> ProgressBar:
+    if value is not None and not isinstance(value, bool):
+        msg = f"{owner}: progress must be True, False or None, got {shown(value)}"
         raise ComponentError(msg)
-    if given is False:
+    if value is False:
         return _Silent()
     try:
         from tqdm import auto
     except ImportError as problem:
-        if given is None:
+        if value is None:
             return _Silent()
         msg = f"{owner}: progress=True needs tqdm (pip install 'rockframe[progress]')"
         raise ComponentError(msg) from problem
     kind: Any = auto.tqdm
     in_a_notebook = any("notebook" in one.__module__ for one in kind.__mro__)
-    if given is None and not (in_a_notebook or sys.stderr.isatty()):
+    if value is None and not (in_a_notebook or sys.stderr.isatty()):
         return _Silent()
-    return _Bar(kind, owner, unit, _DELAY if given is None else 0.0)
+    return _Bar(kind, owner, unit, _DELAY if value is None else 0.0)
 
 
 _PER_WORKER: Final = 2

@@ -69,9 +69,9 @@ class _Source:
 
     def __init__(self, study: Study, folder: Path) -> None:
         self.kept = Store.at(folder)
-        told = self.kept.described()
+        text = self.kept.described()
         own = json.loads(json.dumps(study.to_dict()))
-        differs = difference(*({k: v for k, v in d.items() if k not in _OWN} for d in (told, own)))
+        differs = difference(*({k: v for k, v in d.items() if k not in _OWN} for d in (text, own)))
         if differs:
             msg = (
                 f"known: {folder} holds a study that differs in {', '.join(differs)}; expected one "
@@ -94,7 +94,7 @@ class _Source:
                 f"{', '.join(kinds[1])}"
             )
             raise StudyError(msg)
-        digests = [[digest for _, digest in each["motions"]] for each in (told, own)]
+        digests = [[digest for _, digest in each["motions"]] for each in (text, own)]
         self._places = {MOTION: _places(digests[1], digests[0])}
         there = {axis.name: axis.values.tolist() for axis in self._grid.axes}
         for axis in study.grid.axes:

@@ -69,21 +69,21 @@ def motion_of_case(
     return motion.scaled(**wanted)
 
 
-def named_motions(given: object) -> dict[str, GroundMotion]:
+def named_motions(value: object) -> dict[str, GroundMotion]:
     """Read the motions of a sweep."""
     named: dict[str, Any]
-    if isinstance(given, GroundMotion):
-        return {given.name: given}
-    if isinstance(given, HorizontalPair):
-        given = [given]
-    if isinstance(given, Mapping):
-        named = _each_component(by_words(cast("Mapping[Any, Any]", given), owner=OWNER))
-    elif isinstance(given, Iterable) and not isinstance(given, str):
-        several = list(cast("Iterable[Any]", given))
+    if isinstance(value, GroundMotion):
+        return {value.name: value}
+    if isinstance(value, HorizontalPair):
+        value = [value]
+    if isinstance(value, Mapping):
+        named = _each_component(by_words(cast("Mapping[Any, Any]", value), owner=OWNER))
+    elif isinstance(value, Iterable) and not isinstance(value, str):
+        several = list(cast("Iterable[Any]", value))
         pairs = (one.components if isinstance(one, HorizontalPair) else (one,) for one in several)
         named = _distinct_names([motion for pair in pairs for motion in pair])
     else:
-        named = {"": given}
+        named = {"": value}
     wrong = [one for one in named.values() if not isinstance(one, GroundMotion)]
     if wrong or not named:
         found = shown(wrong[0]) if wrong else "none"
@@ -99,8 +99,12 @@ def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
         if not isinstance(one, HorizontalPair):
             found[name] = one
             continue
-        told = [str(motion.metadata.get("component", "")) for motion in one.components]
-        words = told if all(told) and len(set(told)) == len(told) else ["first", "second"]
+        messages = [str(motion.metadata.get("component", "")) for motion in one.components]
+        words = (
+            messages
+            if all(messages) and len(set(messages)) == len(messages)
+            else ["first", "second"]
+        )
         found |= {f"{name} {word}": each for word, each in zip(words, one.components, strict=True)}
     return found
 

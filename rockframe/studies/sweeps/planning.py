@@ -123,7 +123,7 @@ def plan_study(
     *,
     period: QuantityLike | None = None,
     kept: bool | None = None,
-    **asked: Any,
+    **requested: Any,
 ) -> Study:
     """Check the arguments of a sweep.
 
@@ -132,22 +132,22 @@ def plan_study(
     """
     faults = Faults()
     made = scene_of(scene)  # without it nothing else can be checked
-    if isinstance(asked.get("initial"), xr.Dataset):
+    if isinstance(requested.get("initial"), xr.Dataset):
         faults.found.append(
             "initial cannot be the end of another run, whose system is one only; "
             "give an InitialState"
         )
-        del asked["initial"]
-    level = asked.get("accuracy")
+        del requested["initial"]
+    level = requested.get("accuracy")
     screened = isinstance(level, str) and level == SCREEN
     if screened:
-        asked["accuracy"] = FIRST
-    outputs = asked.setdefault("outputs", None)
-    arguments = faults.tried(lambda: read_arguments(faults.found, **asked), None)
+        requested["accuracy"] = FIRST
+    outputs = requested.setdefault("outputs", None)
+    arguments = faults.tried(lambda: read_arguments(faults.found, **requested), None)
     nothing = OF_THE_SCENE if isinstance(made, FunctionScene) else NO_MOTION
     none: dict[str, GroundMotion | None] = {nothing: None}
-    given = {**faults.tried(lambda: motions_of_study(motions, made) or none, none)}
-    grid = _grid(made, axes, cases, list(given), faults)
+    items = {**faults.tried(lambda: motions_of_study(motions, made) or none, none)}
+    grid = _grid(made, axes, cases, list(items), faults)
     if isinstance(made, SystemScene):
         made = made.with_parts_of([*grid.columns, *grid.axes])
     seconds = faults.tried(lambda: _period(period, [*grid.columns, *grid.axes]), None)
@@ -155,31 +155,31 @@ def plan_study(
         raise StudyError(*faults.found)
     handed_over = False
     if screened and isinstance(made, SystemScene):
-        handed_over = not _pays_to_screen(made.assembly, given.values())
+        handed_over = not _pays_to_screen(made.assembly, items.values())
         screened = not handed_over
     if handed_over:
-        asked["accuracy"] = AGAIN
-        arguments = read_arguments(faults.found, **asked)
+        requested["accuracy"] = AGAIN
+        arguments = read_arguments(faults.found, **requested)
     if not 0 < grid.count <= MOST_CASES:
         faults.found.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
-    if isinstance(made, SystemScene) and arguments.duration is None and None in given.values():
+    if isinstance(made, SystemScene) and arguments.duration is None and None in items.values():
         faults.found.append("nothing to simulate: give motions, or a duration for a still ground")
     of_runs = arguments
-    histories = faults.tried(lambda: kept_histories(made, given, of_runs, outputs), None)
-    if histories is not None and len({*map(usual_output_step, given.values())}) > 1:
+    histories = faults.tried(lambda: kept_histories(made, items, of_runs, outputs), None)
+    if histories is not None and len({*map(usual_output_step, items.values())}) > 1:
         arguments = replace(arguments, output_step=histories.step)  # at the times that are kept
     numbers = numbers_of_case(arguments, histories, screened=screened)
     way_out = LAZILY if kept else remedies(arguments, histories, may_be_kept=kept is False)
     too_large = check_memory(numbers, grid.count, way_out, owner=OWNER)
     if kept and not faults.found:
-        for told in too_large:
-            warn(f"{OWNER}: {told}", SolverWarning)
+        for text in too_large:
+            warn(f"{OWNER}: {text}", SolverWarning)
     else:
         faults.found += too_large
     if faults.found:
         raise StudyError(*faults.found)
     return Study(
-        made, grid, given, arguments, seconds, histories, screened=screened,
+        made, grid, items, arguments, seconds, histories, screened=screened,
         handed_over=handed_over, lazy=bool(too_large),
     )  # fmt: skip
 
@@ -205,8 +205,8 @@ def _grid(
     lengths = {axis.name: len(axis.values) for axis in rows}
     lengths |= {} if of_case is None else {MOTION: len(of_case)}
     if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{name} {length}" for name, length in lengths.items())
-        faults.found.append(f"the columns of cases differ in length: {told}")
+        text = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        faults.found.append(f"the columns of cases differ in length: {text}")
     return Grid(tuple(grid_axes), tuple(rows), len(motions), of_case)
 
 
@@ -248,14 +248,14 @@ def _table(cases: object) -> dict[str, object]:
 
 def _read(
     scene: SweptScene,
-    given: Mapping[str, object],
+    arguments: Mapping[str, object],
     faults: Faults,
     *,
     repeats: bool,
 ) -> list[Axis]:
     """Read axes, or columns; note what is wrong."""
     found: list[Axis] = []
-    for name, values in given.items():
+    for name, values in arguments.items():
         fault = _name_fault(name)
         if fault:
             faults.found.append(fault)
@@ -298,15 +298,15 @@ def _twice(rows: Iterable[Axis], axes: Iterable[Axis]) -> list[str]:
     return faults
 
 
-def _period(given: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
+def _period(value: QuantityLike | None, axes: Iterable[Axis]) -> float | None:
     needed = any(axis.changes is Changes.MOTION and axis.name == SPECTRAL for axis in axes)
-    if needed != (given is not None):
+    if needed != (value is not None):
         msg = (
             f"{SPECTRAL} needs the period of its oscillator, for example period='0.5 s'"
             if needed
             else f"period is that of {SPECTRAL}, which is no axis"
         )
         raise StudyError(msg)
-    if given is None:
+    if value is None:
         return None
-    return to_si(given, PERIOD, owner=OWNER, name="period", condition=POSITIVE)
+    return to_si(value, PERIOD, owner=OWNER, name="period", condition=POSITIVE)

@@ -61,15 +61,15 @@ class SystemScene:
 
     assembly: Assembly  # its parts and options, as they are where no axis changes them
 
-    def axis(self, name: str, given: object) -> Axis:
+    def axis(self, name: str, value: object) -> Axis:
         """Read an axis that names the motion's scale, an option, or a parameter of a part."""
         name = full_name(name)
-        of_run = _of_run(name, given)
+        of_run = _of_run(name, value)
         if of_run is not None:
             return of_run
         kind, _, parameter = name.rpartition(".")
         if parameter in _OPTIONS and kind in ("", _SYSTEM):
-            return _of_option(name, parameter, given)
+            return _of_option(name, parameter, value)
         found = self._having(parameter, kind, self.assembly.parts.components)
         found = found or self._having(parameter, kind, self._parts())
         if len(found) != 1:
@@ -87,7 +87,7 @@ class SystemScene:
                 "function of the axes that returns a System"
             )
             raise StudyError(msg)
-        values, unit = _declared_values(given, declared, name)
+        values, unit = _declared_values(value, declared, name)
         _caution(declared, values, type(part).__name__)
         words = declared.__doc__ or parameter
         long_name = words.split(" [")[0].rstrip(".")
@@ -103,21 +103,21 @@ class SystemScene:
                 found.append(f"{seen[what]!r} and {axis.name!r} are the same parameter")
             seen[what] = axis.name
         for slot, part in self._parts().items():
-            given = {
+            values = {
                 parameter: name for (_, place, parameter), name in seen.items() if place == slot
             }
             for alternative in part.alternatives:
-                ways = [name for way in alternative.ways for name in way if name in given]
-                heads = {way for way in alternative.ways if set(way) & set(given)}
+                ways = [name for way in alternative.ways for name in way if name in values]
+                heads = {way for way in alternative.ways if set(way) & set(values)}
                 if len(heads) > 1:
-                    names = " and ".join(repr(given[name]) for name in ways)
+                    names = " and ".join(repr(values[name]) for name in ways)
                     found.append(f"axes {names} stand for one another; give one of them")
-            if twice := part.too_many(given):
-                names = " and ".join(repr(given[name]) for name in twice)
+            if twice := part.too_many(values):
+                names = " and ".join(repr(values[name]) for name in twice)
                 found.append(f"axes {names} of {type(part).__name__} determine its size twice")
-            behind = part.left_behind([*given])
+            behind = part.left_behind([*values])
             if behind:
-                found.append(_left_behind(part, behind, given))
+                found.append(_left_behind(part, behind, values))
         return found
 
     def with_parts_of(self, axes: Iterable[Axis]) -> "SystemScene":
@@ -224,26 +224,26 @@ class FunctionScene:
     # with units
     function: Callable[..., object]
 
-    def axis(self, name: str, given: object) -> Axis:
+    def axis(self, name: str, value: object) -> Axis:
         """Read an axis that names an argument, or else the motion's scale."""
         kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
         argument = inspect.signature(self.function).parameters.get(name)
         if argument is None or argument.kind not in kinds:
             name = full_name(name)
-            of_run = _of_run(name, given)
+            of_run = _of_run(name, value)
             if of_run is not None:
                 return of_run
-        values, unit = free_values(given, name)
+        values, unit = free_values(value, name)
         return Axis(name, values, unit, name.replace("_", " "), Changes.ARGUMENT, name)
 
     def faults(self, axes: Iterable[Axis]) -> list[str]:
         """Tell whether the function takes the axes, and all that it needs is among them."""
-        given = {axis.name: None for axis in axes if axis.changes is Changes.ARGUMENT}
+        values = {axis.name: None for axis in axes if axis.changes is Changes.ARGUMENT}
         signature = inspect.signature(self.function)
         try:
-            signature.bind(**given)
+            signature.bind(**values)
         except TypeError as problem:
-            unknown = [name for name in given if name not in signature.parameters]
+            unknown = [name for name in values if name not in signature.parameters]
             question = suggestion(unknown[0], OF_A_SWEEP).removesuffix(".") if unknown else ""
             return [f"the axes do not fit the arguments of {self.name}: {problem}{question}"]
         return []
@@ -254,13 +254,13 @@ class FunctionScene:
 
     def system(self, values: Values) -> System:
         """Call the function; give its system."""
-        given = {
+        arguments = {
             axis.name: value
             if axis.unit in (None, Unit.ONE)
             else quantity(value, Measure("a quantity", Unit(axis.unit), ""))
             for axis, value in values.items()
         }
-        found = self.function(**given)
+        found = self.function(**arguments)
         if not isinstance(found, System):
             msg = f"{self.name} must return a System, got {shown(found)}"
             raise StudyError(msg)
@@ -276,35 +276,35 @@ SweptScene: TypeAlias = SystemScene | FunctionScene
 """What is simulated at the values of a case."""
 
 
-def scene_of(given: object) -> SweptScene:
+def scene_of(value: object) -> SweptScene:
     """Read the argument ``scene``."""
-    if isinstance(given, System):
-        return SystemScene(given.assembly)
-    if callable(given) and not isinstance(given, type):
-        return FunctionScene(given)
-    msg = f"scene must be a System, or a function of the axes that returns one, got {shown(given)}"
+    if isinstance(value, System):
+        return SystemScene(value.assembly)
+    if callable(value) and not isinstance(value, type):
+        return FunctionScene(value)
+    msg = f"scene must be a System, or a function of the axes that returns one, got {shown(value)}"
     raise StudyError(msg)
 
 
-def motions_of_study(given: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
+def motions_of_study(value: object, scene: SweptScene) -> dict[str, GroundMotion] | None:
     """Read the argument ``motions``: unless given, the one of the scene; None where it has none."""
-    if given is None and isinstance(scene, SystemScene):
-        given = scene.assembly.parts.motion
-    return None if given is None else named_motions(given)
+    if value is None and isinstance(scene, SystemScene):
+        value = scene.assembly.parts.motion
+    return None if value is None else named_motions(value)
 
 
-def needed_motions(given: object, scene: SweptScene, *, owner: str) -> dict[str, GroundMotion]:
+def needed_motions(value: object, scene: SweptScene, *, owner: str) -> dict[str, GroundMotion]:
     """Read the same, and refuse a scene that has none where there are none."""
-    named = motions_of_study(given, scene)
+    named = motions_of_study(value, scene)
     if named is None:
         msg = f"{owner}: there is no motion; give one"
         raise StudyError(msg)
     return named
 
 
-def _left_behind(part: Component, behind: tuple[str, ...], given: Mapping[str, str]) -> str:
+def _left_behind(part: Component, behind: tuple[str, ...], values: Mapping[str, str]) -> str:
     """Say which axes would leave a parameter as it is that goes with theirs."""
-    names = [name for parameter, name in given.items() if part.left_behind([parameter])]
+    names = [name for parameter, name in values.items() if part.left_behind([parameter])]
     axes = f"{'axis' if len(names) == 1 else 'axes'} {' and '.join(map(repr, names))}"
     kind = type(part).__name__
     left = " and ".join(behind)
@@ -316,31 +316,31 @@ def _left_behind(part: Component, behind: tuple[str, ...], given: Mapping[str, s
     )
 
 
-def _of_run(name: str, given: object) -> Axis | None:
+def _of_run(name: str, value: object) -> Axis | None:
     """Read an axis that scales the motion, or changes where runs start; None of any other."""
     if name in TARGETS:
         words = SCHEMA[name].long_name
-        return _of_numbers(name, given, TARGETS[name].measure, words, Changes.MOTION, name)
+        return _of_numbers(name, value, TARGETS[name].measure, words, Changes.MOTION, name)
     if name in STARTS:
         parameter, measure = STARTS[name]
         words = name.replace("_", " ")
-        return _of_numbers(name, given, measure, words, Changes.START, parameter)
+        return _of_numbers(name, value, measure, words, Changes.START, parameter)
     return None
 
 
 def _of_numbers(
-    name: str, given: object, measure: Measure, words: str, changes: Changes, parameter: str
+    name: str, value: object, measure: Measure, words: str, changes: Changes, parameter: str
 ) -> Axis:
-    values = numbers_of(given, measure, name)
+    values = numbers_of(value, measure, name)
     return Axis(name, values, str(measure.unit), words, changes, parameter)
 
 
-def _of_option(name: str, option: str, given: object) -> Axis:
+def _of_option(name: str, option: str, value: object) -> Axis:
     if option in MEASURED:
         one = MEASURED[option]
-        return _of_numbers(name, given, one.measure, one.words, Changes.OPTION, option)
+        return _of_numbers(name, value, one.measure, one.words, Changes.OPTION, option)
     kind, words = _CHOICES[option]
-    values = words_of(given, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
+    values = words_of(value, lambda word: one_of_words(kind, word, owner=OWNER, name=name))
     return Axis(name, values, None, words, Changes.OPTION, option)
 
 
@@ -355,16 +355,16 @@ def _option(name: str, value: Any) -> Any:
 
 
 def _declared_values(
-    given: object, one: Declared[Any, Any], name: str
+    value: object, one: Declared[Any, Any], name: str
 ) -> tuple[Generic, str | None]:
     if isinstance(one, Count):
-        numbers = numbers_of(given, Measure("a whole number", Unit.ONE, "2"), name)
+        numbers = numbers_of(value, Measure("a whole number", Unit.ONE, "2"), name)
         return np.array([one.read(number, OWNER) for number in numbers.tolist()]), str(Unit.ONE)
     if isinstance(one, Flag):
-        return np.array([one.read(word, OWNER) for word in items_of(given)]), None
+        return np.array([one.read(word, OWNER) for word in items_of(value)]), None
     if one.measure is None:
-        return words_of(given, lambda word: one.read(word, OWNER)), None
-    return numbers_of(given, one.measure, name), str(one.measure.unit)
+        return words_of(value, lambda word: one.read(word, OWNER)), None
+    return numbers_of(value, one.measure, name), str(one.measure.unit)
 
 
 def _caution(one: Declared[Any, Any], values: Generic, owner: str) -> None:

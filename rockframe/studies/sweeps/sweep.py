@@ -164,14 +164,14 @@ def sweep(
         found = f"axes must be a mapping of names to values, got {shown(axes)}"
         msg = f"{found}; write for example axes={{'Block.mass': ['1 t', '2 t']}}"
         raise StudyError(msg)
-    given = dict(axes or {})
-    twice = sorted(set(given) & set(more_axes))
+    values = dict(axes or {})
+    twice = sorted(set(values) & set(more_axes))
     if twice:
         raise StudyError(*(f"axis {name!r} is given twice" for name in twice))
     study = plan_study(
         scene,
         motions,
-        {**given, **more_axes},
+        {**values, **more_axes},
         cases,
         period=period,
         duration=duration,

@@ -29,14 +29,14 @@ _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]
 
 def cases_verdict(dataset: xr.Dataset) -> str:
     """Say what became of the cases of a dataset: of a whole result as its attribute does."""
-    said, whole = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
+    text, whole = str(dataset.attrs.get("verdict", "")), dataset.attrs.get(CASE_COUNT)
     if whole is None or "status" not in dataset:
-        return said
+        return text
     status = dataset["status"]
     if status.dtype.kind not in "iu":  # such as a mean
-        return said
+        return text
     if status.size == whole:  # one that is read when it is used has no verdict before
-        return said or whole_verdict(dataset)
+        return text or whole_verdict(dataset)
     some = f"{status.size} of the {whole} cases of the sweep"
     return cases_sentence(dataset, f"Of {some if status.size < whole else f'{status.size} cases'}")
 
@@ -120,10 +120,10 @@ def not_screened(runs: xr.Dataset) -> xr.Dataset:
     lacking = np.isnan(runs["peak_rotation"].to_numpy())
     none = np.where(lacking, np.nan, 0.0) if lacking.any() else np.zeros(lacking.shape)
     dims = tuple(map(str, runs["peak_rotation"].dims))
-    said = str(runs.attrs["verdict"]).removesuffix(".")
+    text = str(runs.attrs["verdict"]).removesuffix(".")
     words = "all ran at 'standard', which costs less here than 'screen'"
     runs = with_variables(runs, dict.fromkeys(SCREENED, none), over=dims)
-    return runs.assign_attrs(verdict=f"{said}; {words}.")
+    return runs.assign_attrs(verdict=f"{text}; {words}.")
 
 
 def warn_of_missing_results(dataset: xr.Dataset, histories: Iterable[str]) -> None:
@@ -179,5 +179,5 @@ def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], 
 def _ranged(words: Sequence[str], texts: Iterable[str]) -> str:
     columns: Any = zip(*(_NUMBER.findall(text) for text in texts), strict=True)
     ranges = [sorted(set(column), key=float) for column in columns]
-    told = [each[0] if len(each) == 1 else f"{each[0]} to {each[-1]}" for each in ranges]
-    return words[0] + "".join(map("".join, zip(told, words[1:], strict=True)))
+    messages = [each[0] if len(each) == 1 else f"{each[0]} to {each[-1]}" for each in ranges]
+    return words[0] + "".join(map("".join, zip(messages, words[1:], strict=True)))
