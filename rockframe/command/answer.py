@@ -95,7 +95,7 @@ class Answer:
     def json(self, code: int, error: str = "") -> str:
         """Give the answer as a JSON object."""
         files = {title: one[0] if len(one) == 1 else one for title, one in self._files.items()}
-        messages = {
+        fields = {
             **self._told,
             **({"numbers": self._numbers} if self._numbers else {}),
             **({"files": files} if files else {}),
@@ -103,7 +103,7 @@ class Answer:
             **({"error": error} if error else {}),
             "exit_code": code,
         }
-        return json.dumps(messages, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+        return json.dumps(fields, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
     def _add(self, label: str, words: str, *, beside: bool) -> None:
         self._lines.append((beside, f"{f'{label}:'.ljust(_LABEL - 1)} {words}"))

@@ -19,8 +19,8 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     response = simulated(found, certify=wanted)
     answer.says("Verdict", response.attrs["verdict"])
     kind = "proof" if wanted == PROVED else "certificate"
-    message = response.attrs[kind]
-    answer.text(fill(f"{kind.capitalize()}: {message}", 100), **{kind: message})
+    sentence = response.attrs[kind]
+    answer.text(fill(f"{kind.capitalize()}: {sentence}", 100), **{kind: sentence})
     if wanted != PROVED:
         sure = {
             "verdict_converged": "by finer means",

@@ -84,9 +84,9 @@ def _checks(
     Checks that were typed replace those in the file of the scene. The latter are left out where
     the motions are missing; the report mentions this.
     """
-    requested = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}"))).get(CHECKS, ())
+    run_options = json.loads(str(dataset.attrs.get(ATTRIBUTE, "{}"))).get(CHECKS, ())
     required = bool(typed)
-    typed = typed or [check_of(one, CHECKS) for one in requested]
+    typed = typed or [check_of(one, CHECKS) for one in run_options]
     if not typed:
         return []
     try:

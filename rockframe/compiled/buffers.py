@@ -54,9 +54,9 @@ def buffer_of(_: Any, array: Any) -> Any:
     """Give the buffer of an array that the caller keeps, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        value = context.make_array(signature.args[0])(context, builder, values[0])
+        struct = context.make_array(signature.args[0])(context, builder, values[0])
         made = cgutils.create_struct_proxy(signature.return_type)(context, builder)
-        made.address, made.shape = value.data, value.shape
+        made.address, made.shape = struct.data, struct.shape
         return made._getvalue()
 
     return BufferType(array.dtype, array.ndim, array.mutable)(array), code
@@ -67,11 +67,11 @@ def _shifted(_: Any, kept: Any, first: Any) -> Any:
     """Give a buffer from an index on, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        argument = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+        proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
         made = cgutils.create_struct_proxy(kept)(context, builder)
-        made.address = builder.gep(argument.address, [values[1]])
-        length = builder.sub(builder.extract_value(argument.shape, 0), values[1])
-        made.shape = builder.insert_value(argument.shape, length, 0)
+        made.address = builder.gep(proxy.address, [values[1]])
+        length = builder.sub(builder.extract_value(proxy.shape, 0), values[1])
+        made.shape = builder.insert_value(proxy.shape, length, 0)
         return made._getvalue()
 
     return kept(kept, numba.intp), code
@@ -82,13 +82,13 @@ def _stretch(_: Any, kept: Any, first: Any, count: Any) -> Any:
     """Give a buffer of some elements, or rows, of another, in compiled code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        argument = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+        proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
         made = cgutils.create_struct_proxy(kept)(context, builder)
         offset = builder.mul(values[1], context.get_constant(numba.intp, kept.stride))
         for i in range(1, kept.dimensions):
-            offset = builder.mul(offset, builder.extract_value(argument.shape, i))
-        made.address = builder.gep(argument.address, [offset])
-        made.shape = builder.insert_value(argument.shape, values[2], 0)
+            offset = builder.mul(offset, builder.extract_value(proxy.shape, i))
+        made.address = builder.gep(proxy.address, [offset])
+        made.shape = builder.insert_value(proxy.shape, values[2], 0)
         return made._getvalue()
 
     return kept(kept, numba.intp, numba.intp), code
@@ -113,9 +113,9 @@ def _strided(_: Any, kept: Any, first: Any) -> Any:
     strided = BufferType(kept.dtype, 1, kept.writeable, language.LANES)
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        argument = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+        proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
         made = cgutils.create_struct_proxy(strided)(context, builder)
-        made.address, made.shape = builder.gep(argument.address, [values[1]]), argument.shape
+        made.address, made.shape = builder.gep(proxy.address, [values[1]]), proxy.shape
         return made._getvalue()
 
     return strided(kept, numba.intp), code
@@ -127,10 +127,10 @@ def _as_integers(_: Any, kept: Any) -> Any:
     kind = BufferType(numba.int64, 1, kept.writeable, kept.stride)
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        argument = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+        proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
         made = cgutils.create_struct_proxy(kind)(context, builder)
         pointer = context.get_value_type(numba.types.CPointer(numba.int64))
-        made.address, made.shape = builder.bitcast(argument.address, pointer), argument.shape
+        made.address, made.shape = builder.bitcast(proxy.address, pointer), proxy.shape
         return made._getvalue()
 
     return kind(kept), code
@@ -220,20 +220,20 @@ class _Length(templates.AbstractTemplate):
 
 @extending.lower_builtin(len, BufferType)
 def _length(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-    argument = cgutils.create_struct_proxy(signature.args[0])(context, builder, value=values[0])
-    return builder.extract_value(argument.shape, 0)
+    proxy = cgutils.create_struct_proxy(signature.args[0])(context, builder, value=values[0])
+    return builder.extract_value(proxy.shape, 0)
 
 
 def _address_of(context: Any, builder: Any, signature: Any, values: Any) -> Any:
     """Give the address of an element of a buffer."""
     kept = signature.args[0]
-    argument = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
+    proxy = cgutils.create_struct_proxy(kept)(context, builder, value=values[0])
     if kept.dimensions == 1:
         offset = builder.mul(values[1], context.get_constant(numba.intp, kept.stride))
     else:
         row, column = (builder.extract_value(values[1], i) for i in range(2))
-        offset = builder.add(builder.mul(row, builder.extract_value(argument.shape, 1)), column)
-    return builder.gep(argument.address, [offset])
+        offset = builder.add(builder.mul(row, builder.extract_value(proxy.shape, 1)), column)
+    return builder.gep(proxy.address, [offset])
 
 
 def _place_in(kept: BufferType, place: Any) -> Any:

@@ -170,8 +170,8 @@ def _process(task: str, jobs: Sequence[Job]) -> "subprocess.Popen[bytes] | None"
         )  # fmt: skip
     except Exception:  # this process will do it all, and say what is wrong
         return None
-    with suppress(OSError), cast("IO[bytes]", process.stdin) as warned:
-        warned.write(order)
+    with suppress(OSError), cast("IO[bytes]", process.stdin) as pipe:
+        pipe.write(order)
     return process
 
 

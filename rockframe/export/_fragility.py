@@ -133,10 +133,10 @@ def to_pelicun(
 
 def _check_demand(demand: str, measure: str, kind: str) -> None:
     """Raise on a demand whose words name another quantity than that of the fragility."""
-    text, own = (
+    stated, own = (
         _QUANTITIES.intersection(re.findall("[a-z]+", of.lower())) for of in (demand, kind)
     )
-    if text and text != own:
+    if stated and stated != own:
         msg = (
             f"{_PELICUN}: the demand must be of the measure of the fragility, {measure}, as "
             f"{kind!r} is, got {demand!r}; fit a fragility over the measure of the demand"
@@ -210,8 +210,8 @@ def to_openquake(
     'model.xml'
     """
     one_of_names(loss, _LOSSES, owner=_OPENQUAKE, name="loss")
-    for what, argument in (("description", description), ("category", category)):
-        text(argument, owner=_OPENQUAKE, name=what)
+    for what, wanted in (("description", description), ("category", category)):
+        text(wanted, owner=_OPENQUAKE, name=what)
     limit_given = None if no_damage_limit is None else to_ratio(
         no_damage_limit, owner=_OPENQUAKE, name="no_damage_limit", condition=POSITIVE
     )  # fmt: skip

@@ -249,7 +249,7 @@ _HELD: Final = (
 def _head(system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: Dashpots) -> str:
     """Give the docstring of the file."""
     elsewhere = base.words is not _GROUND and system.restraint is not Restraint.CENTRE
-    messages = [
+    rows = [
         f"{_MARK}{__version__}: {system.setting.model} under {motion.name}, in OpenSees.",
         "Run it with numpy and openseespy installed. It writes both histories of the rotation "
         "to a CSV file of the same name, and prints both peaks.",
@@ -259,7 +259,7 @@ def _head(system: System, motion: GroundMotion, base: SpringsOfBase, dashpots: D
         "Steps of integration are fixed, and events within them are not located. After many "
         "impacts two runs that were close at first may differ: compare peaks before histories.",
     ]
-    lines = "\n\n".join(fill(one, 96) for one in messages if one)
+    lines = "\n\n".join(fill(one, 96) for one in rows if one)
     return lines.replace("\\", "/").replace('"""', "'''")
 
 

@@ -409,10 +409,10 @@ def _numbers(part: Component | None, units: ReaderUnits, without: Sequence[str] 
     """Write the parameters of a part, in the reader's units if these are chosen."""
     if part is None:
         return []
-    data = {name: one for name, one in part.to_dict().items() if name not in without}
-    found = arguments_in_words({name: one for name, one in data.items() if one != "0.0 N"})
-    for name, one in data.items():
-        text = units.of_sentence(str(one))
-        if text != str(one):
-            found[name.replace("_", " ")] = text
+    arguments = {name: one for name, one in part.to_dict().items() if name not in without}
+    found = arguments_in_words({name: one for name, one in arguments.items() if one != "0.0 N"})
+    for name, one in arguments.items():
+        sentence = units.of_sentence(str(one))
+        if sentence != str(one):
+            found[name.replace("_", " ")] = sentence
     return [f"{name} {words}" for name, words in found.items()]

@@ -149,8 +149,8 @@ def probability(
     right.set(ylabel="share that overturns [-]", ylim=(0.0, 1.02))
     for axes in on.panels:
         grid(axes)
-    words = units_of(units, "probability").reader.of_sentence(cases_verdict(dataset))
-    on.entitle(words, title)
+    sentence = units_of(units, "probability").reader.of_sentence(cases_verdict(dataset))
+    on.entitle(sentence, title)
     return on.panels
 
 

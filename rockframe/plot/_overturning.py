@@ -74,19 +74,19 @@ def overturning_map(
     from matplotlib.patches import Patch
 
     data = drawable(dataset, "overturning_map", units)
-    requested = units_of(units, "overturning_map").reader.chose(ACCELERATION) is not None
-    relative = "relative_peak_ground_acceleration" in data.coords and not requested
+    shown = units_of(units, "overturning_map").reader.chose(ACCELERATION) is not None
+    relative = "relative_peak_ground_acceleration" in data.coords and not shown
     across = data["relative_pulse_frequency" if relative else "frequency"]
     up = data["relative_peak_ground_acceleration" if relative else "amplitude"]
-    message = int(data.attrs["impacts_told_apart"])
+    impact_count = int(data.attrs["impacts_told_apart"])
     count = data["impacts_before_overturning"].transpose("amplitude", "frequency")
-    colours = [STANDS, *(_WAYS[min(k, len(_WAYS) - 1)] for k in range(message + 1))]
+    colours = [STANDS, *(_WAYS[min(k, len(_WAYS) - 1)] for k in range(impact_count + 1))]
     on = single(ax, "overturning_map", (6.0, 4.3))
     axes = on.axes
     known = overturns(data).transpose(*count.dims).notnull()
     axes.pcolormesh(
         across, up, count.fillna(-1.0).where(known), cmap=ListedColormap(colours), vmin=-1.5,
-        vmax=message + 0.5, shading="nearest",
+        vmax=impact_count + 0.5, shading="nearest",
     )  # fmt: skip
     middle = 0.5 * (data["amplitude_below"] + data["amplitude_above"])
     size = float(up[-1] / data["amplitude"][-1])
@@ -96,7 +96,7 @@ def overturning_map(
         xlabel=r"frequency over the block's, $\omega_p/p$ [-]" if relative else label_of(across),
         ylabel=r"peak acceleration over that of uplift [-]" if relative else label_of(up),
     )
-    words = ["stands", *(_after(k, message) for k in range(message + 1))]
+    words = ["stands", *(_after(k, impact_count) for k in range(impact_count + 1))]
     patches = [Patch(color=one, label=text) for one, text in zip(colours, words, strict=True)]
     if not known.all():
         words.append("no verdict")

@@ -153,8 +153,8 @@ def sheet(
     is one of pyplot, so that a notebook shows it and ``show()`` opens a window.
     """
     if len(names) > 1 and _is_figure(ax):
-        data = cast("Figure", ax)
-        return Sheet(Panels(np.ravel(make(data))), data)
+        own_figure = cast("Figure", ax)
+        return Sheet(Panels(np.ravel(make(own_figure))), own_figure)
     if ax is not None:
         return Sheet(Panels(_checked_axes(ax, function, names, choice=choice)), None)
     from matplotlib import pyplot

@@ -117,8 +117,8 @@ def _labels_of(run: xr.Dataset) -> str:
 def _labelled(value: object) -> dict[str, Any] | None:
     """Give several runs by their labels; None for a single run."""
     if isinstance(value, Mapping) and not isinstance(value, xr.Dataset):
-        messages = {str(key): one for key, one in cast("Mapping[Any, Any]", value).items()}
-        return messages if messages and _all_runs(list(messages.values())) else None
+        labels = {str(key): one for key, one in cast("Mapping[Any, Any]", value).items()}
+        return labels if labels and _all_runs(list(labels.values())) else None
     if not isinstance(value, list | tuple) or not value:
         return None
     runs = list(cast("Sequence[Any]", value))

@@ -161,8 +161,8 @@ def sweep(
         _draw_lines(on.axes, data, values, fell, along, others)
     else:
         _draw_map(on.axes, data, values.transpose(*dims), fell, dims)
-    text = reader_units(units, owner="rf.plot.sweep").of_sentence(cases_verdict(runs))
-    on.entitle(text or str(data.attrs.get("title", "")), title)
+    sentence = reader_units(units, owner="rf.plot.sweep").of_sentence(cases_verdict(runs))
+    on.entitle(sentence or str(data.attrs.get("title", "")), title)
     return on.axes
 
 

@@ -67,7 +67,7 @@ def _of_parts(known: list[_Part], rest: list[_Part]) -> Proof:
         verdict: float(abs(sum(part.share for part in known if part.proof.verdict == verdict)))
         for verdict in (SAFE, OVERTURNS)
     }
-    verdict, reason, text = UNDECIDED, "", [part.proof for part in rest[:1] or known]
+    verdict, reason, proofs = UNDECIDED, "", [part.proof for part in rest[:1] or known]
     if 1.0 in shares.values():
         verdict = known[0].proof.verdict
     elif len(every) == 1:
@@ -76,7 +76,7 @@ def _of_parts(known: list[_Part], rest: list[_Part]) -> Proof:
         reason = f"{rest[0].proof.reason}, in the largest part of which nothing is proved"
     else:
         reason = "the verdict is not the same of all of them"
-    falls = [found for found in text if found.verdict != SAFE]
+    falls = [found for found in proofs if found.verdict != SAFE]
     return replace(
         every[0],
         verdict=verdict,

@@ -207,10 +207,10 @@ def _stated_unit(file: Any, one: _Waveform) -> str | None:
     if text is None:
         return None
     try:
-        words = json.loads(text.decode("utf-8", "replace"))
+        stated = json.loads(text.decode("utf-8", "replace"))
     except (ValueError, RecursionError):
         return None
-    standard = cast("dict[str, Any]", words).get("standard") if isinstance(words, dict) else None
+    standard = cast("dict[str, Any]", stated).get("standard") if isinstance(stated, dict) else None
     unit = cast("dict[str, Any]", standard).get("units") if isinstance(standard, dict) else None
     return unit if isinstance(unit, str) and unit.strip() else None
 

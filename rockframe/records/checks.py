@@ -174,30 +174,30 @@ def doubts_of(
 
 
 def _compare_peak(source: Source, samples: Array, unit: RecordUnit, stated: Stated) -> list[str]:
-    words, digit = _printed(stated.text)
+    printed, digit = _printed(stated.text)
     stated_unit = acceleration_unit(stated.unit)
-    if words is None or stated_unit is None or math.isclose(words, 0.0):
+    if printed is None or stated_unit is None or math.isclose(printed, 0.0):
         return []
     with np.errstate(over="ignore"):
         peak = float(np.max(np.abs(samples))) * (unit.factor / stated_unit.factor)
-    if abs(peak - abs(words)) <= PEAK_SHARE * abs(words) + digit:
+    if abs(peak - abs(printed)) <= PEAK_SHARE * abs(printed) + digit:
         return []
     return [
-        f"{source.path}, line {stated.line}: the header states a peak of {abs(words):g} "
+        f"{source.path}, line {stated.line}: the header states a peak of {abs(printed):g} "
         f"{stated.unit}, but the samples have {peak:.6g} {stated.unit}"
     ]
 
 
 def _compare_length(source: Source, count: int, time_step: float, stated: Stated) -> list[str]:
     # some agencies state n dt, others (n - 1) dt
-    words, digit = _printed(stated.text)
-    if words is None or words <= 0.0:
+    printed, digit = _printed(stated.text)
+    if printed is None or printed <= 0.0:
         return []
     length = count * time_step
-    if abs(length - words) <= max(2.0 * time_step, LENGTH_SHARE * words) + digit:
+    if abs(length - printed) <= max(2.0 * time_step, LENGTH_SHARE * printed) + digit:
         return []
     return [
-        f"{source.path}, line {stated.line}: the header states a length of {words:g} s, but "
+        f"{source.path}, line {stated.line}: the header states a length of {printed:g} s, but "
         f"{count} samples at {time_step:g} s last {length - time_step:.6g} s"
     ]
 

@@ -137,10 +137,10 @@ def _read_header(source: Source, start: int, end: int, text_lines: int) -> _Head
     integers, integer_count, at = _section(source, at, end, _INTEGERS, *_OF_INTEGERS)
     reals, real_count, comments_line = _section(source, at, end, _REALS, *_OF_REALS)
     comments, data_at = "", comments_line
-    words = _COMMENTS.search(source.top(1, comments_line)[0]) if comments_line < end else None
-    if words is not None:
+    match = _COMMENTS.search(source.top(1, comments_line)[0]) if comments_line < end else None
+    if match is not None:
         first = comments_line + 1
-        data_at = min(first + int(words.group(1)), end)
+        data_at = min(first + int(match.group(1)), end)
         comments = "\n".join(source.top(min(data_at - first, _MOST_COMMENTS), first))
     text = source.top(min(text_lines, end - start), start)
     unknown = _unknown(source.top(text_lines, start))
@@ -304,8 +304,8 @@ def _orientation(header: _Header, direction: str, code: str) -> Orientation:
         return ORIENTATIONS[azimuth]
     if azimuth is not None and 1 <= azimuth <= 360:
         return azimuth_of(float(azimuth))
-    text = orientation_of(direction)
-    return text if text != Orientation() else seed
+    stated = orientation_of(direction)
+    return stated if stated != Orientation() else seed
 
 
 def _samples(source: Source, request: Request, header: _Header, cut: list[str]) -> Record:

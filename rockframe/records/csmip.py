@@ -170,9 +170,9 @@ def _event(lines: list[str], place: int) -> Metadata:
         elif not name and _PROCESSING.search(entry) is None and re.search("[a-z]{3}", entry, re.I):
             name = entry
     for text in lines:
-        words = _OF_DATE.match(_WIDE_GAP.split(text)[0])
-        if words is not None:
-            name, time = name or words.group(1), time or words.group(2)
+        date = _OF_DATE.match(_WIDE_GAP.split(text)[0])
+        if date is not None:
+            name, time = name or date.group(1), time or date.group(2)
         origin = _ORIGIN.search(text)
         if origin is not None and not time and _DATE.search(origin.group(1)):
             time = origin.group(1).strip()
@@ -334,8 +334,8 @@ def _ends_inside(source: Source) -> list[str]:
         text = source.lines[line - 1][:_LONGEST_DATA_LINE]
         match = _OTHER_SERIES.match(text) if "points" in text.casefold() else None
         if match is not None:
-            words = _LAYOUT.search(text)
-            per_line = _PER_LINE if words is None else max(int(words.group(1)), 1)
+            layout = _LAYOUT.search(text)
+            per_line = _PER_LINE if layout is None else max(int(layout.group(1)), 1)
             return ends_inside(source, line, FixedWidth(1, per_line).rows(int(match.group(1))))
     return []
 
@@ -402,8 +402,8 @@ def _named(header: list[str], first: int, samples: Callable[[], Record]) -> File
 
 def _samples(source: Source, request: Request, block: _Block, cut: list[str]) -> Record:
     text = source.top(1, block.line)[0]
-    words = _UNIT.search(text)
-    name, line = words.group(1).rstrip(".") if words else None, block.line + 1
+    match = _UNIT.search(text)
+    name, line = match.group(1).rstrip(".") if match else None, block.line + 1
     peak = _peak_in_header(block.header, block.first)
     if name is None and peak is not None:
         name, line = peak.unit, peak.line
@@ -472,9 +472,9 @@ def _seconds(source: Source, text: str, line: int) -> float:
 
 
 def _layout(source: Source, block: _Block, text: str) -> FixedWidth:
-    words = _LAYOUT.search(text)
-    if words is not None:
-        return FixedWidth(int(words.group(2)), int(words.group(1)))
+    match = _LAYOUT.search(text)
+    if match is not None:
+        return FixedWidth(int(match.group(2)), int(match.group(1)))
     # older files do not state it: eight in a line, 9 characters each in volume 1, 10 in volume 2;
     # it follows from the length of a full line
     per_line = min(_PER_LINE, max(block.count, 1))

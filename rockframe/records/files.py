@@ -97,8 +97,8 @@ def _only_member(name: str, data: bytes) -> tuple[str, bytes]:
 
 
 def _from_open(file: IO[bytes]) -> tuple[str, bytes]:
-    text = getattr(file, "name", None)
-    name = text if isinstance(text, str) and text else _OPEN
+    stated_name = getattr(file, "name", None)
+    name = stated_name if isinstance(stated_name, str) and stated_name else _OPEN
     try:
         data: Any = file.read(MAXIMUM_BYTES + 1)
     except (OSError, ValueError) as problem:  # closed, or not open for reading

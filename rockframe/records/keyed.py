@@ -169,8 +169,8 @@ def _read_resorce(source: Source, request: Request) -> Record:
     def samples() -> Record:
         values = _RESORCE_LAYOUT.read(source, line, count)
         behind = line + _RESORCE_LAYOUT.rows(count)
-        text = surplus(source, behind, _RESORCE_COUNT, len(source.lines))
-        return record_of(source, values, time_step, chosen, metadata, said=text, stated=stated)
+        warnings = surplus(source, behind, _RESORCE_COUNT, len(source.lines))
+        return record_of(source, values, time_step, chosen, metadata, said=warnings, stated=stated)
 
     component = FileComponent(name or None, samples, orientation_of(name), line=name_line or None)
     return choose_component(source, request, [component])

@@ -135,7 +135,7 @@ def _counts(
         found = f"a duration of {quoted_first_line(duration)} s"
         raise source.refuse(found=found, expected="a length above zero", line=line)
     declared = round(announced)
-    text, differing = settle_count(
+    lengths, differing = settle_count(
         source, declared=declared, counted=int(counts.size), what="Duration Time", line=line
     )
     fields = last_fields(source, first)
@@ -147,18 +147,18 @@ def _counts(
         and len(fields[-1]) < min(map(len, fields[:-1]), default=0)
     ):
         raise cut_short(source, f"{counts.size} of {declared} samples")
-    return counts, text, differing
+    return counts, lengths, differing
 
 
 def _compare_peak(source: Source, header: Keys, values: Array) -> list[str]:
     printed, line = header.get("Max. Acc. (gal)", header.get("Max Acc. (gal)", ("", 1)))
     if not printed:
         return []
-    text, peak = one_number(printed, source, line), float(np.max(np.abs(values)))
-    if abs(peak - text) <= _PEAK_TOLERANCE * abs(text) + _PEAK_DIGIT:
+    stated, peak = one_number(printed, source, line), float(np.max(np.abs(values)))
+    if abs(peak - stated) <= _PEAK_TOLERANCE * abs(stated) + _PEAK_DIGIT:
         return []
     return [
-        f"{source.path}, line {line}: the header gives a peak of {text:g} gal, but the samples "
+        f"{source.path}, line {line}: the header gives a peak of {stated:g} gal, but the samples "
         f"less their mean have {peak:.6g} gal"
     ]
 

@@ -295,9 +295,9 @@ def components_of_traces(
         held = channels[name]
         values, time_step, start = joined_traces(source, held)
         check_time_step(source, time_step, None)
-        unit, as_read, text = choose_unit(source, request, _stated_unit(held[0].stats), None)
+        unit, as_read, messages = choose_unit(source, request, _stated_unit(held[0].stats), None)
         metadata = {**metadata_of_codes(name), "record_time": start, "unit_as_read": as_read}
-        return Record(time_step, values, unit, metadata, warnings=tuple(text))
+        return Record(time_step, values, unit, metadata, warnings=tuple(messages))
 
     return [
         FileComponent(

@@ -161,12 +161,12 @@ def _doubts(source: Source, header: _Header, values: Array, time_step: float) ->
     doubts: list[str] = []
     stated = [header.known(place) for place in (_SMALLEST, _LARGEST)]
     size = float(np.max(np.abs(values)))
-    for what, text, is_there in zip(
+    for what, printed, is_there in zip(
         ("smallest", "largest"), stated, (values.min(), values.max()), strict=True
     ):
-        if text is not None and abs(text - is_there) > _AGREEMENT * size:
+        if printed is not None and abs(printed - is_there) > _AGREEMENT * size:
             doubts.append(
-                f"{source.path}: the header states {text:.6g} as the {what} sample, but the "
+                f"{source.path}: the header states {printed:.6g} as the {what} sample, but the "
                 f"samples have {is_there:.6g}"
             )
     behind = len(source.data) - _HEADER - _SAMPLE * values.size

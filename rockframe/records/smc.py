@@ -87,8 +87,8 @@ def _kind(source: Source) -> str:
 
 
 def _component(source: Source, integers: Fields) -> tuple[str | None, Orientation]:
-    text = _NAMED.search("\n".join(source.top(_INTEGERS)))
-    name = text.group(1) if text else None
+    match = _NAMED.search("\n".join(source.top(_INTEGERS)))
+    name = match.group(1) if match else None
     direction = orientation_of(name or "")
     if direction != UNKNOWN:
         return name, direction

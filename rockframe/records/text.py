@@ -142,8 +142,8 @@ def _row_by_row(source: Source, request: Request, table: Table, metadata: Metada
     single = replace(table, values=values[:, np.newaxis], rest=[])
 
     def samples() -> Record:
-        only, text = TextColumn(0, ""), breaks(source, table)
-        record = _record(source, request, single, only, time_step, values, metadata, text)
+        only, warnings = TextColumn(0, ""), breaks(source, table)
+        record = _record(source, request, single, only, time_step, values, metadata, warnings)
         return replace(record, history=(*record.history, f"{words}, read row by row"))
 
     return choose_component(source, request, [FileComponent(None, samples, aliases=(BY_ROWS,))])
@@ -162,12 +162,12 @@ def _record(
     name, line = column.unit, None
     if name is None or table.values.shape[1] <= 2:
         name, line = unit_of_header(source, table, requested=request.unit is not None)
-    unit, as_read, text = choose_unit(source, request, name, line)
+    unit, as_read, messages = choose_unit(source, request, name, line)
     peak = stated_peak(table.header) if table.values.shape[1] <= 2 else None
     if peak is not None:
-        text += doubts_of(source, values, unit, time_step, [peak])
+        messages += doubts_of(source, values, unit, time_step, [peak])
     described: Metadata = {"unit_as_read": as_read, **metadata}
-    return Record(time_step, values, unit, described, warnings=(*text, *warnings))
+    return Record(time_step, values, unit, described, warnings=(*messages, *warnings))
 
 
 def _counted(source: Source, request: Request, head: FirstLines) -> Record:

@@ -79,8 +79,8 @@ def _read(source: Source, request: Request) -> Record:
         return _samples(source, request, header, place, values)
 
     components: list[FileComponent] = []
-    for place, (text, line) in enumerate(directions[:channels]):
-        name, direction = _direction(text)
+    for place, (stated, line) in enumerate(directions[:channels]):
+        name, direction = _direction(stated)
         name = name or f"channel {place + 1}"
         read = partial(samples, place)
         components.append(FileComponent(name, read, direction, channel=place + 1, line=line))
@@ -98,7 +98,7 @@ def _samples(source: Source, request: Request, header: Keys, place: int, values:
     if declared is None or declared < 1:
         found, expected = f"{quoted_first_line(announced)} samples", "a whole number above zero"
         raise source.refuse(found=found, expected=expected, line=count_line)
-    counts, words = settle_count(
+    counts, warnings = settle_count(
         source,
         declared=declared,
         counted=values.size,
@@ -111,7 +111,7 @@ def _samples(source: Source, request: Request, header: Keys, place: int, values:
         for key, unit in ((_PEAKS, _PEAK_UNIT), (_LENGTHS, LENGTH))
         for text, line in _list(header, key)[place : place + 1]
     ]
-    return record_of(source, values, time_step, chosen, described, said=words, stated=stated)
+    return record_of(source, values, time_step, chosen, described, said=warnings, stated=stated)
 
 
 def _list(header: Keys, start: str) -> list[tuple[str, int]]:

@@ -132,8 +132,8 @@ def _geonet_blocks(source: Source) -> list[tuple[_Block, int]]:
 
 def _geonet_count(block: _Block) -> int:
     count = block.quantity(34, "accelerations")
-    words = _COUNT.search("\n".join(block.text))
-    announced = None if words is None else int(words[1])
+    match = _COUNT.search("\n".join(block.text))
+    announced = None if match is None else int(match[1])
     if not block.corrected and count != announced:
         # the samples of an uncorrected file are the digitised ones
         digitised = block.quantity(31, "digitised samples")
@@ -167,11 +167,11 @@ def _geonet_samples(request: Request, block: _Block, count: int) -> Record:
     reals = Fields(source, _GEONET_LAYOUT, block.index + 20)
     line, time_step = reals.line(26), reals.number(26, "time step (real 26)")
     check_time_step(source, time_step, line)
-    words = _INTERVAL.search("\n".join(text))
-    if words is not None:
-        printed = number_or_none(words[1])
+    interval = _INTERVAL.search("\n".join(text))
+    if interval is not None:
+        printed = number_or_none(interval[1])
         if printed is None or not math.isclose(printed, time_step, rel_tol=1e-6, abs_tol=_DIGIT):
-            stated_step = quoted_first_line(words[0])
+            stated_step = quoted_first_line(interval[0])
             found = f"a time step of {time_step!r} s, and {stated_step} in the text"
             raise source.refuse(found=found, expected="one time step", line=line)
     check_asked_time_step(source, request, time_step, line)
@@ -284,10 +284,10 @@ def _bhrc_orientation(name: str, text: list[str]) -> Orientation:
     letter = name[:1].upper()
     if letter == "V":
         return orientation_of("V")
-    words = first_match(_AZIMUTHS, text)
-    if words is None or letter not in "LT":
+    stated = first_match(_AZIMUTHS, text)
+    if stated is None or letter not in "LT":
         return UNKNOWN
-    return azimuth_of(float(words[0][1 if letter == "L" else 2]))
+    return azimuth_of(float(stated[0][1 if letter == "L" else 2]))
 
 
 def _bhrc_samples(

@@ -138,8 +138,8 @@ def motion_section(
         ("motion_time_step", "time step [s]"),
         ("motion_sha256", "digest (SHA-256)"),
     )
-    messages = [(words, str(attributes[name])) for name, words in known if name in attributes]
-    yield page.rows([*messages, *([] if found is None else record_rows(found, units))])
+    pairs = [(words, str(attributes[name])) for name, words in known if name in attributes]
+    yield page.rows([*pairs, *([] if found is None else record_rows(found, units))])
     if found is None:
         return
     across = found.si.vertical is not None  # of which nothing is shown
@@ -213,10 +213,10 @@ def limits_section(system: System | None, assumptions: Sequence[str] = ()) -> It
 def provenance_section(dataset: xr.Dataset, file: str) -> Iterator[str]:
     """Give the provenance of the numbers, from which they can be computed again."""
     attributes = dataset.attrs
-    messages = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
+    pairs = [(words, str(attributes[name])) for name, words in _PROVENANCE if name in attributes]
     versions = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
     here = f"rockframe {__version__}, Python {python_version()}, {versions}"
-    yield page.rows([*([("file", file)] if file else []), *messages, ("page written by", here)])
+    yield page.rows([*([("file", file)] if file else []), *pairs, ("page written by", here)])
     for name, words in (("system_json", "System"), ("run_json", "Run")):
         if name in attributes:
             yield page.subtitle(f"{words}, to be built again")

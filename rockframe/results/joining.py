@@ -252,18 +252,18 @@ def _as_one_sweep(values: Sequence[xr.Dataset], dim: str, joined: xr.Dataset) ->
     if dim not in (MOTION, *axes) or dim not in joined.coords or not joined.indexes[dim].is_unique:
         return {}
     digests = " ".join(str(one["study_sha256"]) for one in attributes)
-    messages = {
+    common = {
         CASE_COUNT: joined["status"].size,
         "study_sha256": hashlib.sha256(f"joined along {dim}: {digests}".encode()).hexdigest(),
     }
     if dim != MOTION:
-        return messages
+        return common
     motions = {
         name: json.dumps([motion for one in attributes for motion in json.loads(one[name])])
         for name in OF_ITS_MOTIONS
     }
     names = json.loads(motions["motion_names"])
-    return messages | motions if len(set(names)) == len(names) else {}
+    return common | motions if len(set(names)) == len(names) else {}
 
 
 def _same(one: object, other: object) -> bool:

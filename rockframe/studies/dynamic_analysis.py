@@ -156,13 +156,13 @@ def incremental_dynamic_analysis(
     share = read_width(bracket_width, owner=_OWNER)
     finest = read_resolution(resolution, owner=_OWNER)
     measure = None if intensity is None else Intensity.read(intensity, period, owner=_OWNER)
-    value = needed_motions(motions, scene, owner=_OWNER)
+    by_name = needed_motions(motions, scene, owner=_OWNER)
     requested: Any = {**run, "points": points}
 
     def verdicts(runs: xr.Dataset) -> xr.DataArray:
         return xr.concat([exceeds(runs, state) for state in states], VERDICT)
 
-    lines = Lines(system, value, line_axes.columns(), requested, _OWNER, verdicts)
+    lines = Lines(system, by_name, line_axes.columns(), requested, _OWNER, verdicts)
     along = lines.followed(
         scales, width=share, resolution=finest, outputs=outputs, output_step=output_step
     )
@@ -177,7 +177,7 @@ def incremental_dynamic_analysis(
     )
     found = with_variables(found, labels_of_states(states))
     if measure is not None:
-        found = found.assign({measure.name: intensity_in(scan, measure, value, owner=_OWNER)})
+        found = found.assign({measure.name: intensity_in(scan, measure, by_name, owner=_OWNER)})
         found.attrs |= of_study(measure.name, measure.period)
     below, least = _at_the_least(found), float(found[SCALE].min())
     if below.any():

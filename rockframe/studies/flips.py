@@ -108,10 +108,14 @@ def _wide(
     for near, far in side.intervals():
         if side.shown[near].overturned and not beyond:
             return
-        text = None not in (side.shown[near].overturned, side.shown[far].overturned)
+        have_verdicts = None not in (side.shown[near].overturned, side.shown[far].overturned)
         if near == 0.0 and far <= resolution * side.places[-1]:
             continue  # halving towards zero would not end
-        if text and far - near > resolution * far and (side.shown[far].lifted or may_slide):
+        if (
+            have_verdicts
+            and far - near > resolution * far
+            and (side.shown[far].lifted or may_slide)
+        ):
             yield near, far
 
 

@@ -140,9 +140,9 @@ def fractile_curves(
     for one in ("motion_response", "response_fractile", _LEVEL):
         found[one].attrs["units"] = unit
     found["intensity_fractile"].attrs["units"] = measure.attrs.get("units", "1")
-    text = period_attribute(runs, [intensity], period, owner=_OWNER)
+    attributes = period_attribute(runs, [intensity], period, owner=_OWNER)
     return found.assign_attrs(
-        {**attributes_of_system(runs), "intensity": name, **text,
+        {**attributes_of_system(runs), "intensity": name, **attributes,
          "response": response if label is None else f"{response} {label}",
          "verdict": _sentence(lines, low, high, measure) + _left_out(lines, runs)}
     )  # fmt: skip
@@ -228,7 +228,7 @@ def _falls(
     above, below, after = (
         last[name].to_numpy() for name in ("scale_above", "scale_below", "exceeds_above")
     )
-    text = ~np.isnan(above)
+    known = ~np.isnan(above)
     scales = np.log(runs[SCALE].to_numpy())
     rising = np.argsort(scales)
 
@@ -236,8 +236,8 @@ def _falls(
         return float(np.exp(np.interp(np.log(scale), scales[rising], np.log(intensities[rising]))))
 
     ranges: list[tuple[float, float]] = []
-    start = None if not text.any() or after[text][0] == 1.0 else float(intensities.min())
-    for low, high, falls in zip(below[text], above[text], after[text], strict=True):
+    start = None if not known.any() or after[known][0] == 1.0 else float(intensities.min())
+    for low, high, falls in zip(below[known], above[known], after[known], strict=True):
         if falls == 1.0:
             start = of(high)
         elif start is not None:

@@ -126,14 +126,14 @@ def annual_rate(
     >>> f"{found.annual_rate.item():.2e}"
     '1.48e-04'
     """
-    value = checked_dataset(fragility, owner=_OWNER)
-    measure = _measure(value)
-    value = in_own_units(value, measure, owner=_OWNER)
-    curve = read_hazard(hazard, value[measure], between)
-    status = value["fragility_status"]
+    curves = checked_dataset(fragility, owner=_OWNER)
+    measure = _measure(curves)
+    curves = in_own_units(curves, measure, owner=_OWNER)
+    curve = read_hazard(hazard, curves[measure], between)
+    status = curves["fragility_status"]
     dims = tuple(map(str, status.dims))
     places = (dict(zip(status.dims, place, strict=True)) for place in np.ndindex(status.shape))
-    rows = [_of_one(value.isel(place), curve, measure) for place in places]
+    rows = [_of_one(curves.isel(place), curve, measure) for place in places]
     arrays = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     found = build_dataset(
         {name: each.reshape((*status.shape, *each.shape[1:])) for name, each in arrays.items()},
@@ -144,14 +144,14 @@ def annual_rate(
         "contributing_intensity": np.sqrt(_edges(curve)[1:] * _edges(curve)[:-1]),
         "quantile": np.array(_SHARES),
     }
-    kept = [str(name) for name in value.coords if set(value[name].dims) <= set(dims)]
-    found = found.assign_coords({name: value[name].variable for name in kept})
+    kept = [str(name) for name in curves.coords if set(curves[name].dims) <= set(dims)]
+    found = found.assign_coords({name: curves[name].variable for name in kept})
     found = with_variables(found, labels)
     for name in ("quantile_intensity", "contributing_intensity"):
-        found[name].attrs["units"] = value[measure].attrs.get("units", "1")
-    messages = {key: value.attrs[key] for key in (PERIOD_OF, "model") if key in value.attrs}
+        found[name].attrs["units"] = curves[measure].attrs.get("units", "1")
+    attributes = {key: curves.attrs[key] for key in (PERIOD_OF, "model") if key in curves.attrs}
     found = found.assign_attrs(
-        {**messages, "intensity": measure, "confidence": value.attrs.get("confidence", math.nan)}
+        {**attributes, "intensity": measure, "confidence": curves.attrs.get("confidence", math.nan)}
     )
     _warn_beyond_curve(found, curve)
     return found.assign_attrs(verdict=_sentence(found))

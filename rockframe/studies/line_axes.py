@@ -91,9 +91,9 @@ def read_line_axes(
         try:
             found.append(scene.axis(str(name), values))
         except RockframeError as problem:
-            text = problem.faults if isinstance(problem, StudyError) else (str(problem),)
+            reasons = problem.faults if isinstance(problem, StudyError) else (str(problem),)
             argument = nearest(name, others)
-            faults += [one if argument in one else f"{one}{argument}" for one in text]
+            faults += [one if argument in one else f"{one}{argument}" for one in reasons]
     for axis in found:
         if axis.changes is Changes.MOTION:
             faults.append(f"axis {axis.name!r} scales the motion, as scale does; give scale alone")

@@ -78,13 +78,13 @@ class Rounds:
         Tell, too, whether this was not interrupted. Parts after the first are not recorded for
         :func:`rockframe.case`, as no result has them.
         """
-        requested = {**self.run, **more}
+        arguments = {**self.run, **more}
         means: Any = {
-            name: requested.pop(name, None) for name in ExecutionArguments.__annotations__
+            name: arguments.pop(name, None) for name in ExecutionArguments.__annotations__
         }
         del means["progress"]
         means["store"] = None if self.store is None else self.store / part
-        study = plan_study(self.scene, self.motions, axes, cases, **requested)
+        study = plan_study(self.scene, self.motions, axes, cases, **arguments)
         if not further:
             remember(study)
         self.bar.name(part)

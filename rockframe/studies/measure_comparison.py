@@ -129,7 +129,7 @@ def compare_intensities(
     )
     for one, period in listed:
         measure = measure_in(runs, one, period, motions, owner=_OWNER)
-        text = period_attribute(runs, [one], period, owner=_OWNER)
+        attributes = period_attribute(runs, [one], period, owner=_OWNER)
         cloud, those, _ = cloud_of(runs, measure, values, least=floor, owner=_OWNER)
         if cloud.line is None:
             msg = (
@@ -138,7 +138,7 @@ def compare_intensities(
                 "or others"
             )
             raise StudyError(msg)
-        named.append(measure_words(str(measure.name), text.get(PERIOD_OF)))
+        named.append(measure_words(str(measure.name), attributes.get(PERIOD_OF)))
         clouds.append(cloud)
         kept.append(those)
     if not clouds or any(not np.array_equal(kept[0], one) for one in kept):

@@ -106,13 +106,15 @@ def overturning_map(
     check_system(system, _OWNER)
     levels = read_rising(amplitude, ACCELERATION, "amplitude", owner=_OWNER)
     frequencies = read_rising(frequency, FREQUENCY, "frequency", owner=_OWNER)
-    text = whole_number(impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS)
+    impact_count = whole_number(
+        impacts, owner=_OWNER, name="impacts", lowest=1, highest=_MOST_IMPACTS
+    )
     share = read_width(bracket_width, owner=_OWNER)
     motions = {f"{one!r} {FREQUENCY.unit}": _made(pulse, one) for one in frequencies.tolist()}
 
     def ways(runs: xr.Dataset) -> xr.DataArray:
         verdict = overturns(runs)
-        counted = runs["impact_count"].clip(max=text).astype(float)
+        counted = runs["impact_count"].clip(max=impact_count).astype(float)
         return xr.where(verdict == 0.0, _STANDS, counted).where(verdict.notnull())
 
     lines = Lines(system, motions, {}, run, _OWNER, lambda runs: ways(runs).expand_dims(VERDICT))
@@ -138,7 +140,7 @@ def overturning_map(
         "title": "Overturning by pulses",
         "source": SOURCE,
         "bracket_width": share,
-        "impacts_told_apart": text,
+        "impacts_told_apart": impact_count,
     }
     return found
 

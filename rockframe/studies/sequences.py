@@ -227,8 +227,8 @@ def _arranged(runs: xr.Dataset, there: Generic) -> xr.Dataset:
         if gaps and "flag_values" in attributes:
             attributes["flag_values"] = attributes["flag_values"].astype(np.float64)
         found[str(name)] = xr.Variable(("sequence", NUMBER), values, attributes)
-    text = np.full(there.shape, NONE, dtype=object)
-    text[there] = runs[MESSAGE].to_numpy()
-    texts = xr.Variable(("sequence", NUMBER), text, runs[MESSAGE].attrs)
+    words = np.full(there.shape, NONE, dtype=object)
+    words[there] = runs[MESSAGE].to_numpy()
+    texts = xr.Variable(("sequence", NUMBER), words, runs[MESSAGE].attrs)
     attributes = {name: one for name, one in runs.attrs.items() if name != CASE_COUNT}
     return xr.Dataset(found, coords={MESSAGE: texts}, attrs=attributes)

@@ -66,9 +66,9 @@ class Scene:
         """Whether the parts make this scene."""
         if self.made_of is None:
             return self.signature == parts.signature and self.coupling in (None, coupling)
-        value, kinds = parts.components, self.made_of
-        return value.keys() == kinds.keys() and all(
-            isinstance(part, kinds[slot]) for slot, part in value.items()
+        present, kinds = parts.components, self.made_of
+        return present.keys() == kinds.keys() and all(
+            isinstance(part, kinds[slot]) for slot, part in present.items()
         )
 
 
@@ -304,7 +304,7 @@ def assemble(
 ) -> Assembly:
     """Check parts and options together, and find the scene they make."""
     faults: list[str] = []
-    value = sort_parts(parts, faults)
+    sorted_parts = sort_parts(parts, faults)
     options = Options(
         read_option(Restraint, restraint, "restraint", wrong := []),
         read_option(Rotation, rotation, "rotation", wrong),
@@ -313,7 +313,7 @@ def assemble(
         read_measured(inclination, "inclination", wrong),
         read_option(Sliding, sliding, "sliding", wrong),
     )
-    return assembly_of(value, options, faults, wrong)
+    return assembly_of(sorted_parts, options, faults, wrong)
 
 
 def assembly_of(

@@ -217,9 +217,9 @@ def system_html(scene: Assembly, name: str) -> str:
     """Give a drawing and the numbers of a scene as HTML."""
     setting, options = scene.setting, scene.options
     rows = {"model": setting.model}
-    values = [one for part in scene.parts.structural() for one in _pieces(part)]
-    for number, (words, part) in enumerate(values):
-        alike = [other for other, _ in values[: number + 1]].count(words)
+    pieces = [one for part in scene.parts.structural() for one in _pieces(part)]
+    for number, (words, part) in enumerate(pieces):
+        alike = [other for other, _ in pieces[: number + 1]].count(words)
         numbers = arguments_in_words(part.to_dict())
         text = ", ".join(f"{one} {value}" for one, value in numbers.items())
         rows[words if alike == 1 else f"{words} {alike}"] = text

@@ -150,8 +150,8 @@ def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
     """Resolve the parts of a block before a wall."""
     load = BaseLoad(body_of_block(parts.the_block, OnCorners), options)
     wall = cast("RearWall", parts.wall)
-    value = None if parts.ground is None else parts.ground.si.restitution
-    restitution = resolve_restitution(value, load.body.maximum_restitution)
+    stated = None if parts.ground is None else parts.ground.si.restitution
+    restitution = resolve_restitution(stated, load.body.maximum_restitution)
     if not load.options.slope.level:
         raise AssemblyError(["RearWall: a wall stands on level ground, without inclination"])
     height = parts.the_block.height

@@ -247,8 +247,8 @@ def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting
             f"RockingFrame: the columns are so squat that the frame cannot rock: its greatest "
             f"restitution is {greatest.left:.4g}"
         ])  # fmt: skip
-    value = parts.ground.si.restitution if parts.ground is not None else None
-    restitution = resolve_restitution(value, greatest)
+    stated = parts.ground.si.restitution if parts.ground is not None else None
+    restitution = resolve_restitution(stated, greatest)
     setting = RockingFrameSetting(load, restitution, frame)
     refuse_fall(setting)
     if not parts.links:

@@ -103,9 +103,9 @@ class SlidingSetting(RigidGroundSetting):
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     """Resolve the parts of a scene on rigid ground."""
     load = load_of(parts.the_block, options)
-    ground, value = parts.ground, None if parts.ground is None else parts.ground.si
+    ground, numbers = parts.ground, None if parts.ground is None else parts.ground.si
     restitution = resolve_restitution(
-        None if value is None else value.restitution, load.body.maximum_restitution
+        None if numbers is None else numbers.restitution, load.body.maximum_restitution
     )
     setting = RigidGroundSetting(load, restitution)
     friction = None if ground is None else friction_under(ground, options)

@@ -334,19 +334,19 @@ class PadSupport(Support):
 
 def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
     """Give pads under a block: stiffness and damping of one pad by Eqs. (7) and (8)."""
-    value, body = pads.si, load.body
-    if value.stiffness is not None:
-        stiffness = value.stiffness
+    numbers, body = pads.si, load.body
+    if numbers.stiffness is not None:
+        stiffness = numbers.stiffness
         vertical = sqrt(2.0 * stiffness / body.mass)
     else:
-        vertical = value.frequency_ratio * body.frequency_at(load.options.gravity)
+        vertical = numbers.frequency_ratio * body.frequency_at(load.options.gravity)
         stiffness = 0.5 * body.mass * vertical**2
-    damping = value.damping
+    damping = numbers.damping
     if damping is None:
-        damping = value.damping_ratio * body.mass * vertical
+        damping = numbers.damping_ratio * body.mass * vertical
     # the restitution of a body too squat to rock from corner to corner is zero
     greatest = Restitutions(*(max(one, 0.0) for one in body.maximum_restitution))
-    restitution = resolve_restitution(value.restitution, greatest)
+    restitution = resolve_restitution(numbers.restitution, greatest)
     return PadSupport(load, stiffness, damping, restitution)
 
 
@@ -452,9 +452,9 @@ def bed_under(soil: WinklerSoil, load: BaseLoad) -> BedSupport:
     -------
     BedSupport
     """
-    value, body = soil.si, load.body
-    damping = value.damping
+    numbers, body = soil.si, load.body
+    damping = numbers.damping
     if damping is None:
-        critical = sqrt(2.0 * body.half_width * value.stiffness * body.mass)
-        damping = value.damping_ratio * critical / body.half_width
-    return BedSupport(load, value.stiffness, damping, value.separation)
+        critical = sqrt(2.0 * body.half_width * numbers.stiffness * body.mass)
+        damping = numbers.damping_ratio * critical / body.half_width
+    return BedSupport(load, numbers.stiffness, damping, numbers.separation)

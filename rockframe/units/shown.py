@@ -110,11 +110,11 @@ class ReaderUnits:
                 shown_in = dataset[name].copy(data=unit.of(values.to_numpy()))
                 found[str(name)] = shown_in.assign_attrs(units=unit.words)
         coords = {name: found.pop(name) for name in list(found) if name in dataset.coords}
-        messages = {name: self.of_sentence(str(dataset.attrs[name])) for name in _SENTENCES
+        sentences = {name: self.of_sentence(str(dataset.attrs[name])) for name in _SENTENCES
                 if name in dataset.attrs}  # fmt: skip
         return (
             dataset.assign(found)
-            .assign_attrs(messages)
+            .assign_attrs(sentences)
             .assign_coords({name: (one.dims, one.data, one.attrs) for name, one in coords.items()})
         )
 
@@ -142,9 +142,9 @@ def _with_digits(number: str, size: float) -> str:
     The conversion of a rounded number costs one digit, unless the size is a power of ten. A number
     of one or two digits may be exact and is written with four.
     """
-    text = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
+    count = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
     moved = float(f"1e{round(math.log10(size))}") == size
-    digits = max(_DIGITS, text) if moved or text < _DIGITS - 1 else max(_DIGITS - 1, text - 1)
+    digits = max(_DIGITS, count) if moved or count < _DIGITS - 1 else max(_DIGITS - 1, count - 1)
     value = f"{float(number) / size:.{digits}g}"
     return np.format_float_positional(float(value), trim="-") if "e+" in value else value
 

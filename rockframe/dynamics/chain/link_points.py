@@ -94,7 +94,7 @@ class LinkPoints(LinkRows):
 
         Where its points meet it acts along their relative velocity, in its upward sense.
         """
-        apart_x, apart_y, value = row[APART_X], row[APART_Y], row[GIVEN]
+        apart_x, apart_y, first_length = row[APART_X], row[APART_Y], row[GIVEN]
         moved_x, moved_y = on.x - to.x, on.y - to.y
         x, y = apart_x + moved_x, apart_y + moved_y
         speed_x, speed_y = on.speed_x - to.speed_x, on.speed_y - to.speed_y
@@ -103,13 +103,13 @@ class LinkPoints(LinkRows):
             elongation = along_x * moved_x + along_y * moved_y
             rate = along_x * speed_x + along_y * speed_y
             return StretchedLink(
-                Stretch(elongation, rate, 0.0, value, row[NOISE]), along_x, along_y
+                Stretch(elongation, rate, 0.0, first_length, row[NOISE]), along_x, along_y
             )
         square = x * x + y * y
         length, elongation = math.sqrt(square), 0.0
-        if length + value > 0.0:
-            elongation = (2.0 * apart_x * moved_x + moved_x * moved_x) / (length + value)
-            elongation += (2.0 * apart_y * moved_y + moved_y * moved_y) / (length + value)
+        if length + first_length > 0.0:
+            elongation = (2.0 * apart_x * moved_x + moved_x * moved_x) / (length + first_length)
+            elongation += (2.0 * apart_y * moved_y + moved_y * moved_y) / (length + first_length)
         if length <= MEET * row[NOISE]:
             up_x, up_y = self.upward(int(row[TO]))
             away = 1.0 if speed_x * up_x + speed_y * up_y >= 0.0 else -1.0
@@ -117,11 +117,11 @@ class LinkPoints(LinkRows):
             square = x * x + y * y
             length = math.sqrt(square)
             if square < TINY:
-                still = Stretch(elongation, 0.0, 0.0, value, row[NOISE])
+                still = Stretch(elongation, 0.0, 0.0, first_length, row[NOISE])
                 return StretchedLink(still, up_x, up_y)
         x, y = x / length, y / length
         rate = x * speed_x + y * speed_y
-        return StretchedLink(Stretch(elongation, rate, 0.0, value, row[NOISE]), x, y)
+        return StretchedLink(Stretch(elongation, rate, 0.0, first_length, row[NOISE]), x, y)
 
     @inlined
     def accelerated_point(self, k: int, point: Moved, room: Vector) -> tuple[float, float]:

@@ -157,8 +157,8 @@ def _starting(system: Coupled, rest: StackRest) -> Callable[[Start], tuple[int, 
 
     def initial(start: Start) -> tuple[int, Vector, Vector]:
         place = rest
-        text = start.rotation is not None or start.vertical_displacement is not None
-        if text or rest == UPRIGHT:
+        is_stated = start.rotation is not None or start.vertical_displacement is not None
+        if is_stated or rest == UPRIGHT:
             turned = rest.rotation
             if start.rotation is not None:
                 turned = start.rotation - rest.cap_rotation

@@ -263,10 +263,10 @@ class Coupled(Stacked, Pair):
         states = self.states_in(state)
         place = self.place_in(mode, states)
         if k == UPPER:
-            forces, value = Forces(press, moment, 0.0, 0.0), KnownTerms(0.0, -slip, 0.0, 0.0)
+            forces, known = Forces(press, moment, 0.0, 0.0), KnownTerms(0.0, -slip, 0.0, 0.0)
         else:
-            forces, value = Forces(0.0, 0.0, press, moment), KnownTerms(-slip, 0.0, 0.0, 0.0)
-        motion = solve_motion(self, place, forces, value)
+            forces, known = Forces(0.0, 0.0, press, moment), KnownTerms(-slip, 0.0, 0.0, 0.0)
+        motion = solve_motion(self, place, forces, known)
         s, c = place.sine, place.cosine
         normal = forces.press + normal_change(place, motion)
         along = place.block_reach.rate * motion.angular

@@ -44,12 +44,12 @@ def following(
         done = [*motion.recipe.get("operations", ()), dict(operation)]
         recipe = {**motion.recipe, "operations": done}
     lost = () if same_spectrum else _OF_ITS_SPECTRUM
-    messages: dict[str, Any] = {k: value for k, value in motion.metadata.items() if k not in lost}
-    messages |= metadata or {}
+    added: dict[str, Any] = {k: value for k, value in motion.metadata.items() if k not in lost}
+    added |= metadata or {}
     return type(motion)(
         si,
         name=motion.name,
-        metadata={key: value for key, value in messages.items() if value is not None},
+        metadata={key: value for key, value in added.items() if value is not None},
         history=(*motion.history, *steps),
         recipe=recipe,
     )

@@ -125,8 +125,8 @@ def window(
         values["taper"] = f"{length!r} {TIME.unit}"
         steps += [f"tapered over {length!r} s at both ends, half a cosine", *lost_pieces(si)]
         part = with_samples(part, lambda signal: tapered(signal.samples, length / si.time_step))
-    text = starting_later(motion, first * si.time_step)
-    return following(motion, part, *steps, operation={"window": values}, metadata=text)
+    changes = starting_later(motion, first * si.time_step)
+    return following(motion, part, *steps, operation={"window": values}, metadata=changes)
 
 
 def _between(signal: Signal, first: int, final: int) -> Signal:

@@ -224,8 +224,8 @@ def certificate_sentence(found: Certificate) -> str:
     doubts = [*_unsettled(found, ends), *_fragile(found, ends), *near]
     if doubts:
         text = f"{NEAR_WORDS}: the body {ends.verdict}, but {'; '.join(doubts)}."
-        words = near and _scaled_a_little(found)
-        return text if words or not flip else f"{text} {flip.capitalize()}."
+        near_scale = near and _scaled_a_little(found)
+        return text if near_scale or not flip else f"{text} {flip.capitalize()}."
     means = [tolerance_words(found.plan.accuracy), f"steps {SHORTER:g} times shorter"]
     if found.plan.motion is not None:
         means.append("the motion cut finer")

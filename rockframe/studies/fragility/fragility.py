@@ -239,8 +239,10 @@ def fragility(
         dataset = with_variables(dataset, {"below_scan_count": below}, over=(*over, *LIMIT_STATE))
     dataset.attrs["verdict"] = f"{sentences(dataset)}{_sliding(runs, of_capacities=of_capacities)}"
     # a system that the sweep changed is not that of the runs
-    messages = ("model",) if structures.coordinates or together else ("model", "system_json")
-    return dataset.assign_attrs({name: runs.attrs[name] for name in messages if name in runs.attrs})
+    kept_attributes = ("model",) if structures.coordinates or together else ("model", "system_json")
+    return dataset.assign_attrs(
+        {name: runs.attrs[name] for name in kept_attributes if name in runs.attrs}
+    )
 
 
 def _of_counts(

@@ -280,10 +280,17 @@ def trials_of_capacities(
         np.log(np.column_stack([at_scales(row, scales, scale) for row in rows]))
         for scale in (np.where(has_lower, below, scales[0]), np.where(has_upper, above, scales[-1]))
     )
-    text = has_lower | has_upper
-    count = int(text.sum())
-    found = Trials(lower[text], upper[text], has_lower[text], has_upper[text], np.ones(count), None)
-    return StructureTrials(found, None, len(text) - count, count)
+    has_bound = has_lower | has_upper
+    count = int(has_bound.sum())
+    found = Trials(
+        lower[has_bound],
+        upper[has_bound],
+        has_lower[has_bound],
+        has_upper[has_bound],
+        np.ones(count),
+        None,
+    )
+    return StructureTrials(found, None, len(has_bound) - count, count)
 
 
 def _first_brackets(

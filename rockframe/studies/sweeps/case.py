@@ -336,11 +336,11 @@ def store_of(runs: xr.Dataset) -> Store | None:
     return found if same else None
 
 
-def known_motions(runs: xr.Dataset, value: object = None) -> dict[str, GroundMotion]:
+def known_motions(runs: xr.Dataset, motions: object = None) -> dict[str, GroundMotion]:
     """Give those motions of a sweep that can be had, by their names, before they were scaled."""
     names: list[str] = json.loads(runs.attrs["motion_names"])
     if MOTION in runs:
         used = set(runs[MOTION].to_numpy().astype(str).ravel().tolist())
         names = [name for name in names if name in used]
-    found = unscaled_motions(runs.attrs, names, value, store_of(runs), needed=False)
+    found = unscaled_motions(runs.attrs, names, motions, store_of(runs), needed=False)
     return {name: motion for name, motion in found.items() if motion is not None}

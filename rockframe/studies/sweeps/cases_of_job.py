@@ -127,15 +127,15 @@ class CasesOfJob:
 
     def planned(self, case: int) -> tuple[Assembly, list[str], Plan]:
         """Give the scene of a case, what is warned of when it is assembled, and the plan."""
-        system, text = self.scene(case)
+        system, messages = self.scene(case)
         start = {axis.parameter: each[case] for axis, each in self._start}
-        return system, text, self._plan(system, start, self.motion(case))
+        return system, messages, self._plan(system, start, self.motion(case))
 
     def plan_of_many(self, which: Places) -> tuple[Assembly, list[str], Plan]:
         """Give the same of many cases, with the motion of the first before it is scaled."""
-        system, text = self.scene_of_many(which)
+        system, messages = self.scene_of_many(which)
         start = {axis.parameter: self._of(axis, each, which) for axis, each in self._start}
-        return system, text, self._plan(system, start, self.unscaled(int(which[0])))
+        return system, messages, self._plan(system, start, self.unscaled(int(which[0])))
 
     def _plan(
         self, system: Assembly, start: Mapping[str, float], motion: GroundMotion | None

@@ -93,10 +93,10 @@ class Claims:
     def _is_dead(self, claim: Path) -> bool:
         """Whether the job that made a claim is there no more."""
         try:
-            changed, text = claim.stat().st_mtime_ns, claim.read_bytes()
+            changed, content = claim.stat().st_mtime_ns, claim.read_bytes()
         except OSError:  # given up in this moment
             return False
-        if _is_gone(text):
+        if _is_gone(content):
             return True
         now = time.monotonic()
         before, since = self._seen.get(claim, (changed, now))
@@ -142,7 +142,7 @@ def _machine() -> list[str]:
 def _begun(process: int) -> str | None:
     """Give when a process of this machine was begun; None where there is none, or no telling."""
     with suppress(OSError, IndexError):
-        messages = (_PROCESSES / str(process) / "stat").read_text()
-        state, *rest = messages.rpartition(")")[2].split()  # numbered from the third field on
+        status = (_PROCESSES / str(process) / "stat").read_text()
+        state, *rest = status.rpartition(")")[2].split()  # numbered from the third field on
         return None if state == "Z" else rest[18]
     return None

@@ -69,9 +69,11 @@ class _Source:
 
     def __init__(self, study: Study, folder: Path) -> None:
         self.kept = Store.at(folder)
-        text = self.kept.described()
+        description = self.kept.described()
         own = json.loads(json.dumps(study.to_dict()))
-        differs = difference(*({k: v for k, v in d.items() if k not in _OWN} for d in (text, own)))
+        differs = difference(
+            *({k: v for k, v in d.items() if k not in _OWN} for d in (description, own))
+        )
         if differs:
             msg = (
                 f"known: {folder} holds a study that differs in {', '.join(differs)}; expected one "
@@ -94,7 +96,7 @@ class _Source:
                 f"{', '.join(kinds[1])}"
             )
             raise StudyError(msg)
-        digests = [[digest for _, digest in each["motions"]] for each in (text, own)]
+        digests = [[digest for _, digest in each["motions"]] for each in (description, own)]
         self._places = {MOTION: _places(digests[1], digests[0])}
         there = {axis.name: axis.values.tolist() for axis in self._grid.axes}
         for axis in study.grid.axes:

@@ -94,7 +94,7 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
     values["status"] = grid.arranged(rows.status)
     # as objects, each text is there once
     texts = np.array(few, dtype=object)[grid.arranged(message)]
-    text = xr.Variable(tuple(grid.sizes), texts, SCHEMA[MESSAGE].attributes())
+    messages = xr.Variable(tuple(grid.sizes), texts, SCHEMA[MESSAGE].attributes())
     runs = build_dataset(values, {}, over=tuple(grid.sizes))
     attributes = {
         "verdict": whole_verdict(runs),
@@ -110,7 +110,7 @@ def sweep_dataset(labels: Labels, found: Iterable[tuple[range, CaseResults]]) ->
             if name in rows.histories
         }
         dataset = with_variables(dataset, histories, over=tuple(grid.sizes))
-    return with_coordinates(dataset, labels, text)
+    return with_coordinates(dataset, labels, messages)
 
 
 def names_of_scalars(labels: Labels) -> tuple[str, ...]:

@@ -181,11 +181,11 @@ class FinishedTogether:
     def looks(self) -> list[tuple[int, Look]]:
         """Give what tells of the verdict of each."""
         count = len(self.cases)
-        messages = (
+        columns = (
             [each] * count if isinstance(each, bool) else in_each(each, count).tolist()
             for each in vars(self.look).values()
         )
-        rows = zip(*messages, strict=True)
+        rows = zip(*columns, strict=True)
         return [(case, Look(*row)) for case, row in zip(self.cases.tolist(), rows, strict=True)]
 
 
@@ -276,8 +276,8 @@ def _told(
     """Tell what became of runs: of those together that ended in the same way."""
     status, modes = outcomes.status, outcomes.modes
     # the mode tells whether those that stand may overturn later, and which slips are over
-    requested = (status == Status.COMPLETED) | groups[0].one.system.setting.slides
-    way = np.column_stack([group_of, status, np.where(requested, modes, 0)])
+    with_modes = (status == Status.COMPLETED) | groups[0].one.system.setting.slides
+    way = np.column_stack([group_of, status, np.where(with_modes, modes, 0)])
     ways, way_of = np.unique(way, axis=0, return_inverse=True)
     alone = np.ones(len(ran), dtype=np.bool_)
     for k, (number, *_) in enumerate(ways.tolist()):
@@ -291,16 +291,16 @@ def _told(
             yield found
     for k in np.flatnonzero(alone).tolist():
         try:
-            system, text = cases.scene(int(ran[k]))
+            system, messages = cases.scene(int(ran[k]))
         except Exception:  # noqa: S112 - the case tells of it where it runs alone
             continue
         summary = outcomes.summary(k, groups[group_of[k]].one.run.begun.substeps)
         if has_no_cautions(system, summary):
-            yield Finished(int(ran[k]), system, summary, text)
+            yield Finished(int(ran[k]), system, summary, messages)
 
 
 def _summed_up(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedTogether:
-    system, text = cases.scene_of_many(some)
+    system, messages = cases.scene_of_many(some)
     missing: list[str] = []
     if not has_no_cautions(system, summary):
         raise OnlyAlone
@@ -311,7 +311,7 @@ def _summed_up(cases: CasesOfJob, some: Places, summary: Summary) -> FinishedTog
     if missing:
         raise OnlyAlone
     return FinishedTogether(
-        some, summary.status, [*text, *([STILL_MOVING] if moving else [])],
+        some, summary.status, [*messages, *([STILL_MOVING] if moving else [])],
         {name: each.values if isinstance(each, Many) else each for name, each in scalars.items()},
         look,
     )  # fmt: skip

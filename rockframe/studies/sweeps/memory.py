@@ -41,14 +41,14 @@ def check_memory(
     sizes = {what: _FLOAT * _COPIES * each * cases for what, each in numbers.items()}
     needed, there = sum(sizes.values()), available()
     parts = ", ".join(f"{what} {_shown(size)}" for what, size in sizes.items())
-    messages = (
+    text = (
         f"{cases} cases need about {_shown(needed)} of memory ({parts}); {_shown(there)} are "
         "available"
     )
     if needed > there:
-        return [f"{messages}; {remedies}"]
+        return [f"{text}; {remedies}"]
     if needed > _TOLD * there:
-        warn(f"{owner}: {messages}", SolverWarning)
+        warn(f"{owner}: {text}", SolverWarning)
     return []
 
 

@@ -99,10 +99,10 @@ def _each_component(named: Mapping[str, Any]) -> dict[str, Any]:
         if not isinstance(one, HorizontalPair):
             found[name] = one
             continue
-        messages = [str(motion.metadata.get("component", "")) for motion in one.components]
+        directions = [str(motion.metadata.get("component", "")) for motion in one.components]
         words = (
-            messages
-            if all(messages) and len(set(messages)) == len(messages)
+            directions
+            if all(directions) and len(set(directions)) == len(directions)
             else ["first", "second"]
         )
         found |= {f"{name} {word}": each for word, each in zip(words, one.components, strict=True)}

@@ -146,8 +146,8 @@ def plan_study(
     arguments = faults.tried(lambda: read_arguments(faults.found, **requested), None)
     nothing = OF_THE_SCENE if isinstance(made, FunctionScene) else NO_MOTION
     none: dict[str, GroundMotion | None] = {nothing: None}
-    items = {**faults.tried(lambda: motions_of_study(motions, made) or none, none)}
-    grid = _grid(made, axes, cases, list(items), faults)
+    named = {**faults.tried(lambda: motions_of_study(motions, made) or none, none)}
+    grid = _grid(made, axes, cases, list(named), faults)
     if isinstance(made, SystemScene):
         made = made.with_parts_of([*grid.columns, *grid.axes])
     seconds = faults.tried(lambda: _period(period, [*grid.columns, *grid.axes]), None)
@@ -155,18 +155,18 @@ def plan_study(
         raise StudyError(*faults.found)
     handed_over = False
     if screened and isinstance(made, SystemScene):
-        handed_over = not _pays_to_screen(made.assembly, items.values())
+        handed_over = not _pays_to_screen(made.assembly, named.values())
         screened = not handed_over
     if handed_over:
         requested["accuracy"] = AGAIN
         arguments = read_arguments(faults.found, **requested)
     if not 0 < grid.count <= MOST_CASES:
         faults.found.append(f"there are {grid.count} cases; expected 1 to {MOST_CASES}")
-    if isinstance(made, SystemScene) and arguments.duration is None and None in items.values():
+    if isinstance(made, SystemScene) and arguments.duration is None and None in named.values():
         faults.found.append("nothing to simulate: give motions, or a duration for a still ground")
     of_runs = arguments
-    histories = faults.tried(lambda: kept_histories(made, items, of_runs, outputs), None)
-    if histories is not None and len({*map(usual_output_step, items.values())}) > 1:
+    histories = faults.tried(lambda: kept_histories(made, named, of_runs, outputs), None)
+    if histories is not None and len({*map(usual_output_step, named.values())}) > 1:
         arguments = replace(arguments, output_step=histories.step)  # at the times that are kept
     numbers = numbers_of_case(arguments, histories, screened=screened)
     way_out = LAZILY if kept else remedies(arguments, histories, may_be_kept=kept is False)
@@ -179,7 +179,7 @@ def plan_study(
     if faults.found:
         raise StudyError(*faults.found)
     return Study(
-        made, grid, items, arguments, seconds, histories, screened=screened,
+        made, grid, named, arguments, seconds, histories, screened=screened,
         handed_over=handed_over, lazy=bool(too_large),
     )  # fmt: skip
 

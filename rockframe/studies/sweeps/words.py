@@ -179,5 +179,5 @@ def summed_up(texts: Sequence[str], message: Generic) -> tuple[tuple[str, ...], 
 def _ranged(words: Sequence[str], texts: Iterable[str]) -> str:
     columns: Any = zip(*(_NUMBER.findall(text) for text in texts), strict=True)
     ranges = [sorted(set(column), key=float) for column in columns]
-    messages = [each[0] if len(each) == 1 else f"{each[0]} to {each[-1]}" for each in ranges]
-    return words[0] + "".join(map("".join, zip(messages, words[1:], strict=True)))
+    spans = [each[0] if len(each) == 1 else f"{each[0]} to {each[-1]}" for each in ranges]
+    return words[0] + "".join(map("".join, zip(spans, words[1:], strict=True)))
