@@ -11,6 +11,7 @@ from rockframe.components.block_numbers import (
     check_centre,
     check_representable,
     unphysical_inertia,
+    width_of,
 )
 from rockframe.components.parameters import (
     DERIVED,
@@ -21,7 +22,7 @@ from rockframe.components.parameters import (
 )
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
-from rockframe.many import hypot, sqrt
+from rockframe.many import hypot
 from rockframe.notebook import Polygon
 from rockframe.units import (
     ANGLE,
@@ -292,16 +293,7 @@ class Block(Component):
             return {"width": others["height"] / ratio}
         radius = sizes.get("radius", self.si.radius)
         centre = others.get("centre_height", self.given.centre_height)
-        if centre is None:
-            width = 2.0 * radius / hypot(1.0, ratio)
-        elif radius > centre:
-            width = 2.0 * sqrt((radius - centre) * (radius + centre))
-        else:
-            msg = (
-                f"{type(self).__name__}: radius must be larger than centre_height, which is "
-                f"{centre:.6g} {LENGTH.unit}; got {radius:.6g} {LENGTH.unit}"
-            )
-            raise ComponentError(msg)
+        width = width_of(type(self).__name__, radius, ratio, centre)
         return {"width": width, "height": ratio * width}
 
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
@@ -454,7 +446,7 @@ class Block(Component):
         ratio = to_ratio(
             slenderness, owner=owner, name="slenderness", condition=POSITIVE, example="4"
         )
-        width = 2.0 * metres / hypot(1.0, ratio)
+        width = width_of(owner, metres, ratio)
         return cls(
             width=f"{width!r} {LENGTH.unit}",
             height=f"{width * ratio!r} {LENGTH.unit}",

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Any, Final
 
 from rockframe.constants import STANDARD_GRAVITY
 from rockframe.errors import ComponentError
@@ -160,3 +160,19 @@ def _about_a_corner(si: BlockSI) -> bool:
     own = (width * width + height * height) / 12.0 + above * above
     ratios = (si.shape_factor * (own + x * x) for x in (si.left / radius, si.right / radius))
     return any(abs(ratio - 1.0) <= _PERCENT for ratio in ratios)
+
+
+def width_of(owner: str, radius: Any, slenderness: Any, centre_height: Any = None) -> Any:
+    """Give the width [m] of a block by R0 [m] and H/B; `owner` is named in messages.
+
+    The centre of mass is at half the height, unless its height above the base is given [m].
+    """
+    if centre_height is None:
+        return 2.0 * radius / hypot(1.0, slenderness)
+    if radius > centre_height:
+        return 2.0 * sqrt((radius - centre_height) * (radius + centre_height))
+    msg = (
+        f"{owner}: radius must be larger than centre_height, which is {centre_height:.6g} m; got "
+        f"{radius:.6g} m"
+    )
+    raise ComponentError(msg)
