@@ -115,7 +115,8 @@ def draw_ties(rng, block):
             rf.Restrainer(
                 on=tuple(f"{float(one)!r} m" for one in on),
                 to=tuple(f"{float(one)!r} m" for one in to),
-                stiffness=f"{1e3 * stiffness!r} N/m", brittle=bool(kind == 2),
+                stiffness=f"{1e3 * stiffness!r} N/m",
+                brittle=bool(kind == 2) or math.isinf(strength),
                 compression=rod <= 0.25, name=f"tie {number}", **rest,
             )
         )  # fmt: skip

@@ -66,7 +66,8 @@ def scene_of(drawn: dict) -> tuple[rf.System, rf.GroundMotion]:
             rf.Restrainer(
                 on=(f"{float(x)!r} m", f"{float(y)!r} m"),
                 to=(f"{float(to_x)!r} m", f"{float(to_y)!r} m"),
-                stiffness=f"{one['stiffness']!r} N/m", brittle=one["brittle"],
+                stiffness=f"{one['stiffness']!r} N/m",
+                brittle=one["brittle"] or math.isinf(one["strength"]),
                 compression=one["compression"], **kept,
             )
         )  # fmt: skip

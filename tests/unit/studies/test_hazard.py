@@ -185,7 +185,7 @@ def test_numbers_of_ones_own_have_a_hazard_in_their_unit(unit, size):
         rate = rf.annual_rate(found, given).annual_rate
         np.testing.assert_allclose(rate, expected, rtol=1e-9)
     other = xr.DataArray(values, attrs={"units": "mm"})
-    with pytest.raises(UnitsError, match="is in 'mm' itself"):
+    with pytest.raises(UnitsError, match="has the unit 'mm'"):
         rf.annual_rate(found, {"intensity": (other, unit), "rate": RATES})
 
 
