@@ -391,11 +391,10 @@ def _sentence(found: xr.Dataset) -> str:
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
     low, _, high = last["quantile_intensity"].to_numpy().ravel()
-    messages = (
-        f"Annual rate of {state}: {known[0]:.3g}, a return period of {1.0 / known[0]:.4g} years; "
-    )
-    messages += f"nine tenths of it come from {measure} between {low:.3g} and {high:.3g}{unit}"
+    years = float(f"{1.0 / known[0]:.4g}") if known[0] > 0.0 else math.inf
+    text = f"Annual rate of {state}: {known[0]:.3g}, a return period of {years:.12g} years; "
+    text += f"nine tenths of it come from {measure} between {low:.3g} and {high:.3g}{unit}"
     outside = float(last["outside_trials_share"].max())
     if outside > _LACKING:
-        messages += f", {100.0 * outside:.2g} % from intensities beyond those of the runs"
-    return f"{messages}."
+        text += f", {100.0 * outside:.2g} % from intensities beyond those of the runs"
+    return f"{text}."

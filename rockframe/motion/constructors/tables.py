@@ -142,12 +142,12 @@ def from_times(
             f"(mostly {np.median(gaps):.6g} s); use a shorter one, then resampled, which filters"
         )
         warn(words, RecordWarning)
-    messages = (
+    words = (
         f"built from {instants.size} samples {gaps.min():.6g} s to {gaps.max():.6g} s apart, "
         f"{_HOW[between]}, read off every {step!r} s"
     )
     return kind(
-        Motion.of_samples(step, *read), name=UNNAMED if name is None else name, history=(messages,)
+        Motion.of_samples(step, *read), name=UNNAMED if name is None else name, history=(words,)
     )
 
 

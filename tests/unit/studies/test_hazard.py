@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 import warnings
 
 import numpy as np
@@ -256,7 +257,8 @@ def test_the_ends_of_a_hazard_that_is_a_function_rise(curve, between):
 def test_a_curve_of_two_intensities_will_do_and_its_return_period_is_told(curve):
     table = {"intensity": ([0.02, 5.0], "g_0"), "rate": [8e-2, 1e-9]}
     found = rf.annual_rate(curve, table)
-    assert f"a return period of {1.0 / found.annual_rate.item():.4g} years" in found.verdict
+    written = re.search(r"a return period of (\d+) years", found.verdict)  # not 2.332e+06
+    assert int(written[1]) == pytest.approx(1.0 / found.annual_rate.item(), rel=5e-4)
 
 
 def test_what_is_no_fragility_over_one_measure_is_refused(curve):
