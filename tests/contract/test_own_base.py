@@ -35,6 +35,10 @@ SCENES = {
 }
 SETS = ("left_set", "right_set")
 every_scene = pytest.mark.parametrize("scene", SCENES)
+runs_in_every_scene = pytest.mark.parametrize(  # coupled and by cascade in plain Python
+    "scene",
+    ["alone", *(pytest.param(one, marks=pytest.mark.wide) for one in SCENES if one != "alone")],
+)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -206,7 +210,7 @@ class TestMechanics:
         with nullcontext() if scene == "alone" else plainly():
             yield
 
-    @every_scene
+    @runs_in_every_scene
     def test_energy_balances_while_pads_yield(self, pads, scene):
         pads = pads.replace(strength=0.52)
         response = in_scene(pads, scene).simulate(
@@ -261,7 +265,7 @@ class TestMechanics:
         held = system.moment_rotation(f"{rotation} rad").restoring_moment.item()
         assert held == pytest.approx(moment, rel=1e-4)
 
-    @every_scene
+    @runs_in_every_scene
     def test_a_mirrored_motion_gives_mirrored_histories(self, pads, scene):
         """Bit for bit on pads alone; the moments of soil are rounded otherwise on either side."""
         system = in_scene(pads, scene)
