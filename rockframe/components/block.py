@@ -11,7 +11,7 @@ from rockframe.components.block_numbers import (
     check_centre,
     check_representable,
     unphysical_inertia,
-    width_of,
+    width_by_radius,
 )
 from rockframe.components.parameters import (
     DERIVED,
@@ -293,7 +293,7 @@ class Block(Component):
             return {"width": others["height"] / ratio}
         radius = sizes.get("radius", self.si.radius)
         centre = others.get("centre_height", self.given.centre_height)
-        width = width_of(type(self).__name__, radius, ratio, centre)
+        width = width_by_radius(type(self).__name__, radius, ratio, centre)
         return {"width": width, "height": ratio * width}
 
     def left_behind(self, changed: Collection[str]) -> tuple[str, ...]:
@@ -446,7 +446,7 @@ class Block(Component):
         ratio = to_ratio(
             slenderness, owner=owner, name="slenderness", condition=POSITIVE, example="4"
         )
-        width = width_of(owner, metres, ratio)
+        width = width_by_radius(owner, metres, ratio)
         return cls(
             width=f"{width!r} {LENGTH.unit}",
             height=f"{width * ratio!r} {LENGTH.unit}",

@@ -162,7 +162,7 @@ def _about_a_corner(si: BlockSI) -> bool:
     return any(abs(ratio - 1.0) <= _PERCENT for ratio in ratios)
 
 
-def width_of(owner: str, radius: Any, slenderness: Any, centre_height: Any = None) -> Any:
+def width_by_radius(owner: str, radius: Any, slenderness: Any, centre_height: Any = None) -> Any:
     """Give the width [m] of a block by R0 [m] and H/B; `owner` is named in messages.
 
     The centre of mass is at half the height, unless its height above the base is given [m].
