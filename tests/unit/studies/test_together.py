@@ -98,11 +98,11 @@ def both(monkeypatch, scene, cases, motion, **options):
             served[0] += len(found.cases) if isinstance(found, FinishedTogether) else 1
             yield found
 
-    monkeypatch.setattr(chunk, "run_together", counted)
+    monkeypatch.setattr(chunk, "run_in_lanes", counted)
     together = chunk.run_chunk(job)
-    monkeypatch.setattr(chunk, "run_together", lambda *_: iter(()))
+    monkeypatch.setattr(chunk, "run_in_lanes", lambda *_: iter(()))
     alone = chunk.run_chunk(job)
-    monkeypatch.setattr(chunk, "run_together", run_in_lanes)
+    monkeypatch.setattr(chunk, "run_in_lanes", run_in_lanes)
     return together, alone, served[0]
 
 
