@@ -133,7 +133,7 @@ def code_at(signature: Any) -> Any:
 
     @extending.intrinsic
     def as_code(_: Any, address: Any) -> Any:
-        def code(context: Any, builder: Any, value: Any, values: Any) -> Any:
+        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
             return values[0]
 
         return kind(numba.int64), code
@@ -146,7 +146,7 @@ def _call(_: Any, function: Any, arguments: Any) -> Any:
     """Call a function at an address with the elements of a tuple, in compiled code."""
     gives, takes = function.signature.return_type, function.signature.args
 
-    def code(context: Any, builder: Any, value: Any, values: Any) -> Any:
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         handed = [
             context.cast(builder, builder.extract_value(values[1], i), found, taken)
             for i, (found, taken) in enumerate(zip(arguments, takes, strict=True))
