@@ -79,6 +79,19 @@ Weights: TypeAlias = Vector | tuple[float, ...]
 
 
 @inlined
+def rest_step(
+    system: Evaluated, mode: int, at_end: Ground, state: Vector, new: Vector, last: Vector,
+    works: Vector,
+) -> bool:  # fmt: skip
+    """Make a step in which nothing moves: its end has a slope only for the guards. Gives True."""
+    for i in range(2 * system.coordinates()):
+        new[i] = state[i]
+    system.write_slope(mode, new, at_end, 0, last)
+    works[0] = works[1] = works[2] = 0.0
+    return True
+
+
+@inlined
 def begin_stages(system: Counted, state: Vector, first: Vector, stages: Vector) -> None:
     """Write the first stage: velocities and slope at the start of a step."""
     size = system.coordinates()
@@ -197,6 +210,8 @@ def fixed_step(
     the weights of the velocities. Gives whether all rates and variables at its end are finite.
     """
     size = system.coordinates()
+    if count == 0 and system.variables() == 0:
+        return rest_step(system, mode, at_end, state, new, last, works)
     half, sixth = 0.5 * h, h / 6.0
     powers = size + system.variables()
     for i in range(size):  # coordinates that do not move make steps of length zero
@@ -344,6 +359,9 @@ class StepsByTolerance(NamedTuple):
         of the step is finite is seen from these errors.
         """
         size = system.coordinates()
+        if count == 0 and system.variables() == 0:
+            at_end = ground_in(1.0, span, ground)
+            return rest_step(system, mode, at_end, state, new, last, works)
         slope = size + system.variables() + POWERS
         begin_stages(system, state, first, stages)
         for s in range(1, STAGES):

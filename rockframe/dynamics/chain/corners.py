@@ -12,7 +12,7 @@ from rockframe.compiled import Vector, inlined, kernel, put
 from rockframe.dynamics.base import SIMULTANEOUS, Guards, Variables
 from rockframe.dynamics.bed import DOWN, RAISED, both_contacts
 from rockframe.dynamics.bodies import BEFORE_HORIZONTAL, ROTATION, VERTICAL
-from rockframe.dynamics.body import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, BodyState
+from rockframe.dynamics.body import PIVOT_CENTRE, PIVOT_LEFT, PIVOT_RIGHT, Attitude, BodyState
 from rockframe.dynamics.chain import rows as at
 from rockframe.dynamics.chain.any_base import ON_RIGID
 from rockframe.dynamics.chain.impact import BOTH, LEFT_ONLY, RIGHT_ONLY, Attempt, attempt
@@ -45,11 +45,6 @@ class RigidCorners(Chain):
     def is_rigid(self, k: int) -> bool:
         """Whether a body stands on a rigid base."""
         return self.number(k, at.LAW) == ON_RIGID
-
-    @inlined
-    def band(self) -> int:
-        """Give the half-width of the band of the matrix: those farther apart share no body."""
-        return 5
 
     @kernel
     def bearing(self, mode: int) -> int:
@@ -126,8 +121,8 @@ class RigidCorners(Chain):
         room[i + at.LEFT_CORNER] = room[i + at.RIGHT_CORNER] = NONE
         if not self.is_rigid(k) or part.flies(standing.contact):
             return count
-        body = self.standing_state(k, standing, state)
-        attitude = part.body.attitude(body.rotation)
+        body, a = self.standing_state(k, standing, state), i + at.ATTITUDE
+        attitude = Attitude(room[a], room[a + 1], room[a + 2])
         line = part.body.base_line(body, attitude)
         rate = body.angular_velocity if moves else 0.0
         bends = part.body.end_accelerations(attitude, rate, 0.0, 0.0)
@@ -261,7 +256,21 @@ class RigidCorners(Chain):
             moving = k
         if moving == self.body_count:
             return self.find_forces(mode, state, ground)
+        if moving == 0 and self.variables() == 0:
+            out = self.slopes()
+            for i in range(len(out)):
+                out[i] = 0.0
+            return out
         return self.accelerate_first(moving, mode, state, ground)
+
+    @inlined
+    def is_at_rest(self, mode: int) -> bool:
+        """Whether all bodies rest on rigid bases, and none slips."""
+        rests = True
+        for k in range(self.body_count):
+            rests &= self.bearing(mode) >> 2 * k & BOTH == BOTH
+            rests &= not self.part_mode(mode, k).slides
+        return rests
 
     @inlined
     def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:

@@ -45,10 +45,17 @@ class MovingBodies(Rows):
 
     @kernel
     def moving_in(self, mode: int) -> int:
-        """Give the number of coordinates that move: all but the lowest body's where it is held."""
+        """Give how many coordinates move: none at rest, else all but a held lowest one."""
+        if self.is_at_rest(mode):
+            return 0
         lowest = self.body_count - 1
         free = self.on_base(lowest).is_free(self.part_mode(mode, lowest))
         return DEGREES * self.body_count - (0 if free else 1)
+
+    @inlined
+    def is_at_rest(self, mode: int) -> bool:
+        """Whether all bodies rest on rigid bases: none does here."""
+        return False
 
     @kernel
     def relaxation_in(self, mode: int) -> float:
@@ -112,11 +119,6 @@ class MovingBodies(Rows):
         return count
 
     @inlined
-    def band(self) -> int:
-        """Give the half-width of the band of the matrix: those farther apart share no body."""
-        return 1
-
-    @inlined
     def stand_still(self, room: Vector, out: Vector) -> None:
         """Set the accelerations of bodies in full contact with a rigid base to zero: none here."""
 
@@ -126,7 +128,8 @@ class MovingBodies(Rows):
     ) -> None:
         """Add the constraint that keeps a sliding end at its base, :eq:`eq-sliding-contact`."""
         i, part, body = k * PLACES, self.on_base(k), self.state_of(k, state)
-        attitude = part.body.attitude(body.rotation)
+        a = i + at.ATTITUDE
+        attitude = Attitude(room[a], room[a + 1], room[a + 2])
         line = part.body.base_line(body, attitude)
         left = part.base.is_held(standing.contact, True)
         on_left, on_right = part.body.end_accelerations(attitude, body.angular_velocity, 0.0, 0.0)
@@ -137,13 +140,14 @@ class MovingBodies(Rows):
         add_constraint(self, which, k, 0.0, 1.0, lever, wanted, room, rows)
         holds = which * CONSTRAINT + at.HOLDS
         write_direction(self, k, 1.0, 0.0, -room[i + at.REACH], holds, room, rows)
+        rows[which * CONSTRAINT + at.UNSYMMETRIC] = 1.0
 
     @kernel
     def solve(self, moving: int, count: int, room: Vector) -> None:
         """Solve for the forces of constraints, and the accelerations of bodies and coordinates."""
         rows = self.constraints()
         forget_trial(self, room)
-        solve_motion(self, moving, 0, count, self.band(), room, rows, self.matrix())
+        solve_motion(self, moving, 0, count, room, rows, self.matrix())
         for which in range(count):  # the last constraint of a body is the one along its base
             first = which * CONSTRAINT
             room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]

@@ -154,6 +154,7 @@ class TriedSlips(SlipperyBases, RigidChain):
             rows[holds] += x
             rows[holds + 1] += y
             rows[holds + 2] -= ratio * reach
+            rows[which * CONSTRAINT + at.UNSYMMETRIC] = 1.0
             if k + 1 < self.body_count:
                 rows[holds + 3] -= x
                 rows[holds + 4] -= y
