@@ -100,7 +100,10 @@ class Equations(Protocol):
         ...
 
     def moving_in(self, mode: int) -> int:
-        """Give the number of leading coordinates that move in a mode."""
+        """Give the number of leading coordinates that move in a mode.
+
+        If it is 0 and there are no variables of first order, the powers of the mode must be 0.
+        """
         ...
 
     def contact_state_of(self, mode: int, k: int) -> int:
