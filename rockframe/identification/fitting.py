@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, cast
 
 import numpy as np
@@ -44,6 +44,22 @@ class Solution:
     evaluations: int  # number of trials, without those for derivatives
     at_bound: Any  # which unknowns are at a bound
     seen: Any  # which unknowns have an effect on the residuals
+    freedom: float  # degrees of freedom from which the noise is known
+
+    @property
+    def lengths(self) -> Array:
+        """Norms of the derivatives by each unknown, 1 for unknowns without effect."""
+        return np.where(self.seen, np.linalg.norm(self.jacobian, axis=0), 1.0)
+
+    @property
+    def directions(self) -> Array:
+        """The derivatives over their norms, zero for unknowns without effect."""
+        return np.where(self.seen, self.jacobian, 0.0) / self.lengths
+
+    def leverages(self) -> Array:
+        """Give how much of each residual the unknowns take up; the sum is their number."""
+        left, singular, _ = np.linalg.svd(self.directions, full_matrices=False)
+        return np.sum(left[:, singular > _SINGULAR * singular[0]] ** 2, axis=1)
 
 
 @dataclass(frozen=True)
@@ -111,6 +127,7 @@ def minimize(
         evaluations=int(found.nfev),
         at_bound=seen & (room < _AT_BOUND),
         seen=seen,
+        freedom=found.fun.size - found.x.size,
     )
 
 
@@ -120,18 +137,15 @@ def uncertainty_of(solution: Solution, confidence: float) -> Uncertainty:
 
     count, size = solution.jacobian.shape
     freedom = count - size
-    reach = float(stdtrit(freedom, 0.5 * (1.0 + confidence)))
-    length = np.linalg.norm(solution.jacobian, axis=0)
-    seen = solution.seen
-    directions = np.where(seen, solution.jacobian, 0.0) / np.where(seen, length, 1.0)
-    _, singular, rows = np.linalg.svd(directions, full_matrices=False)
+    reach = float(stdtrit(solution.freedom, 0.5 * (1.0 + confidence)))
+    _, singular, rows = np.linalg.svd(solution.directions, full_matrices=False)
     determined = singular > _SINGULAR * singular[0]
     # an unknown with a share in a direction that the data do not determine is itself undetermined
-    lost = ~seen | (np.sum(rows[~determined] ** 2, axis=0) > _SINGULAR)
+    lost = ~solution.seen | (np.sum(rows[~determined] ** 2, axis=0) > _SINGULAR)
     inverse = (rows[determined].T / singular[determined] ** 2) @ rows[determined]
     variance = float(solution.residuals @ solution.residuals) / freedom
     spread = np.sqrt(np.diag(inverse))
-    error = math.sqrt(variance) * spread / np.where(seen, length, 1.0)
+    error = math.sqrt(variance) * spread / solution.lengths
     correlation = inverse / np.where(spread > 0.0, np.outer(spread, spread), 1.0)
     correlation[lost, :] = correlation[:, lost] = math.nan
     return Uncertainty(np.where(lost, math.nan, error), correlation, reach)
@@ -189,11 +203,13 @@ def fit_peaks(
     sizes = weights = _first_weights(measured)
     misfit = _misfit_of(prediction, measured, weights)
     solution = minimize(misfit, started_at(unknowns, _fit_roughly(misfit, unknowns).values))
-    for _ in range(0 if measured.time is None else _WEIGHTINGS):
+    if measured.time is None:
+        return solution
+    for _ in range(_WEIGHTINGS):
         weights = _reweighted(solution, weights, measured, sizes)
         misfit = _misfit_of(prediction, measured, weights)
         solution = minimize(misfit, started_at(unknowns, solution.values))
-    return solution
+    return replace(solution, freedom=min(_freedoms(solution, measured)))
 
 
 def _fit_roughly(residuals: Callable[[Array], Array], unknowns: Sequence[Unknown]) -> Solution:
@@ -240,15 +256,21 @@ def _reweighted(
 ) -> Weights:
     """Estimate the noise of rotations and of times from their residuals."""
     count = measured.rotation.size
-    # the unknowns lower the degrees of freedom of both in proportion to their numbers of data
-    share = math.sqrt(solution.residuals.size / (solution.residuals.size - solution.values.size))
     least = _LEAST_WEIGHT / _FIRST_WEIGHT
-    rotations, times = solution.residuals[:count], solution.residuals[count:]
+    kinds = solution.residuals[:count], solution.residuals[count:]
+    rotation, time = (
+        math.sqrt(float(of @ of) / freedom)
+        for of, freedom in zip(kinds, _freedoms(solution, measured), strict=True)
+    )
     return Weights(
-        max(share * _rms(rotations) * weights.rotation, least * sizes.rotation),
-        max(share * _rms(times) * weights.time, least * sizes.time),
+        max(rotation * weights.rotation, least * sizes.rotation),
+        max(time * weights.time, least * sizes.time),
     )
 
 
-def _rms(values: Array) -> float:
-    return math.sqrt(float(np.mean(values**2)))
+def _freedoms(solution: Solution, measured: MeasuredPeaks) -> tuple[float, float]:
+    """Give the degrees of freedom of rotations and of times, at least 1."""
+    leverages, count = solution.leverages(), measured.rotation.size
+    kinds = leverages[:count], leverages[count:]
+    rotation, time = (max(1.0, of.size - float(np.sum(of))) for of in kinds)
+    return rotation, time

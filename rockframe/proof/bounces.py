@@ -166,9 +166,9 @@ class _Bounds:
             else:  # the window ends as the ground begins to lift the block
                 push = upper(push.union(-pull.least))
         root = upper((growth * window / (2 * e)).exp())
-        if not root < 2:
-            return None
         left = upper((self.left + (2 * push * reach).sqrt() + push * window) * root)
+        if not left <= 2 * self.left:  # else they may go beyond `reach`
+            return None
         least = ball(min((pull.least.lower() for pull in pulls), key=float))
         if least > 0:
             lost = (1 - e) * least / 2
@@ -199,7 +199,8 @@ def _lifted(
         reach = upper(bounds.height + (3 * speed + fastest * span * span) * span)
         back = Pull.of(problem, -sign, reach, ground)
         stiff = stiffness(UNIT * reach * sign, corner, ground)
-        if not (back.least > 0 and stiff > 0 and reach < corner.limit):
+        limits = problem.right.limit, problem.left.limit
+        if not (back.least > 0 and stiff > 0 and all(reach < limit for limit in limits)):
             return None
         root = upper((back.faster / back.least * span / 2).exp())
         down = upper((speed + fastest * waited * waited) * root)

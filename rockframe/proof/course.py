@@ -109,6 +109,8 @@ class Course:
         latest = ball(at.upper())
         if at < left:
             during, ground = ground.at(at), ground.at(latest)
+        elif not problem.joins(self.number):
+            raise Undecided(_UNSURE)
         else:  # some members lift before the sample, some after it
             self.number, self.after, latest = self.number + 1, ZERO, latest - left
             following = problem.ground(self.number)

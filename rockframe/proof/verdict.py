@@ -131,9 +131,10 @@ class Proof:
 
     def __str__(self) -> str:
         """Say what has been proved, and for which inputs."""
-        between = "this record, joined by straight lines,"
+        scaled = "" if self.scale == 1.0 else f" times {self.scale!r}"
+        between = f"this record{scaled}, joined by straight lines,"
         if self.analytic:
-            between = "this motion, the polynomials that runs take,"
+            between = f"this motion{scaled}, the polynomials that runs take,"
         of = f"for the numbers of this block and {between} and for {self.law}"
         within = {
             f"restitution within {self.restitution_tolerance:g}": self.restitution_tolerance,

@@ -4,7 +4,7 @@ The run writes Newton's and Euler's laws down with the force that holds the base
 by extrapolation of the midpoint rule, which has nothing in common with the prover's series.
 """
 
-from functools import cache
+from functools import cache, partial
 from types import SimpleNamespace
 
 import mpmath
@@ -15,10 +15,13 @@ import rockframe as rf
 
 pytest.importorskip("flint", reason="python-flint is not installed")
 
+from rockframe.dynamics.pads import CLEAR as CLEARS
+from rockframe.dynamics.pads import TOUCHING as HOLDS
 from rockframe.proof.balls import ball, working_precision
 from rockframe.proof.pads import flow, law, way
 from rockframe.proof.pads.verdict import way_of
 from rockframe.proof.problem import Undecided
+from rockframe.signals.motion import Motion, Signal
 from rockframe.simulation.plan import plan_run, start_of
 
 pytestmark = pytest.mark.wide
@@ -332,6 +335,73 @@ def test_the_set_of_a_box_holds_the_run_from_its_corner():
     assert found.missed == 0
     assert found.seen > KNOTS // 2
     assert max(float(one.rad()) for one in found.last) < 1e-3
+
+
+JUMP = 16  # the sample at which the ground jumps
+
+
+def about_a_jump(moved):
+    """Follow a set, or one of its members, that lands just before the ground jumps."""
+    lands = 0.25655462079917534  # by the proof for the centre
+    system = rf.System(EVEN, FIRM, gravity="9.81 m/s^2")
+    start = rf.InitialState(rotation="0.1 rad")
+    still = rf.GroundMotion.from_arrays(([0.0, 0.0], "m/s^2"), "1 s")
+    plan = plan_run(system.assembly, still, initial=start, outputs=None, duration=None)
+    mode, state, _ = system.assembly.model.initial(start_of(plan.initial))
+    pieces = np.zeros((JUMP + 2, 6))
+    pieces[JUMP] = [-400.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    motion = Motion(Signal(lands * (1 + 1e-11) / JUMP, np.append(pieces[:, 0], 0.0), pieces))
+    one = way_of(
+        system.assembly.model.system, mode, state, motion, system.assembly.options.slope,
+        system.assembly.setting.overturning_angles,
+    )  # fmt: skip
+    moved(one)
+    for _ in range(JUMP + 1):
+        one._to_next_knot()
+    return one.states.box(one.weights)
+
+
+def test_members_that_land_on_both_sides_of_a_jump_of_the_ground_are_enclosed():
+    radii = np.array([1e-10, 1e-10, 1e-10, 1e-10, 0.0])
+
+    def widen(one):
+        one.states = one.states._replace(spread=radii / one.weights)
+
+    def move(signs, one):
+        shifts = zip(one.states.centre, signs * radii, strict=True)
+        one.states = one.states._replace(centre=[a + ball(float(b)) for a, b in shifts])
+
+    with working_precision(BITS):
+        box = about_a_jump(widen)
+        for signs in ((1, 1, 1, 1, 0), (1, -1, 1, -1, 0), (-1, 1, -1, 1, 0), (-1, -1, -1, -1, 0)):
+            state = about_a_jump(partial(move, np.array(signs)))
+            assert all(a.overlaps(b) for a, b in zip(box, state, strict=True))
+
+
+@pytest.mark.parametrize("restraint", ["centre", "contact-state"])
+def test_a_corner_that_may_lift_off_before_the_other_one_lands_is_undecided(restraint):
+    """The left corner lands within some 3e-6 s, in which the right pad may cease to press."""
+    system = rf.System(EVEN, FIRM, restraint=restraint, gravity="9.81 m/s^2")
+    still = rf.GroundMotion.from_arrays(([0.0, 0.0], "m/s^2"), "1 s").si
+    model, options = system.assembly.model, system.assembly.options
+    limits = system.assembly.setting.overturning_angles
+    mode, state, _ = model.initial(start_of(rf.InitialState()))
+    with working_precision(BITS):
+        one = way_of(model.system, mode, state, still, options.slope, limits)
+        one.standing = law.Standing(CLEARS, HOLDS)
+        tall, wide = float(one.pads.height), float(one.pads.left)
+        rotation, falls, sunk = 1e-4, -0.3, float(one.pads.settlements[0])
+        height = sunk - tall * (1 - np.cos(rotation)) - wide * np.sin(rotation)
+        depth = 2 * wide * np.sin(rotation)
+        rises = depth * float(one.pads.stiffness) / float(one.pads.damping)
+        levers = (tall * np.sin(rotation) + side * wide * np.cos(rotation) for side in (1, -1))
+        left, right = levers
+        rate = (falls - rises) / (left - right)
+        box = [rotation, rate, height, falls - left * rate, 0.0]
+        box = [ball(value, 1e-6 * (k == 2)) for k, value in enumerate(box)]
+        ground = one.shaking.ground(0)
+        with pytest.raises(Undecided, match="the contacts about a change"):
+            one._crossed(ground, ball(0.1), box, law.Guard("gap", True), 1.0)
 
 
 def short_series(one):

@@ -8,7 +8,7 @@ import rockframe as rf
 pytest.importorskip("flint", reason="python-flint is not installed")
 
 from rockframe.proof import bounces
-from rockframe.proof.balls import ball, working_precision
+from rockframe.proof.balls import UNIT, ball, working_precision
 from rockframe.proof.bounces import Instant, Lifted, settle
 from rockframe.proof.problem import Deviations, Problem
 
@@ -94,6 +94,29 @@ def test_bounces_that_lose_more_than_they_do_are_caught(monkeypatch):
     system, instant = settled(block, motion)
     until = instant.number * STEP + float(instant.after)
     assert any(state != (0.0, 0.0) for state in members(system, motion, until))
+
+
+def test_rotations_that_grow_as_a_slow_ground_lifts_the_block_are_bounded():
+    """The ground takes three times 1/p to lift a block that it has nearly lifted at the start."""
+    system = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2")
+    assembly, lasts = system.assembly, "1.6 s"
+    verge = -9.81 * float(np.tan(assembly.model.system.right.angle))
+    motion = rf.GroundMotion.from_arrays(([0.9995 * verge, verge], "m/s^2"), lasts)
+    with working_precision(106):
+        problem = Problem.of(
+            assembly.model.system, motion.si, assembly.options.slope,
+            assembly.setting.overturning_angles, 1.0, Deviations(), 0.1,
+        )  # fmt: skip
+        window, speed = ball(1.6), ball(0.01)
+        bounds = bounces._Bounds(problem, ball(0), speed)
+        for halvings in range(4):
+            span = window / 2**halvings
+            found = bounds.over(problem.ground(0).at(UNIT * span), span)
+            run = system.simulate(
+                motion, duration=f"{float(span)} s", accuracy="reference",
+                initial=rf.InitialState(rotation="0 rad", angular_velocity="0.01 rad/s"),
+            )  # fmt: skip
+            assert found is None or float(run.peak_rotation) <= found.height
 
 
 def test_a_ground_that_may_jump_is_known_and_pays_for_it():

@@ -135,5 +135,6 @@ def test_the_sentence_encloses_the_time_of_overturning(system):
 def test_the_sentence_says_what_is_between_the_samples(base):
     standing = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"), base)
     assert "this record, joined by straight lines" in str(rf.prove(standing, pulse(1.0)))
+    assert "this record times 0.3, joined" in str(rf.prove(standing, pulse(1.0), scale=0.3))
     closed = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     assert "this motion, the polynomials that runs take" in str(rf.prove(standing, closed))

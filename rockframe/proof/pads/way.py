@@ -10,6 +10,7 @@ from rockframe.proof.balls import ZERO, Ball, Matrix, Row, ball, bits, times
 from rockframe.proof.pads.flow import Curve, StateSet, Step, step
 from rockframe.proof.pads.law import (
     SIZE,
+    Dual,
     Guard,
     PadBalls,
     Shaken,
@@ -243,13 +244,13 @@ class PadWay:
         """Enclose the image of a box whose members reach the zero of a guard near one time."""
         pads, standing = self.pads, self.standing
         value = guard_value(pads, guard, duals(box))
-        falling = along(value, rates_of(pads, standing, duals(box), _shaken(shaking, h)))
+        falling = along(value, rates_of(pads, standing, duals(box), self._shaken(shaking, h)))
         if not falling < 0:
             msg = "a contact that changes as it hardly moves"
             raise Undecided(msg)
         reach = 2.0 * float(value.value.abs_upper()) / float(falling.abs_lower()) + 1e-60
         window = ball(0, reach)
-        ground = _shaken(shaking, h + window)
+        ground = self._shaken(shaking, h + window)
         wide = _inflated(lambda at: rates_of(pads, standing, at, ground), box, window, self.weights)
         at = duals(wide)
         before = rates_of(pads, standing, at, ground)
@@ -262,6 +263,8 @@ class PadWay:
         if not window.contains(delay):
             msg = "the time of a change of contact is not enclosed"
             raise Undecided(msg)
+        others = [one for one in guards_of(standing) if one != guard]
+        self._resolved(others, self.fresh, at, before)
         met = [a + delay * b.value for a, b in zip(box, before, strict=True)]
         met = [a.intersection(b) for a, b in zip(met, wide, strict=True)]
         if guard.kind == "limit":
@@ -271,8 +274,9 @@ class PadWay:
         back = _inflated(
             lambda at: rates_of(pads, after.standing, at, ground), image, window, self.weights
         )
-        later = rates_of(pads, after.standing, duals(back), ground)
-        self._resolved(after, back, later)
+        at = duals(back)
+        later = rates_of(pads, after.standing, at, ground)
+        self._resolved(guards_of(after.standing), after.fresh, at, later)
         image = [a - delay * b.value for a, b in zip(image, later, strict=True)]
         slope = _saltation(after, before, later, guarded, falling)
         swing = reach * max(rate, _norm(later, self.weights), _norm(before, self.weights))
@@ -300,14 +304,22 @@ class PadWay:
         msg = "contacts that change without end at one instant"
         raise Undecided(msg)
 
-    def _resolved(self, after: Switched, state: Row, later: list[Any]) -> None:
-        """Prove the signs of all guards after a change."""
-        at = duals(state)
-        for one in guards_of(after.standing):
+    def _shaken(self, ground: GroundPiece, time: Ball) -> Shaken:
+        """Give the ground at a time from now, or at all times of a ball, in both intervals [s]."""
+        left = self.shaking.length(self.k) - self.offset
+        found = ground.at(time)
+        if not time < left:
+            found = found.united(self.shaking.ground(self.k + 1).at(time - left))
+        return Shaken(found.along[0], found.weight[0])
+
+    def _resolved(
+        self, guards: list[Guard], fresh: tuple[Guard, ...], at: list[Dual], rates: list[Dual]
+    ) -> None:
+        """Prove that guards are positive, or rise from zero, while members change one by one."""
+        for one in guards:
             value = guard_value(self.pads, one, at)
-            good = along(value, later) > 0 if one in after.fresh else value.value > 0
-            if not good:
-                msg = "the contacts after a change are not resolved"
+            if not (value.value > 0 or (one in fresh and along(value, rates) > 0)):
+                msg = "the contacts about a change are not resolved"
                 raise Undecided(msg)
 
     def _swung(self, slope: Matrix, near: Ball) -> Matrix:
@@ -349,12 +361,6 @@ class _Crossed:
     image: Row  # states after it
     slope: Matrix  # derivative of these by the states before
     after: Switched
-
-
-def _shaken(ground: GroundPiece, time: Ball) -> Shaken:
-    """Give the ground at a time, or at all times of a ball [s]."""
-    now = ground.at(time)
-    return Shaken(now.along[0], now.weight[0])
 
 
 def _inflated(rates: Callable[[list[Any]], list[Any]], box: Row, window: Ball, weights: Any) -> Row:
