@@ -65,11 +65,11 @@ def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
     at_seconds = np.interp(seconds, times, absolute_velocity_history(signal))
     parts, starts, _ = _split_at_extrema(signal.pieces)
     count = len(signal.pieces)  # parts from this number on start at peaks
-    times = np.concatenate([times, starts[count:] * signal.time_step])
-    size = np.abs(np.concatenate([signal.samples, parts[count:, 0]]))
+    times = np.concatenate([times, starts[count:] * signal.time_step, seconds])
+    size = np.abs(np.concatenate([signal.samples, parts[count:, 0], signal.at(seconds)]))
     order = np.argsort(times, kind="stable")
     times, size = times[order], size[order]
-    # a sample at a full second belongs to the seconds on both its sides
+    # the acceleration at a full second belongs to the seconds on both its sides
     rounding = 1e-9 * signal.time_step
     first = np.searchsorted(times, seconds[:-1] - rounding, side="left")
     last = np.searchsorted(times, seconds[1:] + rounding, side="right")

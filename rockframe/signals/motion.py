@@ -143,6 +143,9 @@ class Signal:
             for rounding; zero before the start and after the end [m s^-2].
         """
         place = np.asarray(time, dtype=np.float64) / self.time_step
+        if np.isnan(place).any():
+            msg = f"{OWNER}: times must be numbers, got nan"
+            raise ComponentError(msg)
         last = self.samples.size - 1
         nearest = np.rint(place)
         close = np.abs(place - nearest) <= _SAME_INSTANT * np.maximum(nearest, 1.0)
