@@ -1,11 +1,10 @@
 """Checks of arguments without a unit: one of a few words, a text, a whole number, or a dataset."""
 
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
 from enum import StrEnum
 from inspect import signature
 from operator import index
-from typing import Any, SupportsIndex, TypeVar, cast
+from typing import Any, SupportsIndex, TypeGuard, TypeVar, cast
 
 import xarray as xr
 
@@ -54,13 +53,17 @@ def one_of_names(value: object, known: Iterable[str], *, owner: str, name: str) 
     raise ComponentError(msg)
 
 
+def iterates(value: object) -> TypeGuard[Iterable[Any]]:
+    """Whether a value has elements; arrays and quantities without dimensions only seem to."""
+    return isinstance(value, Iterable) and getattr(value, "ndim", 1) != 0
+
+
 def several(value: object, *, owner: str, name: str, of: str) -> list[Any]:
     """Read an argument that is a sequence; a single text counts as one of one element."""
     if isinstance(value, str):
         return [value]
-    if isinstance(value, Iterable) and not isinstance(value, Mapping | bytes):
-        with suppress(TypeError):  # for example an array without dimensions
-            return list(cast("Iterable[Any]", value))
+    if iterates(value) and not isinstance(value, Mapping | bytes):
+        return list(value)
     msg = f"{owner}: {name} must be a list of {of}, got {shown(value)}"
     raise ComponentError(msg)
 

@@ -6,12 +6,12 @@ It has mass, inertia, shape factor and space proportion of its members.
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Final
 
-from rockframe.arguments import one_of_words
+from rockframe.arguments import iterates, one_of_words
 from rockframe.components.frame_members import Member, MemberSI
 from rockframe.components.frame_regular import INFILL_THICKNESS, SLAB_THICKNESS, RegularFrame
 from rockframe.components.shapes.standing import CENTRED, centre_of_mass, mean_by_mass
@@ -256,7 +256,7 @@ def _of_list(
 
     depth = None if measures.get("depth") is None else length("depth")
     width, height = length("width"), length("height")
-    if isinstance(members, str | Member | Mapping) or not isinstance(members, Iterable):
+    if isinstance(members, str | Member | Mapping) or not iterates(members):
         msg = f"{owner}: members must be a list of Member, got {shown(members)}"
         raise ComponentError(msg)
     built = tuple(_member(entry, k, owner) for k, entry in enumerate(members))

@@ -282,16 +282,15 @@ class HorizontalPair(metaclass=Proposing):
 
 def axis_and_intensities(pair: HorizontalPair) -> tuple[float, float, float]:
     """Compute :eq:`eq-principal-axes`: angle [rad], principal Arias intensities [m s^-1]."""
-    own = [_intensity(one) for one in pair.signals]
-    both = _intensity(pair.rotated("45 deg").si.horizontal)
-    common = both - 0.5 * (own[0] + own[1])
-    angle = 0.5 * math.atan2(2.0 * common, own[0] - own[1])
-    middle, spread = 0.5 * (own[0] + own[1]), math.hypot(common, 0.5 * (own[0] - own[1]))
+    # a record with a pulse at a right angle is a polynomial in every direction, also in its own
+    first, both, second = (
+        float(arias_history(pair.rotated(angle).si.horizontal, STANDARD_GRAVITY)[-1])
+        for angle in ("0 deg", "45 deg", "90 deg")
+    )
+    common = both - 0.5 * (first + second)
+    angle = 0.5 * math.atan2(2.0 * common, first - second)
+    middle, spread = 0.5 * (first + second), math.hypot(common, 0.5 * (first - second))
     return angle, middle + spread, max(middle - spread, 0.0)
-
-
-def _intensity(signal: Signal) -> float:
-    return float(arias_history(signal, STANDARD_GRAVITY)[-1])
 
 
 def _check_alike(first: GroundMotion, other: GroundMotion, name: str, owner: str) -> None:

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 ArrayLike: TypeAlias = Quantity | xr.DataArray | tuple[Sequence[float] | npt.NDArray[Any], str]
 
-_TIME_AXES: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _EXAMPLE: Final = "(values, 'm/s^2')"
 
 
@@ -178,7 +177,11 @@ def relative_seconds(axis: object, unit: object) -> Array | None:
         if np.isnat(values).any():
             return None
         return (values - values[0]) / np.timedelta64(1, "s")
-    scale = _TIME_AXES.get(str(unit))
-    if values.dtype.kind != "f" or scale is None:
+    if values.dtype.kind != "f":
+        return None
+    one = str(unit).partition(" since ")[0]  # as UDUNITS writes times since a date
+    try:
+        scale = to_si(f"1 {one}", TIME, owner="relative_seconds", name="unit")
+    except UnitsError:  # such as numbers of samples
         return None
     return (values - values[0]).astype(np.float64) * scale

@@ -3,11 +3,12 @@
 import gzip
 import io
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Final, TypeAlias, cast
 
+from rockframe.arguments import iterates
 from rockframe.errors import RecordError, shown
 from rockframe.records.archives import (
     MAXIMUM_BYTES,
@@ -166,8 +167,8 @@ def files_of(given: object) -> Iterator[Source | Unread]:
     elif hasattr(given, "read"):
         name = getattr(given, "name", None)
         yield from _of_open(cast("IO[bytes]", given), name if isinstance(name, str) else _OPEN)
-    elif isinstance(given, Iterable) and not isinstance(given, str):
-        for one in cast("Iterable[Any]", given):
+    elif iterates(given) and not isinstance(given, str):
+        for one in given:
             yield from files_of(one)
     else:
         path = path_of(given)

@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Final, cast
 
-from rockframe.arguments import one_of_names
+from rockframe.arguments import iterates, one_of_names
 from rockframe.errors import ComponentError, shown
 from rockframe.notebook import card, number_with_unit
 from rockframe.proposals import proposing
@@ -299,7 +299,7 @@ def checks_of(value: object, owner: str) -> list[CodeCheck]:
     several = [value] if isinstance(value, CodeCheck) else value
     if several is None:
         return []
-    if not isinstance(several, Iterable) or isinstance(several, str):
+    if not iterates(several) or isinstance(several, str):
         msg = f"{owner}: checks must be of rf.codes, one or a list of them, got {shown(several)}"
         raise ComponentError(msg)
     found = list(cast("Iterable[object]", several))

@@ -3,12 +3,12 @@
 import hashlib
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Final, cast
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, truth
+from rockframe.arguments import checked_dataset, iterates, truth
 from rockframe.errors import SchemaError, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA, dated, without_fill_values
@@ -153,8 +153,8 @@ def concat(
 
 
 def _each(runs: object) -> Iterable[Any]:
-    if isinstance(runs, Iterable) and not isinstance(runs, str | xr.Dataset | xr.DataArray):
-        return cast("Iterable[Any]", runs)
+    if iterates(runs) and not isinstance(runs, str | xr.Dataset | xr.DataArray):
+        return runs
     msg = f"{_OWNER}: found {shown(runs)}; expected a list of datasets"
     raise SchemaError(msg)
 
@@ -274,8 +274,7 @@ def _same(one: object, other: object) -> bool:
 def _labelled(
     joined: xr.Dataset, dim: str, labels: Sequence[Any] | np.ndarray | xr.DataArray
 ) -> xr.Dataset:
-    several = isinstance(labels, Iterable)  # pyright: ignore[reportUnnecessaryIsInstance]
-    if isinstance(labels, str) or not several:
+    if isinstance(labels, str) or not iterates(labels):
         msg = f"{_OWNER}: labels must be a list of values, one for each run, got {shown(labels)}"
         raise SchemaError(msg)
     each = labels.to_numpy() if isinstance(labels, xr.DataArray) else list(labels)

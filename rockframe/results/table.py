@@ -8,7 +8,7 @@ from typing import Any, Final
 import pandas as pd
 import xarray as xr
 
-from rockframe.arguments import checked_dataset, one_of_words
+from rockframe.arguments import checked_dataset, iterates, one_of_words
 from rockframe.errors import SchemaError
 from rockframe.proposals import hinted
 from rockframe.results.schema import SCHEMA
@@ -109,7 +109,7 @@ def table(
     several: Any = runs
     if isinstance(runs, Mapping):
         labels, several = _keys(runs), runs.values()
-    elif not isinstance(several, Iterable) or isinstance(several, str | xr.DataArray):
+    elif not iterates(several) or isinstance(several, str | xr.DataArray):
         several = [several]
     items = [
         _each_alone(chosen.of_all(checked_dataset(run, owner=_OWNER)), kind) for run in several

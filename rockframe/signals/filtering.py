@@ -4,27 +4,23 @@ The matrices of a step and the extremum inside it come from :mod:`rockframe.sign
 the compiled counterpart; the recurrence from step to step is done by SciPy.
 """
 
-from collections.abc import Callable
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
 from rockframe.signals.arrays import Array
-from rockframe.signals.motion import divided, knots_of, slopes_of
+from rockframe.signals.motion import divided, slopes_of
 from rockframe.signals.oscillator import (
     QUANTITIES,
     STEPS_PER_PERIOD,
+    bound_of,
     fill_step,
     turning_value,
 )
 
-Rows: TypeAlias = NDArray[np.intp]
-
-
 _STEPS_AT_ONCE: Final = 250_000
-_KNOTS_AT_ONCE: Final = 4096
+_STEPS_IN_BLOCK: Final = 4096
 
 
 class _Steps:
@@ -33,9 +29,11 @@ class _Steps:
     def __init__(self, length: float, pieces: Array) -> None:
         self.length = length
         self.pieces = pieces
-        self.knots = length**2 * knots_of(pieces)
-        slopes = slopes_of(pieces)
-        self.slopes = length**2 * slopes[:, 0], length**2 * slopes.sum(axis=1)
+        # at starts and ends of the steps, shape (2, n): the ground may jump between them
+        self.ground, self.slopes = (
+            length**2 * np.array([one[:, 0], one.sum(axis=1)])
+            for one in (pieces, slopes_of(pieces))
+        )
 
 
 def filter_all(pieces: Array, time_step: float, damping: float, periods: Array) -> Array:
@@ -91,25 +89,20 @@ def _follow_pair(
     most: Array,
 ) -> None:
     """Follow an oscillator under both components; update `state` and `most`, displacements (SI)."""
-    histories = np.array(
-        [_histories(one, period, damping, start) for one, start in zip(steps, state, strict=True)]
+    states = np.array(
+        [_states(one, period, damping, start) for one, start in zip(steps, state, strict=True)]
     )
-    state[:] = histories[:, :2, -1] / [1.0, steps[0].length]
-    for first in range(0, histories.shape[2] - 1, _KNOTS_AT_ONCE):
-        knots = histories[:, :, first : first + _KNOTS_AT_ONCE + 1]
-        size = np.hypot(knots[0], knots[1])
-        # no direction has a peak in a step above displacement plus velocity V at its end
-        reach = np.flatnonzero(size[0, 1:] + size[1, 1:] > most.min())
+    for first in range(0, states.shape[3], _STEPS_IN_BLOCK):
+        block = states[..., first : first + _STEPS_IN_BLOCK]
+        (_, size), (_, speed), bends = np.hypot(*block)
+        # no direction has a larger peak in a step
+        reach = np.flatnonzero(bound_of(size, speed, *bends) > most.min())
         if reach.size == 0:
             continue
-        u, v, w = np.einsum("dc,cqn->qdn", directions, knots[:, :, reach])
-        next_u, next_v, next_w = np.einsum("dc,cqn->qdn", directions, knots[:, :, reach + 1])
-        most[:] = np.maximum(most, np.abs(next_u).max(axis=1))
-        d, n = np.nonzero((v * next_v < 0.0) & (np.abs(next_u) + np.abs(next_v) > most[:, None]))
-        inside: Any = turning_value(
-            u[d, n], v[d, n], w[d, n], next_u[d, n], next_v[d, n], next_w[d, n]
-        )
-        np.maximum.at(most, d, np.abs(inside))
+        u, v, w = np.einsum("dc,cqen->qedn", directions, block[..., reach])
+        most[:] = np.maximum(most, np.abs(u[1]).max(axis=1))
+        d, n = np.nonzero((v[0] * v[1] < 0.0) & (bound_of(u[1], v[1], *w) > most[:, None]))
+        np.maximum.at(most, d, np.abs(_turning(u[:, d, n], v[:, d, n], w[:, d, n])))
 
 
 def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array) -> Any:
@@ -124,41 +117,32 @@ def _may_swing_higher(periods: Array, damping: float, state: Array, found: Array
 
 def _follow(steps: _Steps, period: float, damping: float, state: Array, greatest: Array) -> None:
     """Follow one oscillator; update `state` and its peaks in `greatest` (SI)."""
-    length = steps.length
-    kappa = 2.0 * np.pi * length / period
-    u, v, w = _histories(steps, period, damping, state)
+    kappa = 2.0 * np.pi * steps.length / period
     stiffness, drag = kappa**2, 2.0 * damping * kappa
-    pull = drag * v + stiffness * u
+    u, v, w = _states(steps, period, damping, state)
     rate = drag * w + stiffness * v
-
-    def jerk(rows: Rows) -> tuple[Array, Array]:
-        start, end = steps.slopes
-        return -rate[rows] - start[rows], -rate[rows + 1] - end[rows]
-
-    def bend(rows: Rows) -> tuple[Array, Array]:
-        start, end = jerk(rows)
-        return drag * start + stiffness * w[rows], drag * end + stiffness * w[rows + 1]
-
+    jerk = -rate - steps.slopes
     found = (
-        _peak(u, v, lambda rows: (w[rows], w[rows + 1])),
+        _peak(u, v, w),
         _peak(v, w, jerk),
-        _peak(pull, rate, bend),
+        _peak(drag * v + stiffness * u, rate, drag * jerk + stiffness * w),
     )
-    greatest[:] = np.maximum(greatest, found / length ** np.arange(QUANTITIES))
-    state[:] = u[-1], v[-1] / length
+    greatest[:] = np.maximum(greatest, found / steps.length ** np.arange(QUANTITIES))
 
 
-def _histories(steps: _Steps, period: float, damping: float, state: Array) -> Array:
-    """Give u, V and W at the knots, shape (3, n + 1), from displacement and velocity (SI)."""
+def _states(steps: _Steps, period: float, damping: float, state: Array) -> Array:
+    """Give u, V and W at starts and ends of steps, shape (3, 2, n); update `state` (SI)."""
     length = steps.length
     kappa = 2.0 * np.pi * length / period
     step = np.empty((2, 2 + steps.pieces.shape[1]))
     fill_step(kappa, damping, step)
-    u, v = _march(step, length**2 * step[:, 2:] @ steps.pieces.T, state * [1.0, length])
-    return np.array([u, v, -2.0 * damping * kappa * v - kappa**2 * u - steps.knots])
+    knots = _march(step, length**2 * step[:, 2:] @ steps.pieces.T, state * [1.0, length])
+    state[:] = knots[:, -1] / [1.0, length]
+    u, v = np.stack([knots[:, :-1], knots[:, 1:]], axis=1)
+    return np.array([u, v, -2.0 * damping * kappa * v - kappa**2 * u - steps.ground])
 
 
-def _march(step: Array, driven: Array, start: Array) -> tuple[Array, Array]:
+def _march(step: Array, driven: Array, start: Array) -> Array:
     """Solve the two-by-two recurrence z(k+1) = A z(k) + d(k), one row at a time."""
     (uu, uv), (vu, vv) = step[:, :2].tolist()
     # decoupled by the theorem of Cayley and Hamilton: z(k+2) = tr A z(k+1) - det A z(k) + ...
@@ -170,19 +154,16 @@ def _march(step: Array, driven: Array, start: Array) -> tuple[Array, Array]:
     inputs[:, 0] += first
     inputs[:, 1:2] += (crossed @ first)[:, None]
     lines: Any = signal.lfilter([1.0], denominator, inputs)
-    u, v = np.concatenate([start[:, None], lines], axis=1)
-    return u, v
+    return np.concatenate([start[:, None], lines], axis=1)
 
 
-def _peak(value: Array, slope: Array, bends: Callable[[Rows], tuple[Array, Array]]) -> float:
-    """Give the greatest absolute value, at the knots and between them."""
-    peak = max(float(value.max()), -float(value.min()))
-    rows = np.flatnonzero(slope[:-1] * slope[1:] < 0.0)
-    rows = rows[np.abs(value[rows + 1]) + np.abs(slope[rows + 1]) > peak]
-    if rows.size == 0:
-        return peak
-    start, end = bends(rows)
-    inside: Any = turning_value(
-        value[rows], slope[rows], start, value[rows + 1], slope[rows + 1], end
-    )
-    return max(peak, float(np.max(np.abs(inside))))
+def _peak(value: Array, slope: Array, bend: Array) -> float:
+    """Give the greatest absolute value in all steps, from arrays of shape (2, n)."""
+    peak = float(np.abs(value).max())
+    turns = (slope[0] * slope[1] < 0.0) & (bound_of(value[1], slope[1], *bend) > peak)
+    inside = np.abs(_turning(value[:, turns], slope[:, turns], bend[:, turns]))
+    return float(inside.max(initial=peak))
+
+
+def _turning(value: Array, slope: Array, bend: Array) -> Any:
+    return turning_value(value[0], slope[0], bend[0], value[1], slope[1], bend[1])

@@ -18,6 +18,8 @@ from rockframe.signals.motion import (
     knots_of,
     roots_of,
     slopes_of,
+    split_at,
+    turned_in,
     turning_points,
 )
 from rockframe.signals.spectra import spectral_peaks
@@ -63,11 +65,11 @@ def standardized_absolute_velocity(signal: Signal, threshold: float) -> float:
     at_seconds = np.interp(seconds, times, absolute_velocity_history(signal))
     parts, starts, _ = _split_at_extrema(signal.pieces)
     count = len(signal.pieces)  # parts from this number on start at peaks
-    times = np.concatenate([times, starts[count:] * signal.time_step])
-    size = np.abs(np.concatenate([signal.samples, parts[count:, 0]]))
+    times = np.concatenate([times, starts[count:] * signal.time_step, seconds])
+    size = np.abs(np.concatenate([signal.samples, parts[count:, 0], signal.at(seconds)]))
     order = np.argsort(times, kind="stable")
     times, size = times[order], size[order]
-    # a sample at a full second belongs to the seconds on both its sides
+    # the acceleration at a full second belongs to the seconds on both its sides
     rounding = 1e-9 * signal.time_step
     first = np.searchsorted(times, seconds[:-1] - rounding, side="left")
     last = np.searchsorted(times, seconds[1:] + rounding, side="right")
@@ -130,22 +132,16 @@ def _split_at_extrema(pieces: Array) -> tuple[Array, Array, Array]:
 
     Each part is monotone, so that it crosses a level once at most.
     """
-    starts, lengths, powers = np.arange(float(len(pieces))), np.ones(len(pieces)), pieces.shape[1]
+    starts, lengths = np.arange(float(len(pieces))), np.ones(len(pieces))
     slopes = slopes_of(pieces)
-    rows = np.flatnonzero(slopes[:, 0] * slopes.sum(axis=1) < 0.0)
+    rows = turned_in(slopes)
     if not rows.size:
         return pieces, starts, lengths
-    at, turning = roots_of(slopes[rows]), pieces[rows]
-    # Taylor's expansion about the turn
-    after = [
-        sum(math.comb(j, k) * turning[:, j] * at ** (j - k) for j in range(k, powers))
-        * (1.0 - at) ** k
-        for k in range(powers)
-    ]
-    parts = pieces.copy()
-    parts[rows], lengths[rows] = turning * at[:, None] ** np.arange(powers), at
+    at = roots_of(slopes[rows])
+    parts, (before, after) = pieces.copy(), split_at(pieces[rows], at)
+    parts[rows], lengths[rows] = before, at
     return (
-        np.concatenate([parts, np.stack(after, axis=1)]),
+        np.concatenate([parts, after]),
         np.concatenate([starts, rows + at]),
         np.concatenate([lengths, 1.0 - at]),
     )

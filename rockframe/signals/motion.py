@@ -143,6 +143,9 @@ class Signal:
             for rounding; zero before the start and after the end [m s^-2].
         """
         place = np.asarray(time, dtype=np.float64) / self.time_step
+        if np.isnan(place).any():
+            msg = f"{OWNER}: times must be numbers, got nan"
+            raise ComponentError(msg)
         last = self.samples.size - 1
         nearest = np.rint(place)
         close = np.abs(place - nearest) <= _SAME_INSTANT * np.maximum(nearest, 1.0)
@@ -392,7 +395,7 @@ def roots_of(pieces: Array) -> Array:
     low, high = np.zeros(len(pieces)), np.ones(len(pieces))
     if pieces.shape[1] == 2:
         return -pieces[:, 0] / pieces[:, 1]
-    rising = pieces[:, 0] < 0.0
+    rising = pieces[:, 0] < pieces.sum(axis=1)  # a start may be zero
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         before = (values_at(pieces, middle) < 0.0) == rising
@@ -400,15 +403,36 @@ def roots_of(pieces: Array) -> Array:
     return 0.5 * (low + high)
 
 
+def split_at(pieces: Array, place: Array) -> tuple[Array, Array]:
+    """Divide each row at its x, into the polynomials before and after, each with its own x."""
+    powers = range(pieces.shape[1])
+    after = [  # Taylor's expansion about x
+        sum(math.comb(j, k) * pieces[:, j] * place ** (j - k) for j in powers[k:])
+        * (1.0 - place) ** k
+        for k in powers
+    ]
+    return pieces * place[:, None] ** np.arange(len(powers)), np.stack(after, axis=1)
+
+
 def turning_points(pieces: Array) -> tuple[NDArray[np.intp], Array]:
     """Give the intervals whose slopes at both ends differ in sign, and the extrema in them."""
     slopes = slopes_of(pieces)
-    rows = np.flatnonzero(slopes[:, 0] * slopes.sum(axis=1) < 0.0)
+    rows = turned_in(slopes)
     return rows, values_at(pieces[rows], roots_of(slopes[rows]))
+
+
+def turned_in(values: Array) -> NDArray[np.intp]:
+    """Give the intervals at whose ends values differ in sign."""
+    return np.flatnonzero(values[:, 0] * values.sum(axis=1) < 0.0)
 
 
 def greatest(pieces: Array) -> float:
     """Give the greatest absolute value, also between the ends of intervals."""
-    _, between = turning_points(pieces)
-    ends = np.concatenate([pieces[:, 0], pieces.sum(axis=1), between])
-    return float(np.max(np.abs(ends)))
+    found = [pieces[:, 0], pieces.sum(axis=1), turning_points(pieces)[1]]
+    if pieces.shape[1] > 3:
+        # the slope may be zero twice, or once and at an end: once on each side of its extremum
+        bends = slopes_of(slopes_of(pieces))
+        rows = turned_in(bends)
+        halves = split_at(pieces[rows], roots_of(bends[rows]))
+        found += [turning_points(half)[1] for half in halves]
+    return float(np.max(np.abs(np.concatenate(found))))

@@ -96,6 +96,13 @@ def turning_value(
 
 
 @kernel
+def bound_of(end_value: Any, end_slope: Any, bend: Any, end_bend: Any) -> Any:
+    """Bound the extrema inside a step, between its ends."""
+    # half the greatest bend would do if the bend were linear
+    return abs(end_value) + abs(end_slope) + np.maximum(abs(bend), abs(end_bend))
+
+
+@kernel
 def shift_piece(pieces: Matrix, row: int, part: int, parts: int, shifted: Vector) -> None:
     """Write the polynomial of an interval as one of the x of a part of it."""
     powers = pieces.shape[1]
@@ -134,8 +141,6 @@ def march_oscillator(
     vu, vv, v0, v1 = step[1, 0], step[1, 1], force * step[1, 2], force * step[1, 3]
     u, v = state[0], state[1]
     pull = drag * v + stiffness * u
-    w = -pull - force * pieces[0, 0]
-    rate = drag * w + stiffness * v
     share = 1.0 / parts
     most_u, most_v, most_pull = abs(u), abs(v), abs(pull)
     for row in range(pieces.shape[0]):
@@ -157,30 +162,25 @@ def march_oscillator(
                     next_u += force * step[0, 2 + j] * shifted[j]
                     next_v += force * step[1, 2 + j] * shifted[j]
             next_pull = drag * next_v + stiffness * next_u
-            next_w = -next_pull - force * end_ground
-            next_rate = drag * next_w + stiffness * next_v
-            # an extremum inside the step is no larger than value plus slope at its end
-            if abs(next_u) + abs(next_v) > most_u:
-                most_u = max(most_u, abs(next_u))
-                if v * next_v < 0.0:
-                    most_u = max(most_u, abs(turning_value(u, v, w, next_u, next_v, next_w)))
-            if abs(next_v) + abs(next_w) > most_v:
-                most_v = max(most_v, abs(next_v))
-                if w * next_w < 0.0:
-                    jerk, next_jerk = -rate - force * slope, -next_rate - force * end_slope
-                    inside = turning_value(v, w, jerk, next_v, next_w, next_jerk)
-                    most_v = max(most_v, abs(inside))
-            if abs(next_pull) + abs(next_rate) > most_pull:
-                most_pull = max(most_pull, abs(next_pull))
-                if rate * next_rate < 0.0:
-                    jerk, next_jerk = -rate - force * slope, -next_rate - force * end_slope
-                    bend, next_bend = (
-                        drag * jerk + stiffness * w,
-                        drag * next_jerk + stiffness * next_w,
-                    )
-                    inside = turning_value(pull, rate, bend, next_pull, next_rate, next_bend)
-                    most_pull = max(most_pull, abs(inside))
-            u, v, w, pull, rate = next_u, next_v, next_w, next_pull, next_rate
+            # both ends from this step's own ground, which may jump between intervals
+            w, next_w = -pull - force * ground, -next_pull - force * end_ground
+            rate, next_rate = drag * w + stiffness * v, drag * next_w + stiffness * next_v
+            most_u = max(most_u, abs(next_u))
+            most_v = max(most_v, abs(next_v))
+            most_pull = max(most_pull, abs(next_pull))
+            if v * next_v < 0.0 and bound_of(next_u, next_v, w, next_w) > most_u:
+                most_u = max(most_u, abs(turning_value(u, v, w, next_u, next_v, next_w)))
+            jerk, next_jerk = -rate - force * slope, -next_rate - force * end_slope
+            if w * next_w < 0.0 and bound_of(next_v, next_w, jerk, next_jerk) > most_v:
+                most_v = max(most_v, abs(turning_value(v, w, jerk, next_v, next_w, next_jerk)))
+            bend, next_bend = drag * jerk + stiffness * w, drag * next_jerk + stiffness * next_w
+            if (
+                rate * next_rate < 0.0
+                and bound_of(next_pull, next_rate, bend, next_bend) > most_pull
+            ):
+                inside = turning_value(pull, rate, bend, next_pull, next_rate, next_bend)
+                most_pull = max(most_pull, abs(inside))
+            u, v, pull = next_u, next_v, next_pull
     state[0], state[1] = u, v
     peaks[0] = max(peaks[0], most_u)
     peaks[1] = max(peaks[1], most_v)
@@ -246,21 +246,12 @@ def raise_peaks(
     least = np.inf
     for d in range(directions.shape[0]):
         c, s = directions[d, 0], directions[d, 1]
-        u, v = c * end[0] + s * end[3], c * end[1] + s * end[4]
-        # an extremum inside the step is no larger than value plus slope at its end
-        if abs(u) + abs(v) > most[d]:
-            most[d] = max(most[d], abs(u))
-            before = c * start[1] + s * start[4]
-            if before * v < 0.0:
-                inside = turning_value(
-                    c * start[0] + s * start[3],
-                    before,
-                    c * start[2] + s * start[5],
-                    u,
-                    v,
-                    c * end[2] + s * end[5],
-                )
-                most[d] = max(most[d], abs(inside))
+        u, v, w = c * end[0] + s * end[3], c * end[1] + s * end[4], c * end[2] + s * end[5]
+        most[d] = max(most[d], abs(u))
+        before, bend = c * start[1] + s * start[4], c * start[2] + s * start[5]
+        if before * v < 0.0 and bound_of(u, v, bend, w) > most[d]:
+            inside = turning_value(c * start[0] + s * start[3], before, bend, u, v, w)
+            most[d] = max(most[d], abs(inside))
         least = min(least, most[d])
     return least
 
@@ -375,7 +366,9 @@ def march_pair(
                 second, row, part, parts, force, kappa, damping, step, shifted, 3, start, end
             )
             # no direction has a larger peak in this step
-            reach = np.sqrt(end[0] * end[0] + end[3] * end[3])
+            bend = start[2] * start[2] + start[5] * start[5]
+            reach = np.sqrt(max(bend, end[2] * end[2] + end[5] * end[5]))
+            reach += np.sqrt(end[0] * end[0] + end[3] * end[3])
             reach += np.sqrt(end[1] * end[1] + end[4] * end[4])
             if reach > least:
                 least = raise_peaks(directions, start, end, most)

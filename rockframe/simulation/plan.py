@@ -14,6 +14,7 @@ from typing import Any, Final, Literal, TypeAlias, Unpack, cast
 import numpy as np
 import xarray as xr
 
+from rockframe.arguments import iterates
 from rockframe.components import InitialState
 from rockframe.dynamics.protocol import Ending, Start
 from rockframe.errors import AssemblyError, ComponentError, RockframeError, nearest, shown
@@ -40,8 +41,8 @@ def listed(outputs: object) -> list[object]:
     """Give the argument ``outputs`` as a list."""
     if outputs is None:
         return []
-    if isinstance(outputs, Iterable) and not isinstance(outputs, str | Mapping):
-        return list(cast("Iterable[object]", outputs))
+    if iterates(outputs) and not isinstance(outputs, str | Mapping):
+        return list(outputs)
     return [outputs]
 
 

@@ -1,7 +1,7 @@
 """Sequences of earthquakes: response after each, starting from the state after those before."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import accumulate
@@ -10,7 +10,7 @@ from typing import Any, Final, Unpack, cast
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import by_words, several
+from rockframe.arguments import by_words, iterates, several
 from rockframe.comparison.models import check_system
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
@@ -123,8 +123,8 @@ def _sequences(value: object) -> dict[str, list[GroundMotion]]:
     """Read the sequences, and check that their motions fit."""
     if isinstance(value, Mapping):
         named = by_words(cast("Mapping[Any, Any]", value), owner=_OWNER)
-    elif isinstance(value, Iterable) and not isinstance(value, str):
-        listed = list(cast("Iterable[Any]", value))
+    elif iterates(value) and not isinstance(value, str):
+        listed = list(value)
         if len(listed) > 1 and all(isinstance(one, GroundMotion) for one in listed):
             msg = (
                 f"{_OWNER}: found {len(listed)} motions in a row; expected a row of sequences: put "

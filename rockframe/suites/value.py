@@ -6,7 +6,7 @@ from typing import Any, Final, Self, cast
 
 import pandas as pd
 
-from rockframe.arguments import by_names, by_words, function_of, several, truth
+from rockframe.arguments import by_names, by_words, function_of, iterates, several, truth
 from rockframe.errors import ComponentError, LabelError, RecordWarning, nearest, shown, warn
 from rockframe.motion import GroundMotion
 from rockframe.motion.pair import HorizontalPair
@@ -327,8 +327,8 @@ def _named(value: object, owner: str) -> dict[str, GroundMotion]:
     motions: dict[str, Any] = {}
     if isinstance(value, Mapping):
         motions = by_words(cast("Mapping[Any, Any]", value), owner=owner)
-    elif isinstance(value, Iterable) and not isinstance(value, str):
-        for one in cast("Iterable[Any]", value):
+    elif iterates(value) and not isinstance(value, str):
+        for one in value:
             name = str(getattr(one, "name", len(motions)))
             if name in motions:
                 msg = f"{owner}: two motions are called {name!r}; give a mapping of labels"

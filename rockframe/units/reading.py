@@ -240,7 +240,7 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
     if isinstance(value, pint.Quantity):
         argument: Any = value
         return [to_si(one, measure, owner=owner, name=name) for one in _each(argument)]
-    if isinstance(value, Iterable):
+    if isinstance(value, Iterable) and getattr(value, "ndim", 1) != 0:
         items: list[Any] = list(value)
         alone = isinstance(items[0], str | pint.Quantity | None) if items else True
         if len(items) == 2 and isinstance(items[1], str) and not alone:

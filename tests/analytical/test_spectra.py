@@ -175,16 +175,33 @@ def test_peaks_between_samples(period, xi):
     fine = max(20, math.ceil(600 * dt / period))
     expected = brute_force(samples, dt, period, xi, fine)
     found = response_spectrum(motion, ([period], "s"), xi)
-    values = [
-        found[name].item()
-        for name in (
-            "spectral_displacement",
-            "spectral_velocity",
-            "absolute_spectral_acceleration",
-        )
-    ]
+    values = [found[name].item() for name in SPECTRA]
     # brute force misses up to (2 pi/600)^2/8 between its points
     np.testing.assert_allclose(values, expected, rtol=5e-5)
+
+
+SPECTRA = ("spectral_displacement", "spectral_velocity", "absolute_spectral_acceleration")
+
+
+def test_a_peak_is_found_where_the_velocity_grows_and_decays_after_it():
+    """Value and slope at the end of the step do not bound it: the ground reverses in the step."""
+    samples = np.array([1.4485, 0.5495, -1.3558, 0.7554])
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.02 s")
+    found = response_spectrum(motion, ["0.7 s"], 1.0)
+    expected = brute_force(samples, 0.02, 0.7, 1.0, 400)
+    values = [found[name].item() for name in SPECTRA]
+    np.testing.assert_allclose(values, expected, rtol=5e-5)
+
+
+def test_the_ground_may_stop_at_once_within_a_motion():
+    """Padded with zeros, a pulse that jumps at its end has the same spectra."""
+    pulse = rf.GroundMotion.cosine_pulse("3 m/s^2", "1 Hz", cycles=0.3)
+    still = rf.GroundMotion.from_arrays((np.zeros(200), "m/s^2"), (pulse.si.time_step, "s"))
+    periods = (np.geomspace(0.01, 5.0, 60), "s")
+    alone = response_spectrum(pulse, periods, (0.0, 0.05, 1.0))
+    longer = response_spectrum(pulse.with_vertical(still), periods, (0.0, 0.05, 1.0))
+    for name in SPECTRA:
+        np.testing.assert_allclose(longer[name], alone[name], rtol=3e-6)
 
 
 def test_limits_of_very_short_and_very_long_periods():
@@ -215,6 +232,22 @@ def test_path_of_the_ground_is_exact_for_straight_lines():
         velocity += 0.05 * (start + end)
         assert path.ground_velocity.values[k + 1] == pytest.approx(velocity, abs=1e-14)
         assert path.ground_displacement.values[k + 1] == pytest.approx(displacement, abs=1e-13)
+
+
+def test_the_greatest_displacement_may_lie_in_the_interval_in_which_the_ground_starts():
+    """a = 2 - 50 t, so that v = 2 t - 25 t^2 is zero at the start and at 0.08 s."""
+    motion = rf.GroundMotion.from_arrays(([2.0, -3.0], "m/s^2"), "0.1 s")
+    found = intensity_measures(motion).peak_ground_displacement.item()
+    assert found == pytest.approx(0.08**2 - 25.0 / 3.0 * 0.08**3, rel=1e-12)
+
+
+def test_the_greatest_displacement_may_lie_between_two_zeros_of_the_velocity_in_one_interval():
+    samples = np.array([1.0, -2.0, 2.0, -1.0])
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.1 s")
+    fine = motion.resampled("0.0001 s", interpolation="linear")
+    expected = velocity_and_displacement(fine).ground_displacement
+    found = intensity_measures(motion).peak_ground_displacement.item()
+    assert found == pytest.approx(float(np.abs(expected).max()), rel=1e-6)
 
 
 # a sine pulse --------------------------------------------------------------------------------
@@ -270,6 +303,14 @@ def test_a_level_is_exceeded_between_two_samples(cycles, level):
     slender = rf.Block(width=(2 * level / 9.80665, "m"), height="2 m", mass="1 t")
     uplift = rf.intensity_measures(pulse, block=slender).uplift_duration
     assert uplift.item() == pytest.approx((1.0 + more / 0.5) * width, abs=1e-9)
+
+
+def test_a_level_that_is_a_sample_of_a_pulse_is_exceeded_from_there_on():
+    pulse = rf.GroundMotion.half_sine_pulse("2 m/s^2", "1 s")
+    for place in (5, 10, 20):
+        level = pulse.si.horizontal.samples[place]
+        found = intensity_measures(pulse, threshold=(level, "m/s^2")).bracketed_duration
+        assert found.item() == pytest.approx(1.0 - 2.0 * place / 64.0, abs=1e-12)
 
 
 def test_a_second_that_reaches_the_level_between_two_samples_counts():

@@ -220,6 +220,16 @@ def test_along_the_principal_axes_components_are_uncorrelated():
     assert measured.arias_intensity.values == pytest.approx(factor * np.diag(matrix))
 
 
+def test_a_weak_pulse_at_a_right_angle_does_not_turn_the_axis_of_a_record():
+    pulse = rf.GroundMotion.sine_pulse("1e-6 m/s^2", "1 Hz", cycles=2)
+    noise = np.random.default_rng(0).normal(size=len(pulse))
+    record = rf.GroundMotion.from_arrays((noise, "m/s^2"), (pulse.si.time_step, "s"))
+    found = rf.measures.principal_axes(rf.HorizontalPair(record, pulse))
+    assert found.major_axis_angle.item() == pytest.approx(0.0, abs=1e-6)
+    other = rf.measures.principal_axes(rf.HorizontalPair(pulse, record))
+    assert abs(other.major_axis_angle.item()) == pytest.approx(0.5 * np.pi, abs=1e-6)
+
+
 def test_azimuths_and_the_vertical_component():
     pair = rf.HorizontalPair.read(record_path("GEONET_20180212_211557_WPWS_20.V2A"))
     assert pair.first.metadata["component"] == "S16W"

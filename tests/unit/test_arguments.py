@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
+import rockframe as rf
 from rockframe.arguments import whole_number
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, RockframeError
 
 
 @pytest.mark.parametrize("given", [3, np.int64(3), np.uint8(3), np.array(3)])
@@ -26,3 +28,28 @@ def test_without_an_upper_bound():
     assert whole_number(10**30, owner="Frame", name="storeys", lowest=0) == 10**30
     with pytest.raises(ComponentError, match="storeys must be a whole number, 0 or more, got -1"):
         whole_number(-1, owner="Frame", name="storeys", lowest=0)
+
+
+@pytest.mark.parametrize("given", [np.array(0.5), xr.DataArray(0.5)])
+def test_an_array_without_dimensions_is_no_list(given):
+    """It calls itself iterable, but has no elements."""
+    system = rf.System(rf.Block(width="1 m", height="5 m", mass="1 t"))
+    motion = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
+    for function in (
+        lambda: rf.response_spectrum(motion, given),
+        lambda: motion.through_storeys(given),
+        lambda: rf.Block.from_outline(given, mass="1 t"),
+        lambda: rf.Block.from_outline([given, given, given], mass="1 t"),
+        lambda: rf.FrameEquivalent.from_members(given, width="1 m", height="3 m"),
+        lambda: rf.MotionSuite(given),
+        lambda: rf.read_suite(given),
+        lambda: rf.sweep(system, given),
+        lambda: rf.sweep(system, motion, width=given),
+        lambda: rf.earthquake_sequences(system, given),
+        lambda: rf.concat(given, "motion"),
+        lambda: rf.table(given),
+        lambda: system.simulate(motion, outputs=given),
+        lambda: rf.report(system.simulate(motion, accuracy="fast"), "report.html", checks=given),
+    ):
+        with pytest.raises(RockframeError):
+            function()

@@ -278,7 +278,11 @@ def _step(frame: Any, time: str | None, time_step: QuantityLike | None, owner: s
     elif time in frame.columns:
         axis = frame[time]
         if getattr(axis.dtype, "kind", "") not in "mM":
-            axis = np.asarray(axis, dtype=np.float64)
+            try:
+                axis = np.asarray(axis, dtype=np.float64)
+            except (TypeError, ValueError) as problem:
+                msg = f"{owner}: the column {time!r} must hold times, in seconds or as dates"
+                raise ComponentError(msg) from problem
     else:
         near = nearest(time, map(str, frame.columns))
         msg = f"{owner}: time {shown(time)} is none of the columns{near}"

@@ -78,9 +78,11 @@ def filtered(
 
     Notes
     -----
-    For a zero-phase filter the motion is padded with zeros at both ends, 1.5 order/f for the
-    lowest corner f, and afterwards cut to its length unless `keep_padding` is set. A causal
-    filter starts from rest; its padding is one zero before the motion and the rest after it.
+    For a zero-phase filter the motion is padded with zeros at both ends, 1.5 order/f, and
+    afterwards cut to its length unless `keep_padding` is set. f is the lowest corner, or less:
+    half the width of the band, or the distance of the highest corner from the Nyquist frequency.
+    A causal filter starts from rest; its padding is one zero before the motion and the rest
+    after it.
 
     After a filter with ``low``, the velocity and displacement of a motion that was cut have a
     drift, as the tails are missing. With the padding both return to zero.
@@ -116,9 +118,13 @@ def filtered(
     order = whole_number(order, owner=owner, name="order", lowest=1, highest=_HIGHEST_ORDER)
     causal = truth(causal, owner=owner, name="causal")
     keep_padding = truth(keep_padding, owner=owner, name="keep_padding")
-    padding = padding_samples(si.time_step, min(corners.values()), order)
+    padding = padding_samples(si.time_step, lower, upper, order)
+    band = ", ".join(f"{name} corner {value:.9g} Hz" for name, value in corners.items())
     if padding > MAXIMUM_SAMPLES:
-        msg = f"{owner}: a corner of {min(corners.values()):.6g} Hz is too low for this motion"
+        msg = (
+            f"{owner}: {band} would need {padding:.3g} zeros at each end; a corner is too low, or "
+            f"too close to the other one or to the Nyquist frequency, {nyquist:.6g} Hz"
+        )
         raise ComponentError(msg)
     result = with_samples(
         si,
@@ -132,7 +138,6 @@ def filtered(
             keep_padding=keep_padding,
         ),
     )
-    band = ", ".join(f"{name} corner {value:.9g} Hz" for name, value in corners.items())
     way = (
         f"forwards only, {band}, from rest"
         if causal

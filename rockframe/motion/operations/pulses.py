@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -16,7 +15,7 @@ from rockframe.motion.velocity_pulse import VelocityPulse
 from rockframe.proposals import hinted
 from rockframe.signals import Motion
 from rockframe.signals.integrals import ground_path
-from rockframe.signals.motion import knots_of
+from rockframe.signals.motion import MAXIMUM_SAMPLES, knots_of
 from rockframe.units import PERIOD, POSITIVE, TIME, VELOCITY, QuantityLike, to_si
 
 if TYPE_CHECKING:
@@ -123,11 +122,17 @@ def searched(shortest: QuantityLike, longest: QuantityLike, dt: float, *, owner:
         to_si(value, PERIOD, owner=owner, name=name, condition=POSITIVE)
         for name, value in (("shortest_period", shortest), ("longest_period", longest))
     )
-    if not (_STEPS_PER_PERIOD * dt <= first < last and math.isfinite(last)):
+    if not _STEPS_PER_PERIOD * dt <= first < last:
         msg = (
             f"{owner}: shortest_period = {first:.6g} s must be below longest_period = "
             f"{last:.6g} s and at least {_STEPS_PER_PERIOD:g} time steps, "
             f"{_STEPS_PER_PERIOD * dt:.6g} s"
+        )
+        raise ComponentError(msg)
+    if velocity_pulses.SUPPORT * last > MAXIMUM_SAMPLES * dt:
+        msg = (
+            f"{owner}: a wavelet of longest_period = {last:.6g} s has more than {MAXIMUM_SAMPLES} "
+            f"samples at {dt:.6g} s; give a shorter one"
         )
         raise ComponentError(msg)
     return velocity_pulses.periods_between(first, last)

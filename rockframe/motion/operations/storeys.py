@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from rockframe.arguments import one_of_words, whole_number
+from rockframe.arguments import iterates, one_of_words, whole_number
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
 from rockframe.motion.operations.following import following, lost_pieces
 from rockframe.motion.processing.floors import (
@@ -159,8 +159,7 @@ def _values(value: object, measure: Measure, owner: str, name: str, *, zero: boo
 def _ratios(
     value: Any, owner: str, name: str, example: str, condition: Condition | None = None
 ) -> list[float]:
-    several = isinstance(value, Iterable) and not isinstance(value, str)
-    if not several or getattr(value, "ndim", 1) == 0:  # a scalar Quantity calls itself iterable
+    if isinstance(value, str) or not iterates(value):
         return [to_ratio(value, owner=owner, name=name, condition=condition, example=example)]
     return [
         to_ratio(one, owner=owner, name=f"{name}[{k}]", condition=condition, example=example)

@@ -213,5 +213,5 @@ def resampled(
     if rest > _SNAP * step:
         steps.append(f"the last {rest:.6g} s, less than one new time step, are left out")
     return following(
-        motion, result, *steps, *lost_pieces(si), operation=operation, same_spectrum=True
+        motion, result, *steps, *lost_pieces(si), operation=operation, same_spectrum=finer
     )

@@ -173,8 +173,7 @@ def butterworth(
     else:
         corners, kind = [low, high], "bandpass"
     sos = signal.butter(order, corners, btype=kind, fs=1.0 / dt, output="sos")
-    lowest = min(corner for corner in (low, high) if corner is not None)
-    padding = padding_samples(dt, lowest, order)
+    padding = padding_samples(dt, low, high, order)
     rest = np.zeros(padding)
     if causal:
         # at rest before the motion; one zero shows the rise to a first sample that is not zero
@@ -185,9 +184,17 @@ def butterworth(
     return result if keep_padding else result[padding : padding + samples.size]
 
 
-def padding_samples(dt: float, lowest: float, order: int) -> int:
-    """Count the zeros to put at each end: 1.5 order/f of the lowest corner."""
-    return math.ceil(_PADDING_PERIODS * order / (lowest * dt))
+def padding_samples(dt: float, low: float | None, high: float | None, order: int) -> int:
+    """Count the zeros to put at each end: 1.5 order/f of the frequency f that decays most slowly.
+
+    It is the lowest corner, the distance of the highest from the Nyquist frequency, or half the
+    width of the band.
+    """
+    corners = [corner for corner in (low, high) if corner is not None]
+    slowest = min(corners[0], 0.5 / dt - corners[-1])
+    if low is not None and high is not None:
+        slowest = min(slowest, 0.5 * (high - low))
+    return math.ceil(_PADDING_PERIODS * order / (slowest * dt))
 
 
 def without_baseline(samples: Array, order: int) -> Array:

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import repeat
-from typing import Any, Final, cast
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
-from rockframe.arguments import one_of_names, one_of_words, several
+from rockframe.arguments import iterates, one_of_names, one_of_words, several
 from rockframe.errors import ComponentError, SchemaError, UnitsError, shown
 from rockframe.proposals import hinted
 from rockframe.results.schema import with_variables
@@ -351,7 +351,7 @@ def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
 def _several(value: object) -> list[object]:
     if isinstance(value, str | xr.DataArray):
         return [value]
-    listed = list(cast("Iterable[object]", value)) if isinstance(value, Iterable) else []
+    listed = list(value) if iterates(value) else []
     if not 1 <= len(listed) <= _MOST_MEASURES:
         msg = f"{_OWNER}: intensity needs one measure, or two, got {shown(value)}"
         raise ComponentError(msg)

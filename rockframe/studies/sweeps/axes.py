@@ -192,7 +192,7 @@ def items_of(value: object) -> list[Any]:
     """Give values one by one; one alone is a row of one."""
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         return [value]
-    if isinstance(value, pint.Quantity) and getattr(cast("Any", value).magnitude, "ndim", 0) == 0:
+    if getattr(value, "ndim", 1) == 0:  # arrays and quantities of one value only seem to be a row
         return [value]
     return list(cast("Iterable[Any]", value))
 

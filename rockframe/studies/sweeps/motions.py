@@ -1,12 +1,12 @@
 """The ground motions of a sweep: their names, and how axes change them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, cast
 
 import numpy as np
 
-from rockframe.arguments import by_words
+from rockframe.arguments import by_words, iterates
 from rockframe.errors import ComponentError, StudyError, shown
 from rockframe.motion import GroundMotion, HorizontalPair
 from rockframe.motion.description import shown_name
@@ -78,8 +78,8 @@ def named_motions(value: object) -> dict[str, GroundMotion]:
         value = [value]
     if isinstance(value, Mapping):
         named = _each_component(by_words(cast("Mapping[Any, Any]", value), owner=OWNER))
-    elif isinstance(value, Iterable) and not isinstance(value, str):
-        several = list(cast("Iterable[Any]", value))
+    elif iterates(value) and not isinstance(value, str):
+        several = list(value)
         pairs = (one.components if isinstance(one, HorizontalPair) else (one,) for one in several)
         named = _distinct_names([motion for pair in pairs for motion in pair])
     else:

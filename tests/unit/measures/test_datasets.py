@@ -123,6 +123,18 @@ def test_ground_that_stands_still():
     assert (fourier_spectrum(still).fourier_amplitude == 0.0).all()
 
 
+@pytest.mark.parametrize(("peak", "counts"), [(0.3, False), (0.5, True)])
+def test_a_second_may_be_strong_where_it_begins_between_two_samples(peak, counts):
+    """The second from 1 s on begins with two thirds of the peak at 0.9 s, and has no other."""
+    samples = [0.0, 0.0, 0.0, peak, 0.0, 0.0, 0.0]
+    motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.3 s")
+    found = intensity_measures(motion, gravity="10 m/s^2")  # threshold 0.25 m/s^2
+    standard = found.standardized_cumulative_absolute_velocity.item()
+    whole = found.cumulative_absolute_velocity.item()
+    assert whole == pytest.approx(0.3 * peak)
+    assert (standard == pytest.approx(whole)) is counts
+
+
 def test_standardized_absolute_velocity_leaves_out_weak_seconds():
     samples = np.concatenate([np.full(110, 0.2), np.full(80, 1.0), np.full(161, 0.1)])
     motion = rf.GroundMotion.from_arrays((samples, "m/s^2"), "0.01 s")

@@ -268,6 +268,29 @@ def test_a_band_is_padded_for_its_lower_corner():
     assert band.si.horizontal.samples == pytest.approx(padded[6000:6400], abs=1e-12)
 
 
+@pytest.mark.parametrize("order", [1, 4, 8])
+@pytest.mark.parametrize(
+    ("kind", "corners"),
+    [
+        ("bandpass", {"low": 1.0, "high": 1.2}),
+        ("bandpass", {"low": 0.95, "high": 1.05}),
+        ("bandpass", {"low": 1.0, "high": 2.0}),
+        ("bandpass", {"low": 40.0, "high": 49.0}),
+        ("lowpass", {"high": 45.0}),
+        ("highpass", {"low": 47.0}),
+    ],
+)
+def test_a_narrow_band_is_padded_for_its_width(kind, corners, order):
+    """Such a filter decays slowly, as does one with a corner close to the Nyquist frequency."""
+    given = {name: f"{value} Hz" for name, value in corners.items()}
+    found = motion().filtered(**given, order=order).si.horizontal.samples
+    sos = signal.butter(order, np.squeeze([*corners.values()]), kind, fs=100.0, output="sos")
+    rest = np.zeros(60_000)
+    expected = signal.sosfiltfilt(sos, np.concatenate([rest, NOISE, rest]), padtype=None)
+    expected = expected[rest.size : -rest.size]
+    assert np.abs(found - expected).max() < 1e-7 * np.abs(expected).max()
+
+
 @pytest.mark.parametrize("causal", [False, True])
 @pytest.mark.parametrize("arguments", [{"low": "0.1 Hz"}, {"low": "0.2 Hz", "high": "25 Hz"}])
 def test_with_its_padding_a_filtered_motion_ends_at_rest(causal, arguments):

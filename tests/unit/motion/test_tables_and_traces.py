@@ -46,6 +46,8 @@ class TestTimesOfAnArray:
             (TIMES, {}),
             (1e3 * TIMES, {"units": "ms"}),
             (10 * np.arange(COUNT), {"units": "ms"}),
+            (TIMES, {"units": "seconds"}),
+            (TIMES / 60.0, {"units": "minutes since 2020-02-03 04:05:06"}),
             (DATES.values, {}),
         ],
     )
@@ -132,6 +134,12 @@ class TestFromFrame:
         np.testing.assert_allclose(motion.si.horizontal.samples, 0.02 * VALUES, rtol=1e-14)
         assert motion.si.time_step == STEP
         assert (motion.metadata["component"], motion.metadata["azimuth"]) == ("E", 90.0)
+
+    @pytest.mark.parametrize("entry", ["late", [1.0]])
+    def test_a_column_of_times_holds_numbers_or_dates(self, entry):
+        frame = pd.DataFrame({"t": [0.0, 0.01, entry], "N": [0.0, 1.0, 2.0]})
+        with pytest.raises(ComponentError, match="column 't' must hold times"):
+            GroundMotion.from_frame(frame, "gal", "N", time="t")
 
     def test_one_that_points_down_is_turned_over(self):
         motion = GroundMotion.from_frame(FRAME, "gal", "N", "DWN", time="t")

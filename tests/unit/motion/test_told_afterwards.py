@@ -109,6 +109,16 @@ def test_every_scaling_counts():
     assert scaled.si.horizontal.samples == pytest.approx(factor * NORTH)
 
 
+def test_components_of_different_factors_have_none_together():
+    once, twice = motion(NORTH).scaled(2.0), motion(EAST).scaled(4.0)
+    assert "scale_factor" not in once.rotated(twice, "30 deg").metadata
+    assert "scale_factor" not in once.rotated(motion(EAST), "30 deg").metadata
+    axes = rf.HorizontalPair(once, motion(EAST).scaled(2.0)).in_axes("30 deg")
+    assert [one.metadata["scale_factor"] for one in (axes.first, axes.second)] == [2.0, 2.0]
+    plain = rf.HorizontalPair(motion(NORTH), motion(EAST)).in_axes("30 deg")
+    assert "scale_factor" not in plain.second.metadata
+
+
 @pytest.mark.parametrize(
     ("component", "known"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
 )
@@ -137,6 +147,7 @@ def test_scaling_and_misfit():
         scaled.window("1 s"),
         scaled.baseline_corrected(),
         scaled.through_storeys(periods=["0.5 s"], time_step="0.01 s"),
+        scaled.resampled("0.02 s"),
     ):
         assert "spectral_misfit" not in changed.metadata
         assert changed.metadata["scale_factor"] == factor

@@ -173,6 +173,8 @@ def test_arguments_are_checked():
         motion.velocity_pulse(shortest_period="0.03 s")
     with pytest.raises(UnitsError):
         motion.velocity_pulse(longest_period=15)
+    with pytest.raises(ComponentError, match="longest_period = 1e\\+09 s has more than"):
+        motion.velocity_pulse(longest_period="1e9 s")
     still = GroundMotion.from_arrays((np.zeros(100), "m/s^2"), "0.01 s", name="still")
     with pytest.raises(ComponentError, match="'still' has no velocity"):
         still.velocity_pulse()

@@ -6,6 +6,7 @@ import pickle
 import numpy as np
 import pytest
 
+from rockframe.errors import ComponentError
 from rockframe.signals import Motion, Signal
 
 pytestmark = pytest.mark.unit
@@ -64,6 +65,11 @@ def test_polynomials_between_samples():
 def test_zero_outside(signal):
     end = signal.duration
     assert signal.at([-1.0, -1e-8, end * (1.0 + 1e-6), 7.0]).tolist() == [0.0] * 4
+
+
+def test_a_time_that_is_no_number_is_refused():
+    with pytest.raises(ComponentError, match="times must be numbers, got nan"):
+        RECORD.at([0.0, np.nan])
 
 
 @pytest.mark.parametrize("signal", [RECORD, ANALYTIC])
