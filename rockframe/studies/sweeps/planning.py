@@ -241,7 +241,9 @@ def _table(cases: object) -> dict[str, object]:
         if name in table:
             msg = f"column {name!r} is given twice in cases"
             raise StudyError(msg)
-        plain = values if own_unit(values) else np.asanyarray(values)  # masks stay
+        plain = values
+        if not (own_unit(values) or isinstance(values, list | tuple)):
+            plain = np.asanyarray(values)  # masks stay
         table[name] = (plain, unit.removesuffix("]")) if bracket else values
     return table
 
