@@ -220,3 +220,15 @@ def test_figures_tell_structures_apart(runs):
     with pytest.raises(SchemaError, match="found 3 structures, by width; a figure shows 1"):
         rf.plot.fragility(rf.fragility(runs, ("PGA", "PGV"), limits=()))
     pyplot.close("all")
+
+
+def test_an_axis_with_the_name_of_the_measure_is_refused() -> None:
+    """It is an argument of the function, and no peak of the motions."""
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+    runs = rf.sweep(
+        lambda peak_ground_acceleration: system, [pulse, pulse.scaled(2.0)], duration="1 s",
+        axes={"peak_ground_acceleration": [1.0, 2.0]},
+    )  # fmt: skip
+    with pytest.raises(ComponentError, match="which is also the name of the intensity measure"):
+        rf.fragility(runs, "PGA")
