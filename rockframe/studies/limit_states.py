@@ -165,6 +165,10 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
             "attributes"
         )
         raise SchemaError(msg)
+    status = runs["status"].to_numpy()
+    if status.dtype.kind == "f" and np.any(status != np.round(status), where=~np.isnan(status)):
+        msg = f"{owner}: found means of runs, which have no verdict; expected the runs themselves"
+        raise SchemaError(msg)
     if "scale" in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
         scales = in_unit(runs["scale"], Unit.ONE, owner=owner)
         runs = runs.assign_coords(scale=scales.variable)
