@@ -234,7 +234,7 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     if first is not None:  # runs without a verdict may leave its bracket wide
         wide = first.above - first.below > resolution * first.above
         end = first.above if wide else first.below
-    if found.up_to < end:
+    if found.up_to < end and critical != scales[0]:  # there is none below the least
         text += (
             f" Beyond {number(found.up_to)} some are more than {100.0 * resolution:g} % apart, "
             "and a lesser scale between them may overturn."
