@@ -263,7 +263,7 @@ def cloud_analysis(
     together = several(pooled, owner=_OWNER, name="pooled", of="names")
     check_one_structure(runs, together, [named_column(runs, intensity)], owner=_OWNER)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
-    values = scalar_of(runs, response, label or "", owner=_OWNER)
+    values = scalar_of(runs, response, label, owner=_OWNER)
     levels = listed_limits(limits, owner=_OWNER)
     requested = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
     floor = read_least(least, values, owner=_OWNER)
