@@ -263,7 +263,7 @@ def cloud_analysis(
     together = several(pooled, owner=_OWNER, name="pooled", of="names")
     check_one_structure(runs, together, [named_column(runs, intensity)], owner=_OWNER)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
-    values = scalar_of(runs, response, label or "", owner=_OWNER)
+    values = scalar_of(runs, response, label, owner=_OWNER)
     levels = listed_limits(limits, owner=_OWNER)
     requested = [_read_level(one, values, _OWNER, "limits") for one in levels if one != OVERTURNING]
     floor = read_least(least, values, owner=_OWNER)
@@ -349,8 +349,9 @@ def _curve(
         drawn = cloud.drawn(np.concatenate([along, wide]), level, rng, _DRAWS)
         points[1:] = np.quantile(drawn[:, : len(along)], tails, axis=0)
         each = _parameters(drawn[:, len(along) :], wide)
-        # a median beyond the searched range counts as infinite
+        # a median beyond the searched range is infinite, or zero where all of the curve lies above
         every = [np.where(np.isnan(one), np.inf, one) for one in each]
+        every[0][np.all(drawn[:, len(along) :] >= 0.5, axis=1)] = -np.inf
         medians[1:] = np.exp(np.quantile(every[0], tails, method="inverted_cdf"))
         spreads[1:] = np.quantile(every[1], tails, method="inverted_cdf")
     return status, points, medians, spreads
@@ -364,7 +365,9 @@ def _status(cloud: Cloud, level: float) -> FragilityStatus:
         return cloud.overturning.status if rises else FragilityStatus.NOT_RISING
     if cloud.line is None:
         return FragilityStatus.NO_TRIALS
-    return FragilityStatus.FITTED if cloud.line.slope > 0.0 else FragilityStatus.NOT_RISING
+    parted = FragilityStatus.NOT_RISING in (cloud.overturning.status, cloud.moving.status)
+    rises = cloud.line.slope > 0.0 and not parted
+    return FragilityStatus.FITTED if rises else FragilityStatus.NOT_RISING
 
 
 def _parameters(curves: Array, logs: Array) -> tuple[Array, Array]:

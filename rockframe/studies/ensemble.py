@@ -84,6 +84,9 @@ def ensemble_statistics(
     requested = read_level(confidence, owner=_OWNER)
     shares = read_shares(quantiles, "quantiles", owner=_OWNER)
     values = _values(runs, name)
+    if values.dtype.kind not in "biuf":
+        msg = f"{_OWNER}: {values.name!r} has no numbers, but words or objects"
+        raise ComponentError(msg)
     together = several(pooled, owner=_OWNER, name="pooled", of="names")
     level = np.nan if _dependent(values, runs.attrs, together) else requested
     ordered = np.sort(values.to_numpy().ravel().astype(np.float64))

@@ -229,7 +229,12 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     slid = slip_words(np.array([run.slip for run in found.shown.values()]))
     text += f"; {slid}" if slid else ""
     text += "." if found.whole else ", then interrupted."
-    if found.up_to < next((one.below for one in flips if one.overturns_above), largest):
+    first = next((one for one in flips if one.overturns_above), None)
+    end = largest
+    if first is not None:  # runs without a verdict may leave its bracket wide
+        wide = first.above - first.below > resolution * first.above
+        end = first.above if wide else first.below
+    if found.up_to < end and critical != scales[0]:  # there is none below the least
         text += (
             f" Beyond {number(found.up_to)} some are more than {100.0 * resolution:g} % apart, "
             "and a lesser scale between them may overturn."

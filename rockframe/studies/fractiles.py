@@ -108,7 +108,7 @@ def fractile_curves(
     runs = check_runs(runs, owner=_OWNER)
     shares = read_shares(fractiles, "fractiles", owner=_OWNER)
     measure = measure_in(runs, intensity, period, motions, owner=_OWNER)
-    values = scalar_of(runs, response, label or "", owner=_OWNER)
+    values = scalar_of(runs, response, label, owner=_OWNER)
     lines = _lines(runs, measure, abs(values))
     low = max(float(one.along[0]) for one in lines)
     high = min(float(one.along[-1]) for one in lines)

@@ -16,6 +16,7 @@ from rockframe.results.schema import build_dataset, with_variables
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.results.variables.variable import unit_behind
 from rockframe.signals.arrays import Array
+from rockframe.studies.fragility.likelihood import log_shares
 from rockframe.studies.fragility.words import in_own_units, measures_of
 from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.studies.sweeps.axes import free_values
@@ -257,21 +258,35 @@ def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]
         return dict.fromkeys(names, np.nan) | none
     edges, parts = contributions(one, curve, measure)
     rate = float(parts.sum())
-    summed = np.concatenate([[0.0], np.cumsum(parts)]) / rate
+    with np.errstate(invalid="ignore"):  # a rate of zero has no shares
+        summed = np.concatenate([[0.0], np.cumsum(parts)]) / rate
     logs = np.log(edges)
     bounds = (
         _of_curve(one[f"exceedance_probability_{end}_bound"], one[measure], curve)
         for end in ("lower", "upper")
     )
     beyond = (float(contributions(one, part, measure)[1].sum()) for part in curve.beyond())
-    seen = one["stripe_intensity"].to_numpy()
-    seen = np.log(seen[one["stripe_trials"].to_numpy() > 0])
-    least, most = np.interp([seen.min(), seen.max()], logs, summed)
+    least, most = np.interp(np.log(_of_trials(one, measure)), logs, summed)
     numbers = rate, *bounds, *beyond, 1.0 - (most - least)
     return dict(zip(names, numbers, strict=True)) | {
         "rate_share": np.diff(np.interp(np.log(_edges(curve)), logs, summed)),
         "quantile_intensity": np.exp(np.interp(_SHARES, summed, logs)),
     }
+
+
+def _of_trials(one: xr.Dataset, measure: str) -> tuple[float, float]:
+    """Give the least and the greatest intensity of trials.
+
+    The curve is drawn from the least to the greatest of all structures; a stripe may be a group of
+    intensities about its own.
+    """
+    along, stripes = one[measure].to_numpy(), one["stripe_intensity"].to_numpy()
+    (tried,) = np.nonzero(one["stripe_trials"].to_numpy() > 0)
+    first, last = tried[[0, -1]]
+    return (
+        float(along[0] if first == 0 else stripes[first]),
+        float(along[-1] if last == len(stripes) - 1 else stripes[last]),
+    )
 
 
 def _edges(curve: HazardCurve) -> Array:
@@ -299,12 +314,14 @@ def of_lognormal(median: float, spread: float, edges: Array, rates: Array, slope
             if spread > 0.0
             else np.where(edges < median, -np.inf, np.inf)
         )
-    # the hazard at the median by the power law of each part
-    at_median = rates[:-1] * (edges[:-1] / median) ** slopes
+    # the hazard at the median, by the power law of each part, is large where that is steep, and the
+    # share of capacities within it small: their logarithms are added
     shift = slopes * spread
-    grown = at_median * np.exp(0.5 * shift**2)
-    within = ndtr(eta[1:] + shift) - ndtr(eta[:-1] + shift)
-    return grown * within - ndtr(eta[1:]) * rates[1:] + ndtr(eta[:-1]) * rates[:-1]
+    at_median = np.log(rates[:-1]) + slopes * np.log(edges[:-1] / median)
+    with np.errstate(invalid="ignore"):  # without a spread eta is infinite
+        within = log_shares(eta[1:] + shift, eta[:-1] + shift)
+    grown = np.exp(at_median + 0.5 * shift**2 + within)
+    return grown - ndtr(eta[1:]) * rates[1:] + ndtr(eta[:-1]) * rates[:-1]
 
 
 def _finely(curve: HazardCurve) -> tuple[Array, Array, Array]:
@@ -390,8 +407,10 @@ def _sentence(found: xr.Dataset) -> str:
     unit = unit_behind(found["quantile_intensity"].attrs)
     if len(known) > 1:
         return f"Annual rate of {state}: from {known.min():.3g} to {known.max():.3g}."
+    if known[0] == 0.0:
+        return f"Annual rate of {state}: 0 within the hazard curve."
     low, _, high = last["quantile_intensity"].to_numpy().ravel()
-    years = float(f"{1.0 / known[0]:.4g}") if known[0] > 0.0 else math.inf
+    years = float(f"{1.0 / known[0]:.4g}")
     text = f"Annual rate of {state}: {known[0]:.3g}, a return period of {years:.12g} years; "
     text += f"nine tenths of it come from {measure} between {low:.3g} and {high:.3g}{unit}"
     outside = float(last["outside_trials_share"].max())

@@ -169,6 +169,9 @@ def measure_in(
     known = isinstance(value, str) and named in runs.variables
     if known and (named not in _SPECTRAL or _same_period(runs, named, period, owner)):
         return runs[named]
+    if isinstance(value, xr.DataArray) and value.dtype.kind not in "biuf":
+        msg = f"{owner}: {value.name!r} has no numbers, but words or objects; it is no intensity"
+        raise ComponentError(msg)
     if not isinstance(value, xr.DataArray):
         which = Intensity.read(value, period, owner=owner)
         return intensity_in(runs, which, motions, owner=owner)

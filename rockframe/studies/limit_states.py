@@ -165,6 +165,10 @@ def check_runs(value: object, *, owner: str) -> xr.Dataset:
             "attributes"
         )
         raise SchemaError(msg)
+    status = runs["status"].to_numpy()
+    if status.dtype.kind == "f" and np.any(status != np.round(status), where=~np.isnan(status)):
+        msg = f"{owner}: found means of runs, which have no verdict; expected the runs themselves"
+        raise SchemaError(msg)
     if "scale" in runs.coords and "capacity_scale" in runs:  # which is in multiples of the motion
         scales = in_unit(runs["scale"], Unit.ONE, owner=owner)
         runs = runs.assign_coords(scale=scales.variable)
@@ -214,11 +218,13 @@ def demands(runs: xr.Dataset, state: LimitState) -> xr.DataArray:
     return size.where(fell != 1, np.inf).where(beyond.notnull())
 
 
-def scalar_of(runs: xr.Dataset, name: str, label: str = "", *, owner: str) -> xr.DataArray:
+def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) -> xr.DataArray:
     """Give a scalar of runs, of one point, body or restrainer where it is of several."""
-    if not isinstance(cast("Any", name), str) or name not in runs:
-        msg = f"{owner}: the runs have no {shown(name)}{_instead(runs, name)}"
+    known = isinstance(cast("Any", name), str)
+    if not known or name not in runs or runs[name].dtype.kind not in "biuf":
+        msg = f"{owner}: the runs have no {shown(name)}{_instead(runs, name) if known else ''}"
         raise SchemaError(msg)
+    label = "" if label is None else str(label)
     values = runs[name]
     beside = [dim for dim in values.dims if dim not in runs["status"].dims]
     labels = values[beside[0]].to_numpy().astype(str).tolist() if beside else [""]

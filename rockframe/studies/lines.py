@@ -40,7 +40,8 @@ from rockframe.units import Condition, Measure, to_ratio
 from rockframe.version import __version__
 
 SCALE: Final = "scale"
-VERDICT: Final = "verdict"
+VERDICT: Final = "number of the verdict"
+"""Dimension of verdicts along lines; no axis can have such a name."""
 CAPACITY: Final = "least scale found to exceed"
 """Definition of a capacity, for the attributes of datasets."""
 SOURCE: Final = f"rockframe {__version__}, scan and bisection of event-driven runs"

@@ -115,7 +115,7 @@ def compare_intensities(
     {'measure': 2, 'covariate': 1}
     """
     runs = check_runs(runs, owner=_OWNER)
-    values = scalar_of(runs, response, label or "", owner=_OWNER)
+    values = scalar_of(runs, response, label, owner=_OWNER)
     floor = read_least(least, values, owner=_OWNER)
     named, clouds, kept = list[str](), list[Cloud](), list[Generic]()
     if isinstance(measures, xr.DataArray):

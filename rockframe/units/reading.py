@@ -265,10 +265,12 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
 def own_unit(values: object) -> str | None:
     """Give the unit that an array carries: as a Quantity, or in an attribute ``units``."""
     held: Any = values
-    for one in (held, getattr(held, "data", None)):
+    attributes = getattr(held, "attrs", None)
+    # an array of numpy has data too, which cannot be had of dates
+    for one in (held, None if attributes is None else getattr(held, "data", None)):
         if isinstance(one, pint.Quantity):
             return f"{one.units:~}"
-    unit = (getattr(held, "attrs", None) or {}).get("units")
+    unit = (attributes or {}).get("units")
     return unit if isinstance(unit, str) else None
 
 
@@ -293,10 +295,8 @@ def check_own_unit(values: object, unit: str, *, owner: str, name: str) -> None:
 
 def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> float:
     """Convert one of several values that have a common unit."""
-    if getattr(number, "ndim", None) == 0 and bool(getattr(number, "mask", False)):
-        msg = f"{owner}: {name} has masked values; fill them in first"
-        raise ComponentError(msg)
     if getattr(number, "ndim", None) == 0:
+        _check_mask(number, owner=owner, name=name)
         number = number.item()
     if isinstance(number, str):
         with suppress(ValueError):
@@ -308,6 +308,13 @@ def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> f
         )
         raise UnitsError(msg)
     return _check_value(_product(_float(number), factor), number, None, owner=owner, name=name)
+
+
+def _check_mask(number: Any, *, owner: str, name: str) -> None:
+    """Refuse a masked number, which is zero where it is read."""
+    if bool(getattr(number, "mask", False)):
+        msg = f"{owner}: {name} has masked values; fill them in first"
+        raise ComponentError(msg)
 
 
 def _float(number: Real) -> float:
@@ -401,6 +408,8 @@ def _in_si(value: object, measure: Measure) -> float | None:
 
 def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantity:
     if isinstance(value, pint.Quantity):
+        if getattr(value.magnitude, "ndim", None) == 0:
+            _check_mask(value.magnitude, owner=owner, name=name)
         return value
     value = _joined(value)
     needed = f"{owner}: {name} needs {measure.needed}"

@@ -194,6 +194,12 @@ def fragility(
     if len({one.name for one in measures}) < len(measures):
         msg = f"{_OWNER}: the two intensity measures are one, {measures[0].name}; give another"
         raise ComponentError(msg)
+    if alike := [str(one.name) for one in measures if one.name in structures.groups]:
+        msg = (
+            f"{_OWNER}: the structures differ along {alike[0]}, which is also the name of the "
+            "intensity measure; give the intensity as a DataArray of another name"
+        )
+        raise ComponentError(msg)
     verdicts = [exceeds(runs, state) for state in states]
     sizes = [(len(np.unique(motion_numbers(one))), one.size)
              for one in structures.parts(verdicts[-1])]  # fmt: skip

@@ -50,7 +50,7 @@ def structures_of(
     runs: xr.Dataset, pooled: Sequence[str], items: Sequence[object], *, owner: str
 ) -> Structures:
     """Find the structures of a sweep."""
-    axes, own = _axes(runs), _own(items)
+    axes, own = _axes(runs), _own(runs, items)
     changed = _changed(axes, own)
     dims = [str(dim) for dim in runs["status"].dims]
     differing = [name for name in changed if name in runs.coords or name in dims]
@@ -87,7 +87,7 @@ def check_one_structure(
     runs: xr.Dataset, pooled: Sequence[str], values: Sequence[object], *, owner: str
 ) -> None:
     """Refuse runs of several structures, but for those that are taken for one."""
-    changed = _changed(_axes(runs), _own(values))
+    changed = _changed(_axes(runs), _own(runs, values))
     several = [
         name
         for name in changed
@@ -131,9 +131,13 @@ def _axes(runs: xr.Dataset) -> dict[str, str]:
     return {one["name"]: one["changes"] for one in json.loads(runs.attrs["axes_json"])}
 
 
-def _own(values: Sequence[object]) -> list[str]:
-    """Give the names of intensities that are numbers of the runs."""
-    return [str(one.name) for one in values if isinstance(one, xr.DataArray)]
+def _own(runs: xr.Dataset, values: Sequence[object]) -> list[str]:
+    """Give the names of intensities that are numbers of the runs; no others of an axis' name."""
+    arrays = [one for one in values if isinstance(one, xr.DataArray)]
+    return [
+        str(one.name) for one in arrays
+        if one.name not in runs.coords or set(runs[one.name].dims) <= set(one.dims)
+    ]  # fmt: skip
 
 
 def _changed(axes: Mapping[str, str], own: Sequence[str]) -> list[str]:

@@ -1,7 +1,7 @@
 """Axes of a sweep, what varies and through which values; and the cases that they make."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
@@ -96,7 +96,12 @@ def numbers_of(value: object, measure: Measure, name: str, *, owner: str = OWNER
 
 
 def _with_own_unit(value: object) -> object:
-    """Give an array with an attribute ``units`` beside it, as values and their unit are given."""
+    """Give an array with an attribute ``units`` beside it, as values and their unit are given.
+
+    What can be gone through only once is given as a list.
+    """
+    if isinstance(value, Iterator):
+        return list(cast("Iterator[object]", value))
     own = None if isinstance(value, pint.Quantity | tuple) else own_unit(value)
     return value if own in (None, "", str(Unit.ONE)) else (value, own)
 
@@ -132,13 +137,13 @@ def free_values(
         return numbers_of(value, measure, name, owner=owner), str(measure.unit)
     items = _as_python(items_of(value))
     array = np.array(items)
-    if array.ndim != 1 or array.dtype.kind not in "iufbU":
+    if array.ndim != 1 or array.dtype.kind not in "ifbU":  # whole numbers beyond int64 are "u"
         msg = f"{owner}: {name} needs numbers, words or quantities in a row, got {shown(value)}"
         raise ComponentError(msg)
     if array.dtype.kind == "U" and not all(isinstance(item, str) for item in items):
         msg = f"{owner}: {name} needs values of one sort, got {shown(value)}"
         raise ComponentError(msg)
-    if array.dtype.kind in "iu":
+    if array.dtype.kind == "i":
         return array.astype(np.int64), str(Unit.ONE)
     if array.dtype.kind == "f":
         measure = Measure("a number", Unit.ONE, "2")

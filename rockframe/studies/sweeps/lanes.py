@@ -19,6 +19,7 @@ from rockframe.simulation.certify.second_look import Look, look_at
 from rockframe.simulation.plan import Plan, run_length, start_of
 from rockframe.simulation.run import Response, has_no_cautions, in_motion, scalars_of
 from rockframe.simulation.soundness import STILL_MOVING
+from rockframe.solve.equations import is_called
 from rockframe.solve.integrate import begun
 from rockframe.solve.lanes.integrate import (
     LaneRun,
@@ -158,7 +159,8 @@ def prepared(system: Assembly, said: list[str], plan: Plan) -> LaneScene | None:
         return None  # samples are looked at, for friction
     if not system.options.slope.level or (plan.has_vertical_motion and not system.setting.flies):
         return None  # the ground is another one for each scene; or a block may leave it
-    if system.model.shows_bodies or system.model.links:
+    model = system.model
+    if model.shows_bodies or model.links or is_called(model.system):
         return None  # its equations work in lists, for which there are no lanes
     begin = begun(
         system.model, start_of(plan.initial), plan.accuracy, interval=plan.interval,

@@ -15,6 +15,14 @@ from rockframe.errors import RecordWarning, RockframeError, SolverWarning, Study
 from rockframe.motion import GroundMotion
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import GROUPS, SCHEMA
+from rockframe.results.variables.analyses import LIMIT_STATE, QUANTILE, STRIPE
+from rockframe.results.variables.bodies import (
+    BODIES,
+    BODY,
+    RESTRAINER,
+    RESTRAINER_SCALARS,
+    RESTRAINERS,
+)
 from rockframe.results.variables.requests import (
     ACCELERATIONS,
     FORCE_SCALARS,
@@ -23,10 +31,11 @@ from rockframe.results.variables.requests import (
     POINT_TIME,
     POINTS,
     REACTIONS,
+    SLIPS,
 )
 from rockframe.results.variables.runs import ENERGY_HISTORIES, EVENTS_AND_SCALARS, HISTORIES
 from rockframe.results.variables.studies import MOTION, SWEEP
-from rockframe.results.variables.variable import EVENT, TIME
+from rockframe.results.variables.variable import EVENT, FLIP, TIME
 from rockframe.simulation.plan import (
     RunRequest,
     listed,
@@ -87,11 +96,14 @@ def kept_histories(
 
 Read = TypeVar("Read")
 
-_TAKEN: Final = {*TIME, *EVENT} | {
+_TAKEN: Final = {
+    *TIME, *EVENT, *BODY, *RESTRAINER,
+    *LIMIT_STATE, *STRIPE, *FLIP, *QUANTILE,  # of analyses, in which axes stay
+} | {
     row.name
     for table in (
         HISTORIES, ENERGY_HISTORIES, ACCELERATIONS, REACTIONS, OTHERS, EVENTS_AND_SCALARS,
-        FORCE_SCALARS, POINTS, POINT_PEAKS, SWEEP,
+        FORCE_SCALARS, POINTS, POINT_PEAKS, SLIPS, BODIES, RESTRAINERS, RESTRAINER_SCALARS, SWEEP,
     )
     for row in table
 }  # fmt: skip
@@ -241,7 +253,9 @@ def _table(cases: object) -> dict[str, object]:
         if name in table:
             msg = f"column {name!r} is given twice in cases"
             raise StudyError(msg)
-        plain = values if own_unit(values) else np.asanyarray(values)  # masks stay
+        plain = values
+        if not (own_unit(values) or isinstance(values, list | tuple)):
+            plain = np.asanyarray(values)  # masks stay
         table[name] = (plain, unit.removesuffix("]")) if bracket else values
     return table
 
@@ -276,7 +290,7 @@ def _name_fault(name: object) -> str | None:
         return f"{shown(name)} cannot be the name of an axis{way}"
     if name in _TAKEN:
         way = "; write 'System.rotation' for the option" if name == "rotation" else ""
-        return f"axis {name!r} has the name of a result, or of one of its dimensions{way}"
+        return f"axis {name!r} has the name of a result, or of a dimension of results{way}"
     return None
 
 

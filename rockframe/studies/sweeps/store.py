@@ -31,6 +31,8 @@ from rockframe.version import __version__
 
 _HEAD: Final = b"rockframe arrays 1 "
 _DIGEST: Final = 64
+_AGAIN: Final = "remove the file, and the same sweep makes it again"
+"""What to do about a damaged file."""
 _BLOCK: Final = 4096
 """What file systems usually give out at once [bytes]."""
 
@@ -53,13 +55,16 @@ def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Generic]]:
     content = path.read_bytes()
     start = len(_HEAD) + _DIGEST + 1
     if not content.startswith(_HEAD):
-        msg = f"{path}: found no file of a study; expected one that begins with {_HEAD.decode()!r}"
+        msg = (
+            f"{path}: found no file of a study; expected one that begins with {_HEAD.decode()!r}; "
+            f"{_AGAIN}"
+        )
         raise StudyError(msg)
     digest, body = content[len(_HEAD) : start - 1], memoryview(content)[start:]
     if hashlib.sha256(body).hexdigest().encode() != digest:
         msg = (
             f"{path}: damaged: its contents ({len(content)} bytes) are not those that were "
-            "written; remove the file, and its cases are run again"
+            f"written; {_AGAIN}"
         )
         raise StudyError(msg)
     end = content.index(b"\n", start)
@@ -82,7 +87,7 @@ def read_shapes(path: Path) -> dict[str, tuple[int, ...]]:
             head = json.loads(file.readline())
             return {name: tuple(shape) for name, _, shape in head["arrays"]}
         except (ValueError, KeyError, TypeError) as problem:
-            msg = f"{path}: damaged: {problem}; remove the file, and its cases are run again"
+            msg = f"{path}: damaged: {problem}; {_AGAIN}"
             raise StudyError(msg) from problem
 
 
@@ -162,6 +167,11 @@ class Store:
                 "the one that is asked for: give another folder"
             )
             raise StudyError(msg)
+        if not (path / _LABELS).exists():  # removed, as a damaged one is to be
+            try:
+                _make(path, study, kept["cases_of_a_chunk"])
+            except OSError as problem:
+                raise _cannot_be_kept(path, problem) from problem
         return cls._of_head(path, kept)
 
     @classmethod

@@ -1,11 +1,12 @@
 """Axes that name what a system has without being given it."""
 
 import numpy as np
+import pint
 import pytest
 import xarray as xr
 
 import rockframe as rf
-from rockframe.errors import StudyError
+from rockframe.errors import ComponentError, StudyError
 
 PULSE = rf.GroundMotion.sine_pulse("4 m/s^2", "1 Hz")
 BLOCK = rf.Block.from_size(radius="3 m", slenderness=4, mass="10 t")
@@ -170,6 +171,51 @@ def test_masked_columns_are_refused(name: str) -> None:
     column = np.ma.array([0.5, 0.6], mask=[False, True])
     with pytest.raises(StudyError, match="has masked values; fill them in first"):
         rf.sweep(system, PULSE, cases={name: column}, duration="1 s")
+
+
+def test_masked_quantities_are_refused_and_not_read_as_zero() -> None:
+    registry = pint.get_application_registry()
+    masked = registry.Quantity(np.ma.array([4.0, 5.0], mask=[False, True]), "m")
+    scene = rf.System(BLOCK)
+    for axes in ({"height": masked}, {"height": list(masked)}):
+        with pytest.raises(StudyError, match="height has masked values"):
+            rf.sweep(scene, PULSE, axes=axes)
+        with pytest.raises(StudyError, match="height has masked values"):
+            rf.sweep(scene, PULSE, cases=axes)
+    with pytest.raises(StudyError, match="drop has masked values"):
+        rf.sweep(lambda drop: scene, PULSE, axes={"drop": masked})
+    with pytest.raises(ComponentError, match="rotation has masked values"):
+        rf.InitialState(rotation=registry.Quantity(np.ma.masked, "rad"))
+
+
+def test_quantities_one_by_one_are_a_column() -> None:
+    registry = pint.get_application_registry()
+    heights = [registry.Quantity(400, "cm"), registry.Quantity(5.0, "m")]
+    runs = rf.sweep(rf.System(BLOCK), PULSE, cases={"height": heights}, duration="1 s")
+    assert runs.height.values.tolist() == [4.0, 5.0]
+    with pytest.raises(StudyError, match="as their common unit 'm' is given"):
+        rf.sweep(rf.System(BLOCK), PULSE, cases={"height [m]": heights}, duration="1 s")
+
+
+def test_values_that_are_made_one_after_the_other() -> None:
+    made = (f"{height} m" for height in (4, 5))
+    runs = rf.sweep(rf.System(BLOCK), PULSE, height=made, duration="1 s")
+    assert runs.height.values.tolist() == [4.0, 5.0]
+    runs = rf.sweep(
+        lambda tall: rf.System(BLOCK.replace(height=tall)), PULSE, duration="1 s",
+        tall=(f"{height} m" for height in (4, 5)),
+    )  # fmt: skip
+    assert runs.tall.values.tolist() == [4.0, 5.0]
+
+
+@pytest.mark.parametrize(
+    "values",
+    [np.array([2**63 + 1], dtype=np.uint64), np.array(["2026-01-01"], dtype="M8[D]")],
+    ids=["beyond whole numbers", "dates"],
+)
+def test_values_that_are_no_numbers_of_a_function_are_refused(values: np.ndarray) -> None:
+    with pytest.raises(StudyError, match="drop needs numbers, words or quantities"):
+        rf.sweep(lambda drop: rf.System(BLOCK), PULSE, drop=values)
 
 
 def test_labels_that_were_put_into_another_unit() -> None:

@@ -161,6 +161,47 @@ def test_bounds_hold_the_curve_as_often_as_they_say():
     assert 0.93 <= held / 600 <= 0.97
 
 
+def test_a_curve_that_lies_above_one_half_all_along_has_a_median_of_zero(base):
+    """Of few runs many draws of the overturning probability fall with the intensity."""
+    rng = np.random.default_rng(2)
+    logs = rng.normal(0.5, 0.6, 12)
+    response = np.exp(-2.0 + 1.5 * logs + 0.3 * rng.standard_normal(12))
+    fell = np.arange(12) == np.argsort(logs)[-2]  # one alone
+    cloud = Cloud.of(logs, np.where(fell, np.inf, response))
+    wide = np.linspace(logs.min() - 3.0, logs.max() + 3.0, 601)
+    curves = cloud.drawn(wide, 0.1, np.random.default_rng(0), 4000)
+    always = np.all(curves >= 0.5, axis=1)
+    assert 0.05 < always.mean() < 0.95
+    status = np.where(fell, RunStatus.OVERTURNED, RunStatus.COMPLETED).astype(np.int8)
+    few = base.isel(motion=slice(12))
+    dims, shape = few.status.dims, few.status.shape
+    runs = few.assign(
+        peak_relative_rotation=(dims, response.reshape(shape), {"units": "1"}),
+        status=(dims, status.reshape(shape), few.status.attrs),
+    ).assign_coords(strength=("motion", np.exp(logs), {"units": "m"}))
+    found = rf.cloud_analysis(runs, "strength", limits=[0.1]).isel(limit_state=0)
+    assert found.median_intensity_lower_bound == 0.0
+
+
+@pytest.mark.parametrize("of", ["rest", "overturning"])
+def test_runs_that_an_intensity_parts_the_wrong_way_have_no_curve(base, of):
+    rng = np.random.default_rng(3)
+    logs = rng.normal(0.0, 0.6, COUNT)
+    response = np.exp(-1.5 + 1.3 * logs + 0.35 * rng.standard_normal(COUNT))
+    strong, weak = logs > np.quantile(logs, 0.7), logs < np.quantile(logs, 0.3)
+    fell = weak if of == "overturning" else np.zeros(COUNT, bool)
+    response = np.where(strong, 0.0, response) if of == "rest" else response
+    status = np.where(fell, RunStatus.OVERTURNED, RunStatus.COMPLETED).astype(np.int8)
+    dims, shape = base.status.dims, base.status.shape
+    runs = base.assign(
+        peak_relative_rotation=(dims, response.reshape(shape), {"units": "1"}),
+        status=(dims, status.reshape(shape), base.status.attrs),
+    ).assign_coords(strength=("motion", np.exp(logs), {"units": "m"}))
+    found = rf.cloud_analysis(runs, "strength", limits=[0.1]).isel(limit_state=0)
+    assert found.fragility_status == FragilityStatus.NOT_RISING
+    assert np.isnan(found.median_intensity_upper_bound)
+
+
 def test_a_logistic_curve_without_a_fit_is_a_step_or_level():
     logs = np.array([0.0, 1.0, 2.0, 3.0])
     parted = fit_logistic(logs, np.array([0, 0, 1, 1]))

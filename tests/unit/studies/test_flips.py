@@ -135,6 +135,22 @@ def test_runs_without_a_verdict_are_neither():
     assert "Overturns from 2.3 times the motion on" in text
 
 
+def test_runs_without_a_verdict_below_the_critical_scale_leave_it_uncertain():
+    look, _ = runs_of(lambda scale: scale / math.pi, lambda scale: 0.0 < scale < 3.15)
+    found = follow(look, ROW, most=100, width=1e-3, resolution=0.01)
+    [flip] = found.flips()
+    assert (flip.below, found.up_to) == (0.0, 0.0)
+    assert flip.above >= math.pi
+    words = "Beyond 0 some are more than 1 % apart, and a lesser scale between them may overturn."
+    assert words in flips_sentence(found, width=1e-3, resolution=0.01)
+
+
+def test_no_lesser_scale_is_feared_where_the_least_overturns():
+    look, _ = runs_of(lambda scale: 1.2)
+    text = flips_sentence(follow(look, ROW, most=41, width=1e-3, resolution=0.01), width=1e-3)
+    assert text == "Overturns without the motion; looked at 41 scales up to 4, at most 0.1 apart."
+
+
 def test_nothing_is_feared_far_from_overturning_nor_looked_into_for_ever():
     look, asked = runs_of(lambda scale: 0.05 * abs(math.sin(40.0 * scale)))
     follow(look, ROW, most=10_000, width=1e-3)

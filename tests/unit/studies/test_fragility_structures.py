@@ -220,3 +220,31 @@ def test_figures_tell_structures_apart(runs):
     with pytest.raises(SchemaError, match="found 3 structures, by width; a figure shows 1"):
         rf.plot.fragility(rf.fragility(runs, ("PGA", "PGV"), limits=()))
     pyplot.close("all")
+
+
+def test_an_axis_with_the_name_of_the_measure_is_refused() -> None:
+    """It is an argument of the function, and no peak of the motions."""
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    pulse = rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz")
+    runs = rf.sweep(
+        lambda peak_ground_acceleration: system, [pulse, pulse.scaled(2.0)], duration="1 s",
+        axes={"peak_ground_acceleration": [1.0, 2.0]},
+    )  # fmt: skip
+    with pytest.raises(ComponentError, match="which is also the name of the intensity measure"):
+        rf.fragility(runs, "PGA")
+
+
+def test_an_array_with_the_name_of_an_axis_does_not_stand_for_the_axis(runs) -> None:
+    """Runs of all widths counted as those of one structure."""
+    own = xr.DataArray(np.arange(1.0, 7.0), dims="motion", name="width", attrs={"units": "m"})
+    with pytest.raises(ComponentError, match="differ along width, which is also the name"):
+        rf.fragility(runs, own)
+    with pytest.raises(StudyError, match="of several structures, by width"):
+        rf.cloud_analysis(runs.isel(scale=2), own)
+    assert "width" not in rf.fragility(runs, runs.width).median_intensity.dims
+
+
+def test_means_of_runs_have_no_fragility(runs) -> None:
+    """The mean of the statuses of a run that stands and one that lies flat is a third one's."""
+    with xr.set_options(keep_attrs=True), pytest.raises(SchemaError, match="means of runs"):
+        rf.fragility(runs.mean("width"), "PGA")

@@ -50,6 +50,49 @@ def test_a_power_law_gives_the_closed_form_of_cornell(curve, exponent):
     assert total.item() == pytest.approx(exact, rel=1e-9)
 
 
+@pytest.mark.parametrize(("exponent", "spread"), [(8.0, 0.4), (4.0, 2.0), (8.0, 2.0), (30.0, 1.5)])
+def test_a_steep_hazard_and_a_wide_spread_are_integrated_as_quadrature_does(
+    curve, exponent, spread
+):
+    wide = curve.assign(dispersion=curve.dispersion * 0.0 + spread)
+    median, ends = curve.median_intensity.item(), np.log([0.5, 20.0])
+
+    def contribution(log):  # with the rate at an intensity of one
+        share = ndtr((log - math.log(median)) / spread)
+        return share * exponent * 1e-3 * math.exp(-exponent * log)
+
+    exact = integrate.quad(contribution, *ends, epsabs=0, epsrel=1e-11, limit=200)[0]
+    table = {"intensity": (np.exp(ends), "m/s^2"), "rate": 1e-3 * np.exp(-exponent * ends)}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)  # it goes on below
+        found = rf.annual_rate(wide, table)
+    assert found.annual_rate.item() == pytest.approx(exact, rel=1e-9)
+    assert (found.rate_share >= 0.0).all()
+
+
+def test_a_median_beyond_the_table_has_no_rate_within(curve):
+    far = curve.assign(
+        median_intensity=curve.median_intensity * 1e3, dispersion=curve.dispersion * 0.0 + 1e-3
+    )
+    with pytest.warns(ModelWarning, match="1e\\+02 % of the rate"):
+        found = rf.annual_rate(far, TABLE)
+    assert found.annual_rate == 0.0
+    assert found.verdict == "Annual rate of what was counted: 0 within the hazard curve."
+
+
+def test_the_share_beyond_the_trials_is_that_beyond_the_outermost_ones():
+    """Also where stripes are groups of intensities, about the middle of each."""
+    levels = np.geomspace(0.1, 1.5, 61)
+    exceeded = np.random.default_rng(4).random(61) < ndtr(np.log(levels / 0.6) / 0.4)
+    curve = rf.fragility({"intensity": (levels, "g_0"), "exceeded": exceeded, "trials": 1}, "PGA")
+    assert curve.sizes["stripe"] < len(levels)
+    found = rf.annual_rate(curve, TABLE)
+    x = np.geomspace(levels[0] * G, levels[-1] * G, 100_001)
+    within = integrate.trapezoid(probability(curve, x) * density(x), x)
+    outside = 1.0 - within / found.annual_rate.item()
+    assert found.outside_trials_share.item() == pytest.approx(outside, abs=1e-3)
+
+
 def test_a_table_is_integrated_as_quadrature_does(curve):
     found = rf.annual_rate(curve, TABLE)
     ends = VALUES * G

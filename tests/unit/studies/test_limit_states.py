@@ -231,3 +231,22 @@ def test_capacities_go_by_scales_in_another_unit():
         lambda given: rf.fractile_curves(given).response_fractile,
     ):
         xr.testing.assert_allclose(ask(turned), ask(runs), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("analysis", "options", "words"),
+    [
+        (rf.cloud_analysis, {"response": ["peak_slip"]}, r"the runs have no \['peak_slip'\]"),
+        (rf.fractile_curves, {"response": "motion"}, "the runs have no 'motion'"),
+        (rf.cloud_analysis, {"label": np.arange(3)}, r"got '\[0 1 2\]'"),
+        (rf.fractile_curves, {"intensity": "motion"}, "'motion' has no numbers"),
+        (rf.fragility, {"intensity": "motion"}, "'motion' has no numbers"),
+        (rf.ensemble_statistics, {"name": "motion"}, "'motion' has no numbers"),
+    ],
+)
+def test_words_and_lists_in_the_place_of_a_scalar_are_refused(analysis, options, words) -> None:
+    motions = [rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (3, 4, 5, 6)]
+    system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
+    runs = rf.sweep(system, motions, scale=[1.0], duration="1 s", progress=False)
+    with pytest.raises((ComponentError, SchemaError), match=words):
+        analysis(runs, **options)

@@ -181,6 +181,22 @@ def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
 
 
 @pytest.mark.parametrize("accuracy", ["fast", "standard"])
+@pytest.mark.parametrize(
+    "parts",
+    [
+        (BLOCK, rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.5)),
+        (rf.Stack(BLOCK, BLOCK, interfaces=[rf.RigidGround(friction=0.5)]), PADS),
+    ],
+    ids=["friction on pads", "stack"],
+)
+def test_equations_that_work_in_lists_are_not_prepared_for_lanes(parts, accuracy):
+    """Lanes for them cannot be compiled: an attempt takes some seconds, and is told of."""
+    planned = plan_study(rf.System(*parts), MOTIONS[0], {"scale": [1.0]}, None, accuracy=accuracy)
+    case = in_lanes.CasesOfJob(planned.job(range(1)))
+    assert in_lanes.prepared(*case.planned(0)) is None
+
+
+@pytest.mark.parametrize("accuracy", ["fast", "standard"])
 def test_small_sweeps_run_alone(accuracy):
     few = rf.sweep(rf.System(BLOCK, PADS), MOTIONS[0], scale=[0.5, 1.0], accuracy=accuracy)
     assert few.attrs["driver"] == "each case alone"

@@ -273,6 +273,11 @@ REFUSED = [
     ),
     (ON_PADS, PULSE, {"scale": [1.0, 2.0, 1.0]}, ["'scale' has the value 1.0 twice"]),
     (ON_PADS, PULSE, {"overturned": [1.0]}, ["'overturned' has the name of a result"]),
+    # their labels were replaced by numbers of bodies; others met the dimensions of analyses
+    *(
+        (lambda **_: ON_PADS, PULSE, {name: ["a", "b"]}, [f"'{name}' has the name of a result"])
+        for name in ("body", "restrainer", "peak_slip", "limit_state", "stripe", "flip")
+    ),
     (ON_PADS, PULSE, {"rotation": ["small"]}, ["write 'System.rotation'"]),
     (ON_PADS, PULSE, {"axes": {"a b": [1.0]}}, ["'a b' cannot be the name"]),
     (ON_PADS, PULSE, {"axes": {"scale": [1.0]}, "scale": [1.0]}, ["'scale' is given twice"]),

@@ -165,7 +165,7 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
         (plain[:-1], "damaged"),
         (plain + b"\\0", "damaged"),
         (bytes(flipped), "damaged"),
-        (b"", "found no file of a study"),
+        (b"", "found no file of a study.*remove the file"),
         (other, "found a chunk of another study; expected.*cases 12 to 14"),
     ):
         chunk.write_bytes(content)
@@ -179,6 +179,20 @@ def test_other_versions_and_damaged_files_are_refused_with_a_reason(copied):
     (copied / "labels.arrays").unlink()
     with pytest.raises(StudyError, match=r"labels.arrays cannot be read"):
         rf.open_study(copied)
+
+
+def test_damaged_labels_are_made_again(copied, whole):
+    labels = copied / "labels.arrays"
+    plain = labels.read_bytes()
+    labels.write_bytes(plain[:-1])
+    with pytest.raises(StudyError, match=r"labels.arrays: damaged.*remove the file, and the same"):
+        the_sweep(copied)
+    labels.unlink()
+    with pytest.raises(StudyError, match="another study"):
+        the_sweep(copied, accuracy="fast")
+    assert not labels.exists()
+    assert as_bytes(the_sweep(copied)) == as_bytes(whole[1])
+    assert labels.read_bytes() == plain
 
 
 def test_a_study_of_another_version_is_read_and_not_gone_on_with(copied, whole):
