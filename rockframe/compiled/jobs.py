@@ -105,8 +105,8 @@ _said: Final[set[str]] = set()
 _SECONDS_OF_BYTE: Final = 1.7e-4
 """Time to compile a byte of Python's bytecode, of a function and all that it calls [s].
 
-Measured with numba 0.68 for blocks on pads, coupled, and in stacks: the processor time for all that
-a run needs was 0.9 to 1.2 times this estimate.
+Measured with numba 0.68 for blocks on pads, coupled, and in stacks: the processor time for each of
+the first jobs of a run was 0.8 to 1.3 times this estimate.
 """
 
 

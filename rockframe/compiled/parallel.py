@@ -29,6 +29,12 @@ _logger = logging.getLogger("rockframe")
 _announced: Final[set[str]] = set()
 _FREEZE: Final = 2.0
 """Time of a compilation from which on each one is announced, not only the first [s]."""
+AGAIN: Final = 0.45
+"""Time to compile a function for a further job, over that for the first one [1].
+
+Measured with numba 0.68 for stacks of two to five blocks, on pads and on rigid ground, with
+friction and without: the processor time for all jobs of a run was 0.98 to 1.01 times the estimate.
+"""
 
 
 class NotCompiledError(Exception):
@@ -84,8 +90,9 @@ def time_for(jobs: Sequence[Job]) -> float:
     """Estimate how long the jobs that are not stored take to compile on an idle machine [s]."""
     try:
         missing = [job for job in jobs if not job.is_stored]
-        longest = max((job.seconds for job in missing), default=0.0)
-        return max(longest, seconds_of(missing) / min(2, processors()))
+        seconds, once = [job.seconds for job in missing], seconds_of(missing)
+        together = once + AGAIN * (sum(seconds) - once)
+        return max([*seconds, together / min(2, processors())])
     except Exception:  # reported where it is compiled
         return 0.0
 

@@ -13,13 +13,7 @@ from rockframe.components.block_numbers import (
     unphysical_inertia,
     width_by_radius,
 )
-from rockframe.components.parameters import (
-    DERIVED,
-    Declared,
-    Parameter,
-    Ratio,
-    SIValues,
-)
+from rockframe.components.parameters import DERIVED, Declared, Parameter, Ratio, SIValues
 from rockframe.components.shapes import outline, parts
 from rockframe.errors import ComponentError, ModelWarning, shown, warn
 from rockframe.many import hypot
@@ -243,7 +237,7 @@ class Block(Component):
         """
         named = [name for name in (*_BY_SIZE, *_SIDES) if name in changed]
         sides = sum(name in _SIDES for name in named)
-        twice = sides == 2 if "slenderness" in named else False
+        twice = sides == 2 and "slenderness" in named
         return tuple(named) if twice or ("radius" in named and sides) else ()
 
     def with_si(self, values: Mapping[str, Any]) -> Self:
@@ -345,7 +339,7 @@ class Block(Component):
             whole = hypot(numbers.width, numbers.height)
             mu *= (diagonal / whole) ** 2
         si = BlockSI(numbers.width, numbers.height, numbers.mass, mu, height, beside)
-        check_representable(si, type(self).__name__)
+        check_representable(si, owner)
         return si
 
     def _cautions(self) -> list[str]:

@@ -61,10 +61,11 @@ class Balance(NamedTuple):
     presses: Vector  # normal forces of bases
     stretches: Vector  # elongations of links at which their laws give their forces
     pulls: Matrix  # forces of links, to the right and up
+    couples: Vector  # couples that hold rotations, against them
 
     @classmethod
-    def of(cls, chain: "StandingChain", stands: "Sequence[Stand]") -> "Balance":
-        """Give the forces and places of bodies as they stand."""
+    def of(cls, chain: "StandingChain", stands: "Sequence[Stand]", held: int = 1) -> "Balance":
+        """Give the forces and places of bodies as they stand, no couple yet on `held` rotations."""
         tied = chain.tied(stands)
         return cls(
             np.array([one.state.rotation for one in stands]),
@@ -72,6 +73,7 @@ class Balance(NamedTuple):
             np.array([one.press for one in stands]),
             np.array([one.elongation for one in tied]),
             np.array([one.force * one.direction for one in tied]).reshape(-1, 2),
+            np.zeros(held),
         )
 
 
@@ -223,7 +225,9 @@ class _Step:
         self.leads = bool((np.abs(found) < FAR).all())
         if self.leads:
             self.move = self.following @ found[: self.free.sum()]
-            self._link_moves((held.chain.weight * found[self.free.sum() :]).tolist())
+            forces = held.chain.weight * found[self.free.sum() :]
+            self._link_moves(forces[: len(self.answers)].tolist())
+            self.more_couple = self.sizes[1] / self.sizes[0] * forces[len(self.answers) :]
 
     def _link_moves(self, forces: Sequence[float]) -> None:
         """Set the changes of links in this step, and whether it is the last one."""
@@ -237,7 +241,7 @@ class _Step:
             float(one.direction @ one.way @ self.move) + one.elongation - stretch
             for one, stretch in zip(self.tied, self.place.stretches.tolist(), strict=True)
         ]
-        for one, force in zip(self.answers, forces, strict=False):
+        for one, force in zip(self.answers, forces, strict=True):
             self.more_pull[one.link] += force * one.direction
         for i, (link, one) in enumerate(zip(self.chain.ties, self.tied, strict=True)):
             rounding = ANSWERED * CLOSE * self.chain.weight
@@ -274,7 +278,8 @@ class _Step:
         presses -= share * (self.of_bases @ self.move)[1::2]
         stretches = self.place.stretches + share * np.array(self.more_stretch)
         pulls = self.pulls + share * self.more_pull
-        return Balance(there[::2], there[1::2], presses, stretches, pulls)
+        couples = self.place.couples + share * self.more_couple
+        return Balance(there[::2], there[1::2], presses, stretches, pulls, couples)
 
     def _answers_of(self, i: int, tied: "Tied") -> list[_Answer]:
         """Give the directions in which a link has stiffness; in others its law gives its force."""
@@ -318,6 +323,7 @@ class _Step:
         for k, (standing, one) in enumerate(zip(chain.bodies, self.stands, strict=True)):
             if not standing.corner:
                 forces[2 * k : 2 * k + 2] += one.force.moment, one.force.upward
+        forces[::2] -= self.place.couples @ self.held.sums
         inner = self.of_bases + of_loads(chain, self.stands, self._loads, SECANT)
         inner *= sizes * sizes[:, None] / energy
         ways = [weight / energy * one.direction @ self.tied[one.link].way for one in self.answers]

@@ -339,7 +339,7 @@ class StandingChain(NamedTuple):
     def _loaded(self, stands: Sequence[Stand], sums: Sequence[Sequence[float]]) -> Path | None:
         """Follow bodies as eccentricity, slope and links grow, with sums of rotations held."""
         rows = np.array(sums).reshape(-1, len(stands))
-        start = Balance.of(self, stands)
+        start = Balance.of(self, stands, len(rows))
         held = rows @ start.rotations
         return followed(
             lambda share: HeldBodies(self.with_share(share), rows, held), Path(0.0, start)

@@ -235,12 +235,14 @@ def to_si(
 
 def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> list[float]:
     """Convert an argument of one or several values to floats in SI units."""
-    if isinstance(value, str):
-        return [to_si(value, measure, owner=owner, name=name)]
     if isinstance(value, pint.Quantity):
         argument: Any = value
         return [to_si(one, measure, owner=owner, name=name) for one in _each(argument)]
-    if isinstance(value, Iterable) and getattr(value, "ndim", 1) != 0:
+    if (
+        isinstance(value, Iterable)
+        and not isinstance(value, str)
+        and getattr(value, "ndim", 1) != 0
+    ):
         items: list[Any] = list(value)
         alone = isinstance(items[0], str | pint.Quantity | None) if items else True
         if len(items) == 2 and isinstance(items[1], str) and not alone:
@@ -365,10 +367,6 @@ def products(numbers: Sequence[float], factor: float) -> list[float]:
         else _product(float(text), factor)
         for text in map(repr, numbers)
     ]
-
-
-def _each(value: Any) -> Iterable[Any]:
-    return value if getattr(value.magnitude, "ndim", 0) == 1 else [value]
 
 
 def to_ratio(

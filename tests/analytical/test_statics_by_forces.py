@@ -305,6 +305,27 @@ def test_the_couple_on_three_bodies_is_the_slope_of_their_energy():
         assert high - low == pytest.approx(work, rel=1e-3, abs=1e-6)
 
 
+@pytest.mark.parametrize("stiffness", ["1e10 N/m", "2e11 N/m", "1e13 N/m", "1e15 N/m"])
+def test_a_body_on_practically_rigid_pads_is_one_with_the_body_below(stiffness):
+    """Pads of very different stiffness: the lower body, eccentric, leans on soft ones."""
+    soft = rf.TwoSpringSupport(stiffness="1 MN/m", damping_ratio=0.1)
+    stiff = rf.TwoSpringSupport(stiffness=stiffness, damping_ratio=0.1)
+    above = rf.Block(width="0.7 m", height="0.7 m", mass="400 kg")
+    below = rf.Block(
+        width="1 m", height="0.8 m", mass="1200 kg", centre_of_mass=("0.4 m", "-0.04 m")
+    )
+    both = rf.Block(
+        width="1 m", height="1.5 m", mass="1600 kg", centre_of_mass=("0.5875 m", "-0.03 m")
+    )
+    angles = ([0.0, 1e-6, -1e-6, 1e-3, -9e-4], "rad")
+    found = rf.System(rf.Stack(above, below, interfaces=[stiff]), soft).moment_rotation(angles)
+    of_one = rf.System(both, soft).moment_rotation(angles)
+    compliance = 1e6 / float(stiffness.split()[0])
+    np.testing.assert_allclose(
+        found.restoring_moment, of_one.restoring_moment, rtol=10.0 * compliance + EXACT
+    )
+
+
 # laws of one's own --------------------------------------------------------------------------------
 
 

@@ -163,6 +163,17 @@ def test_what_a_helper_cannot_import_is_compiled_all_the_same(monkeypatch):
     assert values.tolist() == [5.0]
 
 
+def test_functions_that_jobs_share_are_compiled_again_for_each(monkeypatch):
+    from rockframe.compiled import parallel
+
+    monkeypatch.setattr(parallel, "seconds_of", lambda jobs: 4.0)  # the jobs share 1 s
+    jobs = [SimpleNamespace(is_stored=False, seconds=seconds) for seconds in (2.0, 3.0)]
+    monkeypatch.setattr(parallel, "processors", lambda: 1)
+    assert parallel.time_for(jobs) == pytest.approx(4.0 + parallel.AGAIN)
+    monkeypatch.setattr(parallel, "processors", lambda: 8)
+    assert parallel.time_for(jobs) == 3.0  # the longest
+
+
 def test_what_others_compile_is_left_for_last(monkeypatch):
     from rockframe.compiled import parallel
 
