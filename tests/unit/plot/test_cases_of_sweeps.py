@@ -88,6 +88,33 @@ def test_cases_of_stacks_lack_what_is_drawn_of_their_bodies():
         rf.plot.state(runs.squeeze())
 
 
+@pytest.mark.parametrize("kept", [["energy"], None])
+def test_the_advice_for_a_case_without_histories_gives_a_figure(kept):
+    runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.5, 0.6], outputs=kept, **QUIET)
+    one = runs.isel(scale=1, motion=0)
+    advice = r"got a Dataset with a case of a sweep without .*; rf\.case\(dataset\)\.simulate\(\)"
+    for draw in (rf.plot.response, rf.plot.state, rf.plot.phase, rf.plot.player):
+        with pytest.raises(SchemaError, match=advice):
+            draw(one)
+        draw(rf.case(one).simulate())
+    with pytest.raises(SchemaError, match=r"no function .* a case of a sweep without .*rf\.case"):
+        one.rockframe.plot()
+    with pytest.raises(
+        SchemaError, match=r"many runs; rf\.plot\.sweep.*, rf\.case\(dataset, \.\.\."
+    ):
+        rf.plot.response(runs)
+    with pytest.raises(SchemaError, match=r"many runs; rf\.plot\.sweep draws it$"):
+        rf.plot.fragility(runs)
+    with pytest.raises(SchemaError, match=r"got a case of a sweep; rf\.plot\.response\(case\.sim"):
+        rf.plot.response(rf.case(one))
+
+
+def test_the_advice_for_energies_of_a_case_gives_a_figure(fallen):
+    with pytest.raises(SchemaError, match=r"rf\.case\(dataset\)\.simulate\(outputs=\('energy',\)"):
+        rf.plot.energies(fallen)
+    rf.plot.energies(rf.case(fallen).simulate(outputs=("energy",)))
+
+
 def test_reports_take_cases_and_what_was_made_of_sweeps(fallen, tmp_path):
     system, path = rf.System(BLOCK), tmp_path / "report.html"
     some = rf.sweep(system, PULSE, scale=[0.5], outputs=["energy"], **QUIET)
