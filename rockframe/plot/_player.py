@@ -185,7 +185,7 @@ def player(
     chosen = units_of(units, "player")
     unit = chosen.unless_relative(ANGLE, rotation=chosen.rotations(rotation))
     ground = chosen.of(ACCELERATION)
-    moving = Moving(drawn.dataset, "player", magnify, chosen, run)
+    moving = Moving(drawn.dataset, "player", magnify, chosen)
     start, end = float(drawn.time[0]), float(drawn.time[-1])
     count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MOST_FRAMES))
     shown_at = drawn.nearest(np.linspace(start, end, count))
@@ -214,6 +214,7 @@ def player(
         "colours": CONTACT_COLOURS,
         "pressed": CONTACT,
         "magnify": float(magnify),
+        "length": {"words": raised(length.words), "size": length.size},
         "levels": _LEVELS,
         "nowhere": _NOWHERE,
         "numbers": store.packed(),

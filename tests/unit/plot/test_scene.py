@@ -7,7 +7,7 @@ import pytest
 from matplotlib.patches import Polygon
 
 import rockframe as rf
-from rockframe.errors import ComponentError, FileError, UnitsError
+from rockframe.errors import ComponentError, FileError, SchemaError, UnitsError
 from rockframe.plot._artists import Drawer
 from rockframe.plot._runs import runs_of
 from rockframe.plot._scene import Moving
@@ -234,9 +234,27 @@ def test_a_restrainer_is_drawn_until_it_breaks():
         assert np.isnan(tie).all() == (run.time[place].item() >= broke)
     # it stays broken in a window that begins later
     (drawn,) = runs_of(run, "animation", (f"{broke + 0.1} s", None))
-    later = Moving(drawn.dataset, "animation", 1.0, whole=run)
+    later = Moving(drawn.dataset, "animation", 1.0)
     assert np.isnan(later.drawer.lay_out(later.at(0)).ties[0]).all()
     rf.plot.player(run, window=(f"{broke - 0.1} s", None))
+
+
+def test_a_restrainer_stays_broken_in_a_run_that_continues_another():
+    system = rf.System(SLIM, TIE)
+    run = system.simulate(PULSE, free_vibration="1 s")
+    assert run.broken_restrainer_count == 1
+    later = Moving(system.simulate(duration="0.2 s", initial=run), "state", 1.0)
+    for place in (0, 5):
+        assert np.isnan(later.drawer.lay_out(later.at(place)).ties[0]).all()
+
+
+def test_a_case_of_a_sweep_is_not_drawn_with_a_restrainer_that_broke():
+    runs = rf.sweep(rf.System(SLIM, TIE), PULSE, scale=[0.1, 1.0], outputs=[], progress=False)
+    rf.plot.state(runs.isel(scale=0, motion=0))
+    broke = runs.isel(scale=1, motion=0)
+    with pytest.raises(SchemaError, match=r"lacks 'restrainer_state'.*rf\.case"):
+        rf.plot.state(broke)
+    rf.plot.state(rf.case(broke).simulate())
 
 
 def test_a_restrainer_without_a_length_is_seen():
