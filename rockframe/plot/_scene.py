@@ -20,6 +20,7 @@ from rockframe.plot._checks import (
     system_of_run,
 )
 from rockframe.plot._panels import Axes, AxesLike, single
+from rockframe.plot._response import CONTACT_OF_BODIES
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.simulation.plan import points_of
 from rockframe.simulation.system import System
@@ -142,7 +143,7 @@ def state(
     Returns
     -------
     matplotlib.axes.Axes
-        As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the block at rest is
+        As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the bodies at rest are
         dashed. Contact has its own colour: points and lines of bases in contact, and compressed
         pads. A broken restrainer is not drawn.
 
@@ -190,7 +191,10 @@ class Moving:
         self.drawer = Drawer(geometry_of(self.system.assembly), number)
         self.run = run
         self.time = run["time"].to_numpy()
-        needed = (*_FOLLOWED[:4], *(_OF_BODIES if self.geometry.lower else ()))
+        needed = (
+            *_FOLLOWED[:4],
+            *((*_OF_BODIES, CONTACT_OF_BODIES) if self.geometry.lower else ()),
+        )
         if self.geometry.ties and run.get(_BROKEN_COUNT, 0) > 0:
             needed += (_OF_TIES,)
         missing = [name for name in needed if name not in run]
@@ -228,16 +232,17 @@ class Moving:
     def at(self, place: int) -> Placement:
         """Give the scene at a sample."""
         values = {name: float(column[place]) for name, column in self._columns.items()}
-        bodies = None
+        bodies = contacts = None
         if self.geometry.lower:
             bodies = np.column_stack([self.run[name].to_numpy()[:, place] for name in _OF_BODIES])
+            contacts = self.run[CONTACT_OF_BODIES].to_numpy()[:, place]
         broken = frozenset[int]()
         if self._broken is not None:
             broken = frozenset(np.flatnonzero(self._broken[place]).tolist())
             if self.geometry.columns:  # in each column there are all tendons
                 all_broke = 0 < self.run.sizes["restrainer"] == len(broken)
                 broken = frozenset(range(len(self.geometry.ties)) if all_broke else ())
-        return Placement(self.geometry, values, self.system.restraint, bodies, broken)
+        return Placement(self.geometry, values, self.system.restraint, bodies, broken, contacts)
 
     def nearest(self, time: object) -> int:
         """Find the sample nearest to a time, or that of the largest rotation."""

@@ -75,7 +75,9 @@ def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
     for place, when in list(enumerate(data["times"]))[::7]:
         there = moving.drawer.lay_out(moving.at(int(np.argmin(abs(times - when)))))
         np.testing.assert_allclose(block[place], there.block, atol=0.51 * step)
-        np.testing.assert_allclose(cross[place, 0], there.centre, atol=0.51 * step)
+        np.testing.assert_allclose(cross[place], there.centres, atol=0.51 * step)
+    rest = [one for one in data["layers"]["list"] if one["name"] == "at rest"]
+    assert len(rest) == (2 if scene in ("stack", "pads, cap and soil") else 1)
     box = data["layers"]
     assert (np.nanmin(block, axis=(0, 1)) >= (box["left"], box["bottom"])).all()
     if scene == "pads":
