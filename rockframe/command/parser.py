@@ -20,6 +20,8 @@ _OWNER: Final = re.compile(
     r"simulate|rf\.plot\.\w+): "
 )
 """Names of functions at the head of messages, which do not help on the command line."""
+_OF_SCENES: Final = "scene"
+"""Argument of the commands that read the file of a scene."""
 _CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
 
 EXIT_CODES: Final = """\
@@ -105,7 +107,7 @@ def misspelt(typed: Sequence[str]) -> str | None:
 
 
 def as_typed(words: str, name: str) -> str:
-    """Rewrite a message of a Python function in terms of the command line."""
+    """Rewrite a message of a Python function for the command line and the file of a scene."""
     command = next(one for one in COMMANDS if one.name == name)
     options = _options(command)
 
@@ -113,7 +115,12 @@ def as_typed(words: str, name: str) -> str:
         option = f"--{match[1].replace('_', '-')}"
         return f"{option} '{match[2]}'" if option in options else match[0]
 
-    return _EXAMPLE.sub(typed, _OWNER.sub("", words))
+    words = _EXAMPLE.sub(typed, _OWNER.sub("", words))
+    if not any(_OF_SCENES in argument.names for argument in command.arguments):
+        return words
+    from rockframe.command.files.notation import in_toml
+
+    return in_toml(words)
 
 
 def _options(command: Command | None) -> list[str]:
