@@ -3,7 +3,7 @@
 import argparse
 import re
 from collections.abc import Sequence
-from typing import Any, ClassVar, Final, NoReturn
+from typing import Any, Final, NoReturn
 
 from rockframe.command.arguments import EVERYWHERE, Command
 from rockframe.command.commands import COMMANDS
@@ -55,7 +55,7 @@ def build_parser() -> argparse.ArgumentParser:
     everywhere = argparse.ArgumentParser(add_help=False)
     for one in EVERYWHERE:
         everywhere.add_argument(*one.names, **one.settings, default=argparse.SUPPRESS)
-    parser = TellingParser(
+    parser = _Parser(
         prog="rockframe",
         description=_STORY,
         epilog=f"'rockframe COMMAND --help' explains a command, with examples.\n\n{EXIT_CODES}",
@@ -146,18 +146,22 @@ def _no_option(word: str, command: Command | None, options: Sequence[str]) -> st
     return f"{who}: there is no option {word}{near} '{who} --help' lists all"
 
 
-class TellingParser(argparse.ArgumentParser):
-    """Keeps the message on a wrong command line for the answer in JSON."""
+class WrongLineError(Exception):
+    """A wrong command line; the message has been written."""
 
-    told: ClassVar[str] = ""
+
+class _Parser(argparse.ArgumentParser):
+    """Raises its message on a wrong command line, for the answer in JSON."""
 
     def error(self, message: str) -> NoReturn:
-        """Keep the message, and exit."""
-        TellingParser.told = message
-        super().error(message)
+        """Write usage and message, and raise the message."""
+        try:
+            super().error(message)
+        except SystemExit as left:
+            raise WrongLineError(message) from left
 
 
-class _CommandParser(TellingParser):
+class _CommandParser(_Parser):
     """Parser of one command: files and options in any order, proposals for wrong choices."""
 
     _within = False
