@@ -6,6 +6,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion import GroundMotion
+from rockframe.simulation.provenance import motion_words
 
 RNG = np.random.default_rng(7)
 NORTH, EAST = RNG.normal(size=(2, 400)) * np.sin(np.pi * np.arange(400) / 399.0)
@@ -198,3 +199,28 @@ def test_scaling_and_misfit():
         assert changed.metadata["scale_factor"] == factor
     for same in (scaled.scaled(-1), scaled.resampled("0.005 s"), scaled.with_vertical(scaled)):
         assert same.metadata["spectral_misfit"] == scaled.metadata["spectral_misfit"]
+
+
+@pytest.mark.parametrize(
+    ("process", "name"),
+    [
+        (lambda one: one, "one"),
+        (lambda one: one.scaled(0.5), "0.5 times one"),
+        (lambda one: one.filtered(low="1 Hz").scaled(0.5), "0.5 times one, filtered"),
+        (lambda one: one.window("1 s", taper="0.1 s").window("0.5 s"), "one, cut, tapered"),
+        (lambda one: one.resampled("0.005 s").baseline_corrected(),
+         "one, resampled, baseline corrected"),
+        (lambda one: one.resampled("0.01 s"), "one"),
+        (lambda one: one.rotated(motion(EAST), "30 deg"), "one, rotated"),
+        (lambda one: one.with_vertical(one), "one"),
+        (lambda one: one.through_storeys(periods=["0.5 s"], time_step="0.01 s"), "one, at a floor"),
+        (lambda one: one.matched(rf.TargetSpectrum.eurocode_8("0.2 g_0"),
+                                 periods=("0.1 s", "0.5 s"), tolerance=0.3), "one, matched"),
+    ],
+)  # fmt: skip
+def test_the_name_in_titles_and_labels_tells_how_a_motion_was_processed(process, name):
+    made = process(motion(NORTH))
+    system = rf.System(rf.Block(width="2 m", height="4 m", mass="2 t"))
+    run = system.simulate(made, duration="0.1 s", outputs=None)
+    assert motion_words(run.attrs) == name
+    assert rf.plot.motion(made).figure.get_suptitle() == name
