@@ -201,7 +201,8 @@ def above_zero(value: object, function: str, name: str) -> float:
 def system_of_run(run: xr.Dataset, function: str) -> System:
     """Build the system of a run, without its motion."""
     text = run.attrs.get("system_json")
-    if not isinstance(text, str):
+    of_function = OF_SWEEP in run.attrs and "function" in run.attrs
+    if not isinstance(text, str) and not of_function:
         msg = (
             f"rf.plot.{function}: the dataset has no attribute 'system_json'; expected the result "
             "of simulate() with its attributes"
@@ -211,7 +212,7 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         warnings.simplefilter("ignore", RockframeWarning)  # issued already by the run
         if OF_SWEEP in run.attrs:
             return system_of_case(run, owner=f"rf.plot.{function}")
-        return System.from_dict(json.loads(text))
+        return System.from_dict(json.loads(str(text)))
 
 
 def refuse(function: str, value: object) -> str:
