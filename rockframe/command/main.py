@@ -12,7 +12,7 @@ from importlib import import_module
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final
 
-from rockframe.command.parser import TellingParser, as_typed, build_parser, misspelt
+from rockframe.command.parser import WrongLineError, as_typed, build_parser, misspelt
 from rockframe.command.streams import StandardInput, tell
 from rockframe.errors import RockframeError, RockframeWarning, SolverError
 
@@ -38,8 +38,10 @@ def main(values: Sequence[str] | None = None) -> int:
     parser = build_parser()
     try:
         arguments = parser.parse_args(typed)
-    except SystemExit as left:  # help, version, or a wrong command line
-        return _wrong(typed, TellingParser.told) if left.code else 0
+    except WrongLineError as problem:
+        return _wrong(typed, str(problem))
+    except SystemExit:  # after help or version
+        return 0
     if arguments.command is None:
         parser.print_help()
         return WRONG_INPUT

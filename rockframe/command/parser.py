@@ -3,7 +3,7 @@
 import argparse
 import re
 from collections.abc import Sequence
-from typing import Any, ClassVar, Final, NoReturn
+from typing import Any, Final, NoReturn
 
 from rockframe.command.arguments import EVERYWHERE, Command
 from rockframe.command.commands import COMMANDS
@@ -20,6 +20,8 @@ _OWNER: Final = re.compile(
     r"simulate|rf\.plot\.\w+): "
 )
 """Names of functions at the head of messages, which do not help on the command line."""
+_OF_SCENES: Final = "scene"
+"""Argument of the commands that read the file of a scene."""
 _CHOICE: Final = re.compile(r"invalid choice: '(.*?)'")
 
 EXIT_CODES: Final = """\
@@ -53,7 +55,7 @@ def build_parser() -> argparse.ArgumentParser:
     everywhere = argparse.ArgumentParser(add_help=False)
     for one in EVERYWHERE:
         everywhere.add_argument(*one.names, **one.settings, default=argparse.SUPPRESS)
-    parser = TellingParser(
+    parser = _Parser(
         prog="rockframe",
         description=_STORY,
         epilog=f"'rockframe COMMAND --help' explains a command, with examples.\n\n{EXIT_CODES}",
@@ -105,7 +107,7 @@ def misspelt(typed: Sequence[str]) -> str | None:
 
 
 def as_typed(words: str, name: str) -> str:
-    """Rewrite a message of a Python function in terms of the command line."""
+    """Rewrite a message of a Python function for the command line and the file of a scene."""
     command = next(one for one in COMMANDS if one.name == name)
     options = _options(command)
 
@@ -113,7 +115,12 @@ def as_typed(words: str, name: str) -> str:
         option = f"--{match[1].replace('_', '-')}"
         return f"{option} '{match[2]}'" if option in options else match[0]
 
-    return _EXAMPLE.sub(typed, _OWNER.sub("", words))
+    words = _EXAMPLE.sub(typed, _OWNER.sub("", words))
+    if not any(_OF_SCENES in argument.names for argument in command.arguments):
+        return words
+    from rockframe.command.files.notation import in_toml
+
+    return in_toml(words)
 
 
 def _options(command: Command | None) -> list[str]:
@@ -139,18 +146,22 @@ def _no_option(word: str, command: Command | None, options: Sequence[str]) -> st
     return f"{who}: there is no option {word}{near} '{who} --help' lists all"
 
 
-class TellingParser(argparse.ArgumentParser):
-    """Keeps the message on a wrong command line for the answer in JSON."""
+class WrongLineError(Exception):
+    """A wrong command line; the message has been written."""
 
-    told: ClassVar[str] = ""
+
+class _Parser(argparse.ArgumentParser):
+    """Raises its message on a wrong command line, for the answer in JSON."""
 
     def error(self, message: str) -> NoReturn:
-        """Keep the message, and exit."""
-        TellingParser.told = message
-        super().error(message)
+        """Write usage and message, and raise the message."""
+        try:
+            super().error(message)
+        except SystemExit as left:
+            raise WrongLineError(message) from left
 
 
-class _CommandParser(TellingParser):
+class _CommandParser(_Parser):
     """Parser of one command: files and options in any order, proposals for wrong choices."""
 
     _within = False

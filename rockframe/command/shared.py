@@ -147,7 +147,7 @@ def store_from(arguments: argparse.Namespace) -> Path | None:
 
 
 def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
-    """Read numbers, listed or from:to:step, and the unit after them where the example has one."""
+    """Read numbers but zero, listed or from:to:step, with a unit where the example has one."""
     numbers, _, unit = words.strip().partition(" ")
     unit = unit.strip()
     try:
@@ -161,9 +161,15 @@ def values_of(words: str, option: str, example: str) -> tuple[list[float], str]:
         with_unit = " followed by their unit" if " " in example else " without a unit"
         msg = (
             f"{option}: expected numbers{with_unit}, as from:to:step, such as '{example}', or "
-            f"listed with commas; got {shown(words)}"
+            f"listed with commas, decimals with a point; got {shown(words)}"
         )
         raise ComponentError(msg) from None
+    if 0.0 in found:
+        msg = (
+            f"{option}: expected numbers other than zero, got {', '.join(f'{x:g}' for x in found)} "
+            f"from {shown(words)}; commas separate numbers, decimals have a point, as in 0.5"
+        )
+        raise ComponentError(msg)
     return found, unit
 
 

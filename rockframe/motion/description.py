@@ -18,13 +18,33 @@ from rockframe.signals import Motion, Signal
 from rockframe.signals.motion import VERTICAL
 
 _SCALED: Final = re.compile(r"scaled by (\S+)(?: to .*)?")
+_PROCESSED: Final = {
+    "window from ": "cut",
+    "tapered over ": "tapered",
+    "resampled from ": "resampled",
+    "Butterworth filter ": "filtered",
+    "baseline corrected": "baseline corrected",
+    "rotated by ": "rotated",
+    "absolute acceleration of a floor": "at a floor",
+}
+"""Beginnings of the steps of a history that change a motion, and the words for its name."""
+_MATCHED: Final = re.compile(r"scaled by \S+ and matched to ")
 
 
 def shown_name(name: str, history: Iterable[str]) -> str:
-    """Give the name of a motion, with the factor of a scaled one before it."""
-    steps = [_SCALED.fullmatch(step) for step in history]
-    factor = math.prod(float(step[1]) for step in steps if step is not None)
-    return name if factor == 1.0 else f"{factor:.6g} times {name}"
+    """Give the name of a motion, with its factor before it and its processing behind it."""
+    steps = list(history)
+    factors = [_SCALED.fullmatch(step) for step in steps]
+    factor = math.prod(float(found[1]) for found in factors if found is not None)
+    named = ", ".join([name, *dict.fromkeys(filter(None, map(_processing, steps)))])
+    return named if factor == 1.0 else f"{factor:.6g} times {named}"
+
+
+def _processing(step: str) -> str:
+    """Give the word for a step of a history that changes a motion; nothing for another."""
+    if _MATCHED.match(step):
+        return "matched"
+    return next((words for start, words in _PROCESSED.items() if step.startswith(start)), "")
 
 
 _TOLD: tuple[str, ...] = ("event", "station", "component")

@@ -247,7 +247,7 @@ def animation(
     times = np.linspace(drawn.time[0], drawn.time[-1], count)
     chosen = units_of(units, "animation")
     trace_in = chosen.rotations(rotation)
-    moving = Moving(drawn.dataset, "animation", magnify, chosen, run)
+    moving = Moving(drawn.dataset, "animation", magnify, chosen)
     shown_at = drawn.nearest(times)
     width, height = figure_size(moving.drawer, wide=False)
     names = ["scene", "rotation", *strips_of([drawn])]

@@ -9,7 +9,6 @@ from typing import Any, Final
 import numpy as np
 
 from rockframe.components import Component, Load
-from rockframe.dynamics.events import ContactState
 from rockframe.notebook import arguments_in_words
 from rockframe.plot._axes import (
     BLUE,
@@ -39,6 +38,7 @@ _LEAST_THICKNESS: Final = 0.15
 """Least thickness of a compressed pad over that at rest, at any magnification."""
 _SPRINGS: Final = 81
 """Number of points of the surface of the soil beneath a base."""
+_NOWHERE: Final = np.full((1, 2), np.nan)
 
 
 @dataclass(frozen=True)
@@ -48,15 +48,21 @@ class Layout:
     block: Array  # outline
     cap: Array | None  # outline
     members: tuple[Array, ...]  # of a frame
-    centre: Array  # the block's centre of mass
+    centres: Array  # centres of mass of the bodies, the block's first
     pads: tuple[Array, ...]  # left and right, or none
     pads_bear: tuple[bool, ...]  # whether each of them is in contact
     soil: Array | None  # its surface, from the left edge of the drawing to the right one
-    touching: tuple[Array, ...]  # contacts: points, shape (1, 2), and lines
+    # contacts of each base, or of each end of pads: a point, shape (1, 2), or a line; else NaN
+    touching: tuple[Array, ...]
     ground: Array  # surface of rigid ground, where there is no soil
     lower: tuple[Array, ...]  # outlines of the bodies of a stack beneath the block
     ties: tuple[Array, ...]  # both ends of each restrainer, shape (2, 2); NaN once it broke
     others: tuple[Array, ...]  # outlines of a frame's other columns and of its beam
+
+    @property
+    def bodies(self) -> tuple[Array, ...]:
+        """Outlines of all bodies."""
+        return (self.block, *self.others, *self.lower, *(() if self.cap is None else (self.cap,)))
 
 
 @dataclass(frozen=True)
@@ -87,7 +93,7 @@ class Drawer:
         block = self._moved(at.block, geometry.block) + lift
         level = geometry.place
         members = tuple(self._moved(at.block, one + level) + lift for one in geometry.members)
-        centre = self._moved(at.block, np.array([geometry.centre]) + level)[0] + lift
+        centres = self._moved(at.block, np.array([geometry.centre]) + level) + lift
         outline = geometry.cap_outline
         cap = None if outline is None else self._moved(at.cap, outline)
         pads, bear = self._pads(at)
@@ -97,24 +103,37 @@ class Drawer:
         if geometry.beam is not None:
             block, others = columns[0], (*columns[1:], self._moved(at.beam, geometry.beam))
             moves = (at.values["horizontal_displacement"], at.values["vertical_displacement"])
-            centre = np.array(geometry.moved) + self.magnify * np.array(moves)
-        ends = tuple(
-            one[k : k + 1] for one in columns or (block,) for k in (0, 1) if at.bearing()[k]
-        )
-        if pads:
-            touching = (*touching, *ends)
-        elif soil is None:
-            touching = tuple(one[:2] for one in columns or (block,)) if all(at.bearing()) else ends
+            centres = np.array([geometry.moved]) + self.magnify * np.array([moves])
         floor = 0.0 if geometry.stacked else -self.pad_thickness
         ground = np.array([(-self.reach, floor), (self.reach, floor)])
         lower = tuple(
             self._moved(partial(at.lower, k), one.outline) for k, one in enumerate(geometry.lower)
         )
+        of_lower = [
+            self._moved(partial(at.lower, k), np.array([one.centre]))
+            for k, one in enumerate(geometry.lower)
+        ]
+        if geometry.stacked and geometry.cap is not None:
+            of_lower.append(self._moved(at.cap, np.array([(0.0, 0.5 * geometry.cap[1])])))
+        centres = np.vstack([centres, *of_lower])
+        if pads:
+            touching += tuple(
+                one[k : k + 1] if at.bearing()[k] else _NOWHERE
+                for one in columns or (block,)
+                for k in (0, 1)
+            )
+        else:
+            on_rigid = [block, *lower][: None if soil is None else -1]
+            touching += tuple(
+                _contact(one, at.bearing_of(k))
+                for k, body in enumerate(on_rigid)
+                for one in columns or (body,)
+            )
         ties = tuple(
             np.full((2, 2), np.nan) if number in at.broken else self._tie(at, one)
             for number, one in enumerate(geometry.ties)
         )
-        laid_out = (block, cap, members, centre, pads, bear, soil, touching, ground)
+        laid_out = (block, cap, members, centres, pads, bear, soil, touching, ground)
         return self._inclined(Layout(*laid_out, lower, ties, others))
 
     def _tie(self, at: Placement, tie: LinkedPoints) -> Array:
@@ -187,8 +206,10 @@ class Drawer:
         left, right = self._moved(place, ends)
         share = np.linspace(0.0, 1.0, _SPRINGS)[:, None]
         base = left + share * (right - left)
-        name = "soil_contact_state" if geometry.cap is not None else "contact_state"
-        flies = at.values.get(name) == ContactState.FLIGHT
+        bears = at.bearing_of(len(geometry.lower))
+        if geometry.cap is not None:
+            bears = at.bearing("soil_contact_state")
+        flies = not any(bears)
         below = np.full(_SPRINGS, False) if flies else base[:, 1] <= free
         surface = np.column_stack([base[:, 0], np.where(below, base[:, 1], free)])
         edges = [
@@ -196,8 +217,7 @@ class Drawer:
             surface,
             np.array([(surface[-1, 0], free), (max(self.reach, surface[-1, 0]), free)]),
         ]
-        touching = (surface[below],) if below.any() else ()
-        return np.vstack(edges), touching
+        return np.vstack(edges), (surface[below] if below.any() else _NOWHERE,)
 
     def _turned(self, points: Array) -> Array:
         """Rotate points by the inclination of the base, which rises to the right."""
@@ -211,6 +231,13 @@ class Drawer:
             return self._turned(part) if isinstance(part, np.ndarray) else part
 
         return Layout(**{name: turned(part) for name, part in vars(found).items()})
+
+
+def _contact(outline: Array, bears: tuple[bool, bool]) -> Array:
+    """Give the part of a rigid base that bears: the whole, an end, or none."""
+    if all(bears):
+        return outline[:2]
+    return outline[[bears.index(True)]] if any(bears) else _NOWHERE
 
 
 CONTACT: Final = VERMILLION
@@ -255,11 +282,10 @@ class SceneArtist:
         self.axes.set_ylim(low[1] - depth, high[1] + 0.06 * (high[1] - low[1]))
 
     def rest(self, at: Placement) -> None:
-        """Draw the block at rest behind everything."""
+        """Draw the bodies at rest behind everything."""
         from matplotlib.patches import Polygon
 
-        found = self.drawer.lay_out(at)
-        for outline in (found.block, *found.others):
+        for outline in self.drawer.lay_out(at).bodies:
             dashed = Polygon(outline, fill=False, edgecolor=GREY, linestyle="--", linewidth=0.8)
             self.axes.add_patch(dashed).set_zorder(1)
 
@@ -290,7 +316,7 @@ class SceneArtist:
             self._line(
                 f"tie {number}", ends, color=VERMILLION, linewidth=1.4, zorder=5, marker="."
             )  # which shows one without a length
-        self._dots("centre", found.centre[None], marker="P", color=ink(), markersize=6.0)
+        self._dots("centre", found.centres, marker="P", color=ink(), markersize=6.0)
         self._touching(found)
         for name, place in self._marked.items():
             self._point(name, self.drawer.points(at, place))
@@ -322,9 +348,8 @@ class SceneArtist:
     def _touching(self, found: Layout) -> None:
         dots = [one for one in found.touching if len(one) == 1]
         lines = [one for one in found.touching if len(one) > 1]
-        nowhere = np.full((1, 2), np.nan)
-        self._dots("touching", np.vstack(dots or [nowhere]), color=CONTACT, markersize=6.0)
-        apart = [part for one in lines for part in (one, nowhere)] or [nowhere]
+        self._dots("touching", np.vstack(dots or [_NOWHERE]), color=CONTACT, markersize=6.0)
+        apart = [part for one in lines for part in (one, _NOWHERE)] or [_NOWHERE]
         self._line(
             "bearing", np.vstack(apart), color=CONTACT, linewidth=3.0, zorder=5,
             solid_capstyle="butt",

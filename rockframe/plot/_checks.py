@@ -17,7 +17,7 @@ from rockframe.proposals import hinted
 from rockframe.shared_arguments import Argument, completed, with_raises
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
-from rockframe.studies.sweeps.case import system_of_case
+from rockframe.studies.sweeps.case import SweepCase, system_of_case
 from rockframe.units import POSITIVE, Unit, to_ratio
 from rockframe.units.shown import KINDS as SHOWN_KINDS
 from rockframe.units.shown import UnitsLike, reader_units
@@ -56,11 +56,14 @@ KINDS: Final[dict[str, DatasetKind]] = {}
 """Kinds recognised by their variables, by the function that draws them; the first match counts."""
 _NEEDED: Final[dict[str, str]] = {}
 """The kind that each function draws, in words."""
+OF_SWEEP: Final = "axes_json"
+"""Attribute of sweeps and of their cases."""
+_NO_HISTORIES: Final = ("overturned", "peak_rotation")
 _NOT_BY_KIND: Final = (
     # (variables, their name in messages, how to draw them); the first match counts
     (RUN.known, "the result of a run", "rf.plot.response draws it"),
     (
-        ("overturned", "peak_rotation"),
+        _NO_HISTORIES,
         "the result of a run without histories",
         "simulate with outputs=() instead of None",
     ),
@@ -137,10 +140,9 @@ def drawn_by(dataset: xr.Dataset) -> str:
         return "response"
     if "peak_relative_rotation" in dataset and dataset["peak_relative_rotation"].ndim > 0:
         return "sweep"
-    for names, what, way in _NOT_BY_KIND:
-        if _holds(dataset, names):
-            msg = f"no function of rf.plot draws a Dataset with {what}; {way}"
-            raise SchemaError(msg)
+    if (found := _other_kind(dataset)) is not None:
+        msg = f"no function of rf.plot draws {found[0]}; {found[1]}"
+        raise SchemaError(msg)
     msg = (
         "no function of rf.plot draws this dataset; known are results of runs, sweeps, studies "
         "and comparisons"
@@ -199,7 +201,8 @@ def above_zero(value: object, function: str, name: str) -> float:
 def system_of_run(run: xr.Dataset, function: str) -> System:
     """Build the system of a run, without its motion."""
     text = run.attrs.get("system_json")
-    if not isinstance(text, str):
+    of_function = OF_SWEEP in run.attrs and "function" in run.attrs
+    if not isinstance(text, str) and not of_function:
         msg = (
             f"rf.plot.{function}: the dataset has no attribute 'system_json'; expected the result "
             "of simulate() with its attributes"
@@ -207,9 +210,9 @@ def system_of_run(run: xr.Dataset, function: str) -> System:
         raise SchemaError(msg)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RockframeWarning)  # issued already by the run
-        if "axes_json" in run.attrs:
+        if OF_SWEEP in run.attrs:
             return system_of_case(run, owner=f"rf.plot.{function}")
-        return System.from_dict(json.loads(text))
+        return System.from_dict(json.loads(str(text)))
 
 
 def refuse(function: str, value: object) -> str:
@@ -232,17 +235,33 @@ def _words(function: str, value: object) -> tuple[str, str]:
         return "a System", way
     if isinstance(value, xr.DataArray):
         return f"a DataArray, {value.name!r}", "a figure is drawn from the whole Dataset"
+    if isinstance(value, SweepCase):
+        return "a case of a sweep", "rf.plot.response(case.simulate()) draws its response"
     if not isinstance(value, xr.Dataset):
         return f"{value!r}" if value is None else f"a value of type {type(value).__name__}", ""
     if (known := _known_by(value)) is not None:
         return f"a Dataset with {KINDS[known].what}", f"rf.plot.{known} draws it"
-    for names, what, way in _NOT_BY_KIND:
-        if _holds(value, names):
-            if "overturned" in value and value["overturned"].ndim > 0:
-                return "a Dataset with many runs", "rf.plot.sweep draws it"
-            return f"a Dataset with {what}", way
+    if "overturned" in value and value["overturned"].ndim > 0:
+        way = "rf.plot.sweep draws it"
+        if OF_SWEEP in value.attrs and _needed(function) == RUN.words:
+            way += ", rf.case(dataset, ...).simulate() runs one of them with histories"
+        return "a Dataset with many runs", way
+    if (found := _other_kind(value)) is not None:
+        return found
     title = value.attrs.get("title")
     return "a Dataset" + (f" with the title {title!r}" if title else " of another kind"), ""
+
+
+def _other_kind(dataset: xr.Dataset) -> tuple[str, str] | None:
+    """Describe a dataset that no function draws, and what is drawn instead."""
+    for names, what, way in _NOT_BY_KIND:
+        if not _holds(dataset, names):
+            continue
+        if names == _NO_HISTORIES and OF_SWEEP in dataset.attrs:
+            what = "a case of a sweep without the histories of its response"
+            way = "rf.case(dataset).simulate() runs the case with them"
+        return f"a Dataset with {what}", way
+    return None
 
 
 def _needed(function: str) -> str:

@@ -17,7 +17,15 @@ from rockframe.plot._axes import (
     units_of,
     zero_line,
 )
-from rockframe.plot._checks import RUN, above_zero, draws, overturning_angles, refuse, system_of_run
+from rockframe.plot._checks import (
+    OF_SWEEP,
+    RUN,
+    above_zero,
+    draws,
+    overturning_angles,
+    refuse,
+    system_of_run,
+)
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.plot._response import of_rotation, relative
 from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
@@ -323,9 +331,12 @@ def _need(runs: list[Run], names: tuple[str, ...], function: str) -> None:
         if missing:
             requested = "energy" if missing[0] in ENERGIES else missing[0]
             text = SCHEMA[missing[0]].long_name
+            call = f"system.simulate(motion, outputs=({requested!r},))"
+            if OF_SWEEP in run.dataset.attrs:
+                call = f"rf.case(dataset).simulate(outputs=({requested!r},))"
             msg = (
                 f"rf.plot.{function} needs {missing[0]!r}, the {text}, which runs have on request: "
-                f"system.simulate(motion, outputs=({requested!r},))"
+                f"{call}"
             )
             raise SchemaError(msg)
 

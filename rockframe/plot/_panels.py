@@ -11,6 +11,7 @@ import numpy as np
 from rockframe.arguments import text
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.plot._axes import escaped, key
+from rockframe.plot._fonts import make_legible
 from rockframe.proposals import proposing
 
 if TYPE_CHECKING:
@@ -112,6 +113,7 @@ class Sheet:
             set_title(self.own, title or escaped(usual))
         elif title:
             self.axes.set_title(title, fontsize="medium", wrap=True)
+        make_legible(self.panels if self.own is None else [self.own])
 
     def legend(
         self, handles: Sequence[Any], labels: Sequence[str], *, columns: int = 12, **style: Any

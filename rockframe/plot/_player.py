@@ -185,7 +185,7 @@ def player(
     chosen = units_of(units, "player")
     unit = chosen.unless_relative(ANGLE, rotation=chosen.rotations(rotation))
     ground = chosen.of(ACCELERATION)
-    moving = Moving(drawn.dataset, "player", magnify, chosen, run)
+    moving = Moving(drawn.dataset, "player", magnify, chosen)
     start, end = float(drawn.time[0]), float(drawn.time[-1])
     count = int(np.clip(1 + round((end - start) * _FRAMES_PER_SECOND), 2, _MOST_FRAMES))
     shown_at = drawn.nearest(np.linspace(start, end, count))
@@ -214,6 +214,7 @@ def player(
         "colours": CONTACT_COLOURS,
         "pressed": CONTACT,
         "magnify": float(magnify),
+        "length": {"words": raised(length.words), "size": length.size},
         "levels": _LEVELS,
         "nowhere": _NOWHERE,
         "numbers": store.packed(),
@@ -292,7 +293,8 @@ def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
         yield _Layer("ground", "ground", "soft", 0.35, np.array([one.ground for one in found]))
     else:
         yield _Layer("soil", "ground", SOIL, 0.35, np.array([_surface(one) for one in found]))
-    yield _Layer("at rest", "dashes", "soft", 0.0, still(upright.block))
+    for outline in upright.bodies:
+        yield _Layer("at rest", "dashes", "soft", 0.0, still(outline))
     if moving.geometry.wall is not None:
         yield _Layer("wall", "outline", "soft", 0.35, still(moving.geometry.wall))
     if first.cap is not None:
@@ -304,16 +306,13 @@ def _of_parts(moving: Moving, found: Sequence[Layout]) -> Iterator[_Layer]:
     yield _Layer("block", "outline", BLUE, 0.08 if first.members else 0.25, block)
     yield from each("members", "outline", BLUE, 0.3)
     yield from each("ties", "line", VERMILLION, 0.0)
-    yield _Layer("centre of mass", "cross", "ink", 1.0, np.array([[one.centre] for one in found]))
+    yield _Layer("centre of mass", "cross", "ink", 1.0, np.array([one.centres for one in found]))
 
 
 def _of_contacts(found: Sequence[Layout]) -> Iterator[_Layer]:
     """Give the contacts: both ends of each line; a point is a line of zero length."""
-    for k in range(max(len(one.touching) for one in found)):
-        points = np.full((len(found), 2, 2), np.nan)
-        for row, one in zip(points, found, strict=True):
-            if k < len(one.touching):
-                row[:] = one.touching[k][[0, -1]]
+    for k in range(len(found[0].touching)):
+        points = np.array([one.touching[k][[0, -1]] for one in found])
         yield _Layer("contact", "contact", CONTACT, 0.0, points)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import truth
+from rockframe.dynamics.events import ContactState
 from rockframe.errors import ComponentError, nearest, shown
 from rockframe.plot._axes import (
     BLUE,
@@ -150,6 +151,9 @@ def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
 
 CONTACTS: Final = {"contact_state": "pads", "soil_contact_state": "soil"}
 """Histories drawn as strips of contact states, and their names where there are two."""
+CONTACT_OF_BODIES: Final = "body_contact_state"
+_MOST_STRIPS: Final = 4
+"""Largest number of bodies of a stack with a strip of contact states."""
 _HEIGHTS: Final = {"ground": 1.0, "rotation": 2.0, "vertical": 1.6, "contact": 0.35}
 _NEAR: Final = 5.0
 """Uplift angle over the peak rotation above which its line is omitted, to leave room for runs."""
@@ -189,8 +193,8 @@ def response(
     panels : str or tuple of str, optional
         Panels to draw: ``"ground"``, ``"rotation"``, ``"vertical"``, ``"contact"``, and any
         history of the runs by its name, such as ``"base_shear"``; these four unless given, and
-        the slip if a body slid. Contact is a strip for each run, and for each base of a run whose
-        block stands on a cap.
+        the slip if a body slid. Contact is a strip for each run; for a single run one for each
+        body of a stack, of four at most, and for each base of a block on a cap.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is drawn; the whole run unless given [s].
     rotation : str, optional
@@ -333,16 +337,26 @@ def strips_of(runs: list[Run]) -> dict[str, tuple[xr.DataArray, str]]:
     """Give the strips of contact states with their labels."""
     found: dict[str, tuple[xr.DataArray, str]] = {}
     for run in runs:
-        names = [name for name in CONTACTS if name in run.dataset]
-        if _STACKED not in run.dataset:
-            names = names[:1]  # one body: the soil's contact is the only one
-        for name in names:
-            words = [] if run.label is None else [run.label]
-            words += [CONTACTS[name]] if len(names) > 1 else []
-            words = words or ["body 1"] * ("body" in run.dataset.dims)
-            text = ", ".join(words) or "contact"
-            found[f"contact of {text}" if words else text] = run.dataset[name], text
+        for whose, state in _contacts_of(run.dataset, alone=len(runs) == 1).items():
+            text = ", ".join(filter(None, (run.label, whose)))
+            found[f"contact of {text}" if text else "contact"] = state, text or "contact"
     return found
+
+
+def _contacts_of(run: xr.Dataset, *, alone: bool) -> dict[str, xr.DataArray]:
+    """Give the contact states of a run, by the name of the body or base."""
+    if "body" in run.dims:
+        if not alone or CONTACT_OF_BODIES not in run:
+            return {"body 1": run["contact_state"]}
+        states = run[CONTACT_OF_BODIES].transpose("body", "time")
+        # those that are longest without full contact, of a high stack
+        open_for = (states != ContactState.FULL).sum("time").to_numpy()
+        shown = np.sort(np.argsort(-open_for, kind="stable")[:_MOST_STRIPS])
+        return {f"body {int(one['body'])}": one for one in states.isel(body=shown)}
+    names = [name for name in CONTACTS if name in run]
+    if _STACKED not in run:  # one body: the soil's contact is the only one
+        return {"": run[names[0]]}
+    return {CONTACTS[name]: run[name] for name in names}
 
 
 def _ground(axes: Axes, runs: list[Run], unit: Shown) -> None:
@@ -452,7 +466,8 @@ def _vertical(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         axes.plot(run.time, values, color=colour, linestyle=run.style, linewidth=1.1)
     zero_line(axes)
     if not over_settlement:
-        axes.set_ylabel(axis_label("vertical $y$", metres.words))
+        of_stack = "\nof body 1" if any("body" in run.dataset.dims for run in runs) else ""
+        axes.set_ylabel(axis_label(f"vertical $y${of_stack}", metres.words))
         return
     stacked = any(_STACKED in run.dataset for run in runs)  # pads and soil: two settlements
     whose = "\n($\\delta$ of the pads)" if stacked else ""

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import truth
+from rockframe.dynamics.events import LinkState
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
@@ -19,6 +20,7 @@ from rockframe.plot._checks import (
     system_of_run,
 )
 from rockframe.plot._panels import Axes, AxesLike, single
+from rockframe.plot._response import CONTACT_OF_BODIES
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.simulation.plan import points_of
 from rockframe.simulation.system import System
@@ -42,6 +44,8 @@ _OF_BODIES: Final = (
     "body_rotation", "body_horizontal_displacement", "body_vertical_displacement",
 )  # fmt: skip
 """The same for all bodies of a stack."""
+_OF_TIES: Final = "restrainer_state"
+_BROKEN_COUNT: Final = "broken_restrainer_count"
 
 
 @draws("a System")
@@ -139,7 +143,7 @@ def state(
     Returns
     -------
     matplotlib.axes.Axes
-        As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the block at rest is
+        As of :func:`scene`, relative to the ground, :eq:`eq-scene-places`; the bodies at rest are
         dashed. Contact has its own colour: points and lines of bases in contact, and compressed
         pads. A broken restrainer is not drawn.
 
@@ -178,9 +182,8 @@ class Moving:
     """A run as a scene that moves."""
 
     def __init__(
-        self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None,
-        whole: xr.Dataset | None = None,  # of which the run is a part
-    ) -> None:  # fmt: skip
+        self, run: xr.Dataset, function: str, magnify: object, units: FigureUnits | None = None
+    ) -> None:
         self.function = function
         self.angle = (units or units_of(None, function)).of(ANGLE, "deg")
         number = above_zero(magnify, function, "magnify")
@@ -188,7 +191,12 @@ class Moving:
         self.drawer = Drawer(geometry_of(self.system.assembly), number)
         self.run = run
         self.time = run["time"].to_numpy()
-        needed = (*_FOLLOWED[:4], *(_OF_BODIES if self.geometry.lower else ()))
+        needed = (
+            *_FOLLOWED[:4],
+            *((*_OF_BODIES, CONTACT_OF_BODIES) if self.geometry.lower else ()),
+        )
+        if self.geometry.ties and run.get(_BROKEN_COUNT, 0) > 0:
+            needed += (_OF_TIES,)
         missing = [name for name in needed if name not in run]
         if missing:
             msg = (
@@ -196,7 +204,10 @@ class Moving:
                 "sweep has all histories if it is run alone, rf.case(runs, ...).simulate()"
             )
             raise SchemaError(msg)
-        self._breaks = _fractures(run if whole is None else whole)
+        self._broken = None
+        if _OF_TIES in run:
+            states = run[_OF_TIES].transpose("time", "restrainer").to_numpy()
+            self._broken = states == LinkState.BROKEN
         self._columns = {name: run[name].to_numpy() for name in _FOLLOWED if name in run}
 
     @property
@@ -221,15 +232,17 @@ class Moving:
     def at(self, place: int) -> Placement:
         """Give the scene at a sample."""
         values = {name: float(column[place]) for name, column in self._columns.items()}
-        bodies = None
+        bodies = contacts = None
         if self.geometry.lower:
             bodies = np.column_stack([self.run[name].to_numpy()[:, place] for name in _OF_BODIES])
-        now = self.time[place]
-        broken = frozenset(number for number, when in self._breaks.items() if when <= now)
-        if self.geometry.columns:  # in each column there are all tendons
-            all_broke = 0 < self.run.sizes.get("restrainer", 0) == len(broken)
-            broken = frozenset(range(len(self.geometry.ties)) if all_broke else ())
-        return Placement(self.geometry, values, self.system.restraint, bodies, broken)
+            contacts = self.run[CONTACT_OF_BODIES].to_numpy()[:, place]
+        broken = frozenset[int]()
+        if self._broken is not None:
+            broken = frozenset(np.flatnonzero(self._broken[place]).tolist())
+            if self.geometry.columns:  # in each column there are all tendons
+                all_broke = 0 < self.run.sizes["restrainer"] == len(broken)
+                broken = frozenset(range(len(self.geometry.ties)) if all_broke else ())
+        return Placement(self.geometry, values, self.system.restraint, bodies, broken, contacts)
 
     def nearest(self, time: object) -> int:
         """Find the sample nearest to a time, or that of the largest rotation."""
@@ -255,17 +268,6 @@ class Moving:
         text = f"{self.time[place]:.3f} s: {turned}, {100.0 * share:.3g} % of overturning{whose}"
         factor = self.drawer.magnify
         return text if factor == 1.0 else f"{text}; displacements times {factor:g}"
-
-
-def _fractures(run: xr.Dataset) -> dict[int, float]:
-    """Give when restrainers broke, by their numbers from 0 [s]."""
-    if "event_restrainer" not in run:
-        return {}
-    kinds = dict(zip(str(run["event_kind"].attrs["flag_meanings"]).split(),
-                     run["event_kind"].attrs["flag_values"], strict=True))  # fmt: skip
-    broke = run["event_kind"].to_numpy() == kinds["restrainer_fracture"]
-    numbers, times = (run[f"event_{name}"].to_numpy()[broke] for name in ("restrainer", "time"))
-    return {int(number) - 1: float(when) for number, when in zip(numbers, times, strict=True)}
 
 
 def figure_size(drawer: Drawer, *, wide: bool) -> tuple[float, float]:

@@ -31,6 +31,8 @@ _WHOLE: Final = re.compile(r"[-+]?\d+", re.ASCII)
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _SAME: Final = 0.1 * (1.0 + 1e-6)
 """Difference of starts, in time steps, up to which they count as equal: clocks round to 0.1 ms."""
+_LATER: Final = re.compile(r"(.*), (plus|less) (\d+(?:\.\d+)?) s", re.ASCII)
+"""Start that is stated as seconds after or before a text."""
 
 _JITTER: Final = 1e-6
 _FLOAT_ULPS: Final = 8.0
@@ -315,7 +317,11 @@ def same_start(one: object, other: object, time_step: float) -> bool:
     if one is None or other is None or one == other:
         return True
     first, second = epoch_seconds(one), epoch_seconds(other)
-    return first is not None and second is not None and abs(second - first) <= _SAME * time_step
+    if first is None or second is None:
+        (text, first), (other_text, second) = _text_and_seconds(one), _text_and_seconds(other)
+        if text != other_text:
+            return False
+    return abs(second - first) <= _SAME * time_step
 
 
 def epoch_seconds(time: object) -> float | None:
@@ -328,14 +334,26 @@ def epoch_seconds(time: object) -> float | None:
     return (zoned - _EPOCH).total_seconds()
 
 
-def time_after(time: object, seconds: float) -> str | None:
-    """Give the time some seconds after a time in ISO 8601; None for other text."""
+def time_after(time: object, seconds: float) -> str:
+    """Give the time some seconds after a time in ISO 8601, or after any text."""
     text = str(time).strip()
     try:
         moved = datetime.fromisoformat(text) + timedelta(seconds=seconds)
     except (ValueError, OverflowError):
-        return None
+        start, before = _text_and_seconds(text)
+        later = before + seconds
+        amount = f"{abs(later):.6f}".rstrip("0").rstrip(".")
+        word = "plus" if later > 0.0 else "less"
+        return start if amount == "0" else f"{start}, {word} {amount} s"
     return moved.isoformat().replace("+00:00", "Z" if text.endswith("Z") else "+00:00")
+
+
+def _text_and_seconds(time: object) -> tuple[str, float]:
+    """Divide the text of a start into that of the file and the seconds after it."""
+    found = _LATER.fullmatch(str(time).strip())
+    if found is None:
+        return str(time).strip(), 0.0
+    return found[1], float(found[3]) * (1.0 if found[2] == "plus" else -1.0)
 
 
 def uniform_step(times: Array, fields: Sequence[str]) -> tuple[float, int | None]:

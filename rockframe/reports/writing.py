@@ -242,9 +242,8 @@ def _check(dataset: xr.Dataset) -> None:
 def _is_run(dataset: xr.Dataset) -> bool:
     """Whether a dataset is the result of one run."""
     needed = ("overturned", "status", "peak_rotation")
-    return "model" in dataset.attrs and all(
-        name in dataset and not dataset[name].dims for name in needed
-    )
+    known = "model" in dataset.attrs or "axes_json" in dataset.attrs  # a case of a sweep
+    return known and all(name in dataset and not dataset[name].dims for name in needed)
 
 
 def _heading(words: str, made: list[str]) -> str:

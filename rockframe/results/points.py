@@ -91,6 +91,12 @@ def point_peaks(
     }
 
 
+def _ends(state: float) -> tuple[bool, bool]:
+    """Give whether the left and whether the right end bears in a contact state."""
+    full = state == ContactState.FULL
+    return full or state == ContactState.LEFT, full or state == ContactState.RIGHT
+
+
 UPRIGHT: Mapping[str, float] = {
     "rotation": 0.0,
     "horizontal_displacement": 0.0,
@@ -110,6 +116,7 @@ class Placement:
     # rotation and both displacements of each body of a stack; None at rest
     bodies: Array | None = None
     broken: frozenset[int] = frozenset()  # restrainers that do not hold any more, from 0
+    contacts: Array | None = None  # contact state of each body of a stack; None at rest
 
     def block(self, points: Array) -> Array:
         """Give where points of the block are, or of anything that is one body with it."""
@@ -169,9 +176,13 @@ class Placement:
 
     def bearing(self, name: str = "contact_state") -> tuple[bool, bool]:
         """Give whether the left and whether the right end of a base bears."""
-        state = self.values.get(name, float(ContactState.FULL))
-        full = state == ContactState.FULL
-        return full or state == ContactState.LEFT, full or state == ContactState.RIGHT
+        return _ends(self.values.get(name, float(ContactState.FULL)))
+
+    def bearing_of(self, body: int) -> tuple[bool, bool]:
+        """Give the same for the base of a body of a stack, counted from 0 at the top."""
+        if not self.geometry.lower:
+            return self.bearing()
+        return _ends(ContactState.FULL if self.contacts is None else self.contacts[body])
 
     def _held_side(self, rotation: float) -> float:
         """Give -1, 0 or 1 for the left end, the middle or the right end of the cap's base."""

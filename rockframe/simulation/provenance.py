@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
+from enum import StrEnum
 from typing import Any, Final
 
 import numpy as np
@@ -20,8 +21,20 @@ _AFTER_END: Final = "_after_end"
 """Suffix of the names of samples of the motion that follow the histories."""
 _NEXT_STEP: Final = "; "
 """Separator between the steps of the history of a motion."""
-_SAME_SYSTEM: Final = ("motion", "start")
-"""Kinds of sweep axes that do not change the system."""
+
+
+class Changes(StrEnum):
+    """What the values of an axis of a sweep change."""
+
+    PART = "part"
+    OPTION = "option"
+    MOTION = "motion"
+    START = "start"
+    ARGUMENT = "argument"
+
+
+OF_SCENES: Final = (Changes.PART, Changes.OPTION, Changes.ARGUMENT)
+"""What changes the system."""
 
 
 def motion_attributes(motion: GroundMotion | None) -> dict[str, str | float | int]:
@@ -50,7 +63,7 @@ def check_own_system(dataset: xr.Dataset) -> None:
     changed = [
         str(axis["name"])
         for axis in axes
-        if axis["changes"] not in _SAME_SYSTEM
+        if axis["changes"] in OF_SCENES
         and axis["name"] in dataset.coords
         and not dataset[axis["name"]].dims
     ]

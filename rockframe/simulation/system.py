@@ -423,11 +423,11 @@ class System(SystemValue):
         'sine pulse, 2.5 m/s^2, 1 Hz, cycles: 1'
         """
         dataset = checked_dataset(dataset, owner=f"{cls.__name__}.from_dataset")
+        check_own_system(dataset)
         text = dataset.attrs.get("system_json")
         if not isinstance(text, str):
             msg = "the dataset has no attribute 'system_json'; expected a result of simulate()"
             raise SchemaError(msg)
-        check_own_system(dataset)
         try:
             return cls._described(json.loads(text), motion_from_dataset(dataset))
         except _DAMAGED as problem:

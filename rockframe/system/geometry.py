@@ -275,10 +275,13 @@ def shapes_of(geometry: Geometry) -> list[Polygon]:
         found.append(("block", geometry.block + raised))
     level_up = geometry.place
     found += [("member", member + level_up + raised) for member in geometry.members]
-    centre = np.array([geometry.centre]) + level_up + raised
+    centres = [np.array([geometry.centre]) + level_up + raised]
+    centres += [np.array([one.centre]) for one in geometry.lower]
+    if geometry.stacked and geometry.cap is not None:
+        centres.append(np.array([(0.0, 0.5 * geometry.cap[1])]))
     sine, cosine = np.sin(geometry.inclination), np.cos(geometry.inclination)
     along_base = np.array([(cosine, sine), (-sine, cosine)])
     return [
         Polygon(tone, [(float(x), float(y)) for x, y in points @ along_base])
-        for tone, points in (*found, ("block", centre))
+        for tone, points in (*found, *(("block", centre) for centre in centres))
     ]

@@ -47,6 +47,21 @@ def test_the_impacts_of_a_wall_of_three_metres():
     assert float(run.peak_impulsive_friction_demand) == 0.0
 
 
+def test_the_impulse_of_base_and_wall_is_the_change_of_momentum():
+    system, _ = released(0.5)
+    run = system.simulate(
+        initial=rf.InitialState(rotation="0.05 rad"), duration="1 s", outputs=("impulse",)
+    )
+    (struck, *_) = np.flatnonzero(run.event_kind.to_numpy() == 2)
+    jump = (run.angular_velocity_after - run.angular_velocity_before)[struck].item()
+    # about the corner that stays, the centre of mass at half the height moves across
+    impulse = run.event_horizontal_impulse[struck].item()
+    assert impulse == pytest.approx(1600.0 * 1.5 * jump, rel=1e-9)
+    # a share of the impulse that friction alone could not transfer
+    assert abs(impulse) > 5.0 * abs(run.event_vertical_impulse[struck].item())
+    assert "with that of a stiff wall" in run.event_horizontal_impulse.long_name
+
+
 @pytest.mark.parametrize(
     ("slenderness", "ratio"),
     [(2, -0.098000), (4, -0.342306), (6, -0.422961), (8, -0.455165), (10, -0.470845)],

@@ -267,12 +267,13 @@ def _read_arguments(**values: Any) -> None:
 
 
 def _unknown_table(file: TomlFile, name: str) -> None:
-    kind = kinds().get(name)
+    letters = name.replace("_", "").casefold()
+    kind = next((kind for one, kind in kinds().items() if one.casefold() == letters), None)
     slot = None if kind is None else slot_of_kind(kind)
-    if slot is None:
+    if kind is None or slot is None:
         file.unknown((), name, keys())
     else:
-        words = f'a {name} is written [{slot}] with type = "{name}"'
+        words = f'a {kind.__name__} is written [{slot}] with type = "{kind.__name__}"'
         file.fault((name,), f"unknown key {name!r}; {words}")
 
 

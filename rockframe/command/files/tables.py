@@ -11,6 +11,7 @@ from typing import Any, Final, Self, TypeAlias, TypeVar, cast
 
 import pandas as pd
 
+from rockframe.command.files.notation import in_toml
 from rockframe.command.streams import INPUT, STREAM, StandardInput
 from rockframe.components.parameters import Declared
 from rockframe.errors import (
@@ -103,8 +104,6 @@ def _resolved(names: Place, arrays: dict[Place, int]) -> Place:
 
 
 _WHERE: Final = re.compile(r"\s*\(at line (\d+), column \d+\)")
-_EXAMPLE: Final = re.compile(r"for example (\w+)='([^']*)'")
-"""An argument in the notation of Python, to be rewritten in that of TOML."""
 _CONTROL: Final = re.compile(r"[\x00-\x08\x0e-\x1f\ufffd]")
 """Characters that do not occur in text."""
 _NO_TEXT: Final = (
@@ -152,8 +151,7 @@ class TomlFile:
         """Note a fault, with the line of a place or else of the table around it."""
         depths = range(len(where), 0, -1)
         lines = [self._lines[where[:depth]] for depth in depths if where[:depth] in self._lines]
-        written = _EXAMPLE.sub(r'for example \1 = "\2"', words)
-        self._faults.append((lines[0] if lines else None, written))
+        self._faults.append((lines[0] if lines else None, in_toml(words)))
 
     @property
     def sound(self) -> bool:

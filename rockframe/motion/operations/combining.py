@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
 _ROUNDING: Final = 1e-15
+_OF_VERTICAL: Final = "vertical_"
+"""Prefix of the metadata of a vertical component."""
 
 
 @hinted()
@@ -64,10 +66,12 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     True
     """
     owner, si = f"{type(motion).__name__}.with_vertical", motion.si
+    of_it: dict[str, str | float | None] = {
+        key: None for key in motion.metadata if key.startswith(_OF_VERTICAL)
+    }
     if other is None:
         if si.vertical is None:
             return motion
-        of_it = {key: None for key in motion.metadata if key.startswith("vertical_")}
         return following(
             motion, Motion(si.horizontal, None), "vertical component left out",
             operation={"with_vertical": {"other": None}}, metadata=of_it, same_spectrum=True,
@@ -93,13 +97,17 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
     result = Motion(padded(si.horizontal, count), upwards)
-    added = {f"vertical_{key}": value for key, value in other.metadata.items()}
+    added = {
+        f"{_OF_VERTICAL}{key}": value
+        for key, value in other.metadata.items()
+        if not key.startswith(_OF_VERTICAL)
+    }
     if sense is not None:
-        added[f"vertical_{SENSE}"] = UPWARDS
+        added[f"{_OF_VERTICAL}{SENSE}"] = UPWARDS
     known = None if other.recipe is None else dict(other.recipe)
     operation = None if known is None else {"with_vertical": {"other": known}}
     return following(
-        motion, result, *steps, operation=operation, metadata=added, same_spectrum=True
+        motion, result, *steps, operation=operation, metadata=of_it | added, same_spectrum=True
     )
 
 
@@ -188,6 +196,8 @@ def rotated(
     for label, one in (("this", motion), ("the other", other)):
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
+    if _scale(motion) != _scale(other):  # no factor is that of both
+        metadata["scale_factor"] = None
     known = None if other.recipe is None else dict(other.recipe)
     operation = None
     if known is not None:
@@ -200,6 +210,12 @@ def rotated(
     )
     metadata["component"] += f" rotated by {math.degrees(turn):.6g} degrees"
     return following(motion, result, *steps, operation=operation, metadata=metadata)
+
+
+def _scale(motion: MotionValue) -> float:
+    """Give the absolute product of all scalings [1]."""
+    factor = motion.metadata.get("scale_factor")
+    return abs(factor) if isinstance(factor, int | float) else 1.0
 
 
 def _azimuths(motion: MotionValue, other: MotionValue, owner: str) -> tuple[float, float]:

@@ -26,6 +26,8 @@ _OF_ITS_SPECTRUM: Final = (
 """Metadata on the misfit of a spectrum, which operations that change the spectrum drop."""
 
 _START: Final = "record_time"
+_START_IN_FILE: Final = "start_time"
+"""Time of the first sample in the column of times of the file [s]."""
 
 _DROPPED: Final = "the analytic pieces between samples are replaced by straight lines"
 
@@ -43,7 +45,9 @@ def following(
     if motion.recipe is not None and operation is not None:
         done = [*motion.recipe.get("operations", ()), dict(operation)]
         recipe = {**motion.recipe, "operations": done}
-    lost = () if same_spectrum else _OF_ITS_SPECTRUM
+    lost: tuple[str, ...] = () if same_spectrum else _OF_ITS_SPECTRUM
+    if lost and si.vertical is not motion.si.vertical:
+        lost += tuple(f"vertical_{name}" for name in _OF_ITS_SPECTRUM)
     added: dict[str, Any] = {k: value for k, value in motion.metadata.items() if k not in lost}
     added |= metadata or {}
     return type(motion)(
@@ -87,10 +91,16 @@ def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
     return other
 
 
-def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | None]:
+def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | float]:
     """Give the known start times in the metadata, moved by some seconds."""
-    known = [key for key in (_START, f"vertical_{_START}") if key in motion.metadata]
-    return {key: time_after(motion.metadata[key], seconds) for key in known if seconds != 0.0}
+    moved: dict[str, str | float] = {}
+    for prefix in ("", "vertical_") if seconds != 0.0 else ():
+        if f"{prefix}{_START}" in motion.metadata:
+            moved[f"{prefix}{_START}"] = time_after(motion.metadata[f"{prefix}{_START}"], seconds)
+        first = motion.metadata.get(f"{prefix}{_START_IN_FILE}")
+        if isinstance(first, int | float):
+            moved[f"{prefix}{_START_IN_FILE}"] = first + seconds
+    return moved
 
 
 def warn_of_other_start(motion: MotionValue, other: MotionValue, owner: str) -> None:

@@ -158,7 +158,7 @@ def times(signal: Signal, ratio: float) -> Signal:
 
 
 def _times(motion: Made, ratio: float, step: str, values: dict[str, float | str]) -> Made:
-    added: dict[str, str | float] = {"scale_factor": ratio}
+    added: dict[str, str | float] = {}
     known = motion.metadata
     sense, azimuth, component = (known.get(key) for key in (SENSE, "azimuth", "component"))
     # a negative factor reverses the positive direction
@@ -169,10 +169,10 @@ def _times(motion: Made, ratio: float, step: str, values: dict[str, float | str]
     if ratio < 0.0 and component is not None:  # no name from which the old direction is read
         name = str(component)
         added["component"] = name[1:] if name.startswith("-") else f"-{name}"
-    for name in ("scale_factor", "vertical_scale_factor"):
+    prefixes = ("",) if motion.si.vertical is None else ("", "vertical_")
+    for name in (f"{prefix}scale_factor" for prefix in prefixes):
         factor = known.get(name)
-        if isinstance(factor, int | float):
-            added[name] = factor * ratio
+        added[name] = ratio * (factor if isinstance(factor, int | float) else 1.0)
     return following(
         motion, multiplied(motion.si, ratio), step, operation={"scaled": values}, metadata=added,
         same_spectrum=abs(ratio) == 1.0,

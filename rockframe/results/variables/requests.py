@@ -35,7 +35,7 @@ REACTIONS: Final = rows_over(
 IMPULSES: Final = rows_over(
     EVENT,
     event_horizontal_impulse="horizontal impulse of the base on the body at the event, to the "
-    "right [N s]",
+    "right; with that of a stiff wall [N s]",
     event_vertical_impulse="vertical impulse of the base on the body at the event, upwards [N s]",
 )
 """The group ``"impulse"``."""

@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cached_property
 from numbers import Real
 from typing import Any, Final, cast
@@ -18,6 +17,8 @@ from rockframe.errors import ComponentError, UnitsError, shown
 from rockframe.results.outcome import Generic
 from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.studies import CASE, MOTION
+from rockframe.simulation.provenance import OF_SCENES as OF_SCENES
+from rockframe.simulation.provenance import Changes as Changes
 from rockframe.units import (
     Measure,
     Unit,
@@ -30,20 +31,6 @@ from rockframe.units import (
 )
 
 OWNER: Final = "sweep"
-
-
-class Changes(StrEnum):
-    """What the values of an axis change."""
-
-    PART = "part"
-    OPTION = "option"
-    MOTION = "motion"
-    START = "start"
-    ARGUMENT = "argument"
-
-
-OF_SCENES: Final = (Changes.PART, Changes.OPTION, Changes.ARGUMENT)
-"""What changes the system."""
 
 
 @dataclass(frozen=True, eq=False)

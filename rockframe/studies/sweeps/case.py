@@ -279,7 +279,10 @@ def _scene(swept: SweptScene | None, attributes: Mapping[str, Any], owner: str) 
         return swept
     if (known := remembered(attributes)) is not None:
         return known.scene
-    msg = f"{owner}: the scene was the function {attributes['function']}; give it as scene="
+    way = "give it as scene="
+    if owner != _OWNER:  # which takes no scene
+        way = "give rf.case(dataset, scene=...).simulate() instead of the case"
+    msg = f"{owner}: the scene was the function {attributes['function']}; {way}"
     raise StudyError(msg)
 
 

@@ -403,6 +403,20 @@ def test_help_teaches_by_examples(typed):
                 assert built.parse_args(words).command == command.name
 
 
+def test_an_error_of_the_command_line_has_its_own_message(capsys):
+    lines = (["run"], "required: scene.toml"), (["map", "a.toml"], "required: --amplitude")
+    parsers = [parser.build_parser() for _ in lines]
+    found = []
+    for one, (line, _) in zip(parsers, lines, strict=True):
+        with pytest.raises(parser.WrongLineError) as caught:
+            one.parse_args(line)
+        found.append(caught.value)
+    written = capsys.readouterr().err
+    for problem, (_, words) in zip(found, lines, strict=True):
+        assert words in str(problem)
+        assert str(problem) in written
+
+
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_names_every_command_and_option(shell):
     text = script(shell)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rockframe as rf
+from rockframe.command.files.notation import in_toml
 from rockframe.command.files.parts import classes_in, inner_parts, part_slots
 from rockframe.command.files.scenes import read_scene
 from rockframe.command.files.studies import read_study
@@ -189,6 +190,45 @@ SCENES = {
     "a missing key": (BLOCK.replace('mass = "5 t"', ""), {1: 'mass = "99 t"'}),
     "an unknown table": (f"{BLOCK}[sol]\n", {5: "was 'soil' meant?"}),
     "a table by its class": (f"{BLOCK}[WinklerSoil]\n", {5: 'written [soil] with type = "Winkler'}),
+    "a table by its class in small letters": (
+        f"{BLOCK}[two_spring_support]\n",
+        {5: 'written [pads] with type = "TwoSpringSupport"'},
+    ),
+    "a block that slides": (
+        f'{BLOCK}[ground]\nfriction = 0.5\n[system]\nrotation = "small"\n',
+        {8: 'with rotation = "finite" only; give sliding = "checked"'},
+    ),
+    "a squat block": (BLOCK.replace('"1 m"', '"90 m"'), {None: "On [ground] with friction = ..."}),
+    "a point": (
+        f'{BLOCK}[restrainer]\ntype = "Load"\nat = "3 m"\nvertical = "1 kN"\n',
+        {7: 'a point such as ["-0.5 m", "3 m"], to'},
+    ),
+    "points": (
+        '[block]\nconstructor = "from_outline"\npoints = [[0, 0], [1, 0], [1, 2]]\n'
+        'density = "1 kg/m^3"\ndepth = "1 m"\n',
+        {3: 'such as [["0 m", "0 m"], ["1 m", "0 m"], ...]'},
+    ),
+    "a sloping outline": (
+        '[block]\nconstructor = "from_outline"\npoints = [[0, 0], [1, 0.1], [1, 2]]\n'
+        'unit = "m"\ndensity = "1 kg/m^3"\ndepth = "1 m"\n',
+        {3: 'give [system] with inclination = "5.711 deg"'},
+    ),
+    "a start as a number": (
+        f'{BLOCK}[run]\ninitial = "0.1 rad"\n',
+        {6: 'write initial = { rotation = "0.1 rad" }'},
+    ),
+    "the dampers of a run": (
+        f"{BLOCK}[run]\ndamping = 0.1\n",
+        {6: "such as [pads] with damping_ratio = 0.1 or [soil] with damping_ratio = 0.2"},
+    ),
+    "the scale of a run": (
+        f"{BLOCK}[run]\nscale = 2\n",
+        {6: "write operations = [{ scaled = { factor = 1.5 } }] in [motion]"},
+    ),
+    "the gravity of a run": (
+        f'{BLOCK}[run]\ngravity = "9 m/s^2"\n',
+        {6: '[system] with gravity = "9.81 m/s^2"'},
+    ),
     "no table": ("block = 3\n", {1: "must be a table"}),
     "no part": ("[system]\n", {1: "no Block is given"}),
     "parts that do not fit": (
@@ -251,6 +291,14 @@ def test_faults_of_scenes_have_their_line(name, file):
         assert words in said, (line, found)
         if line is not None:
             assert line in found, found
+
+
+def test_a_constructor_in_a_message_is_that_of_a_table():
+    words = "WinklerSoil.from_subgrade_modulus('20 MN/m^3', depth='4 m', ...) takes it"
+    table = '[soil] with constructor = "from_subgrade_modulus", depth = "4 m"'
+    assert in_toml(words) == f"{table} takes it"
+    own = in_toml("give Load(vertical='1 kN'), or a file 'x=(1).AT2'")
+    assert own == 'give [restrainer] with type = "Load", vertical = "1 kN", or a file \'x=(1).AT2\''
 
 
 def test_a_module_that_has_the_name_of_another_is_not_passed_over(file):

@@ -6,6 +6,7 @@ import pytest
 import rockframe as rf
 from rockframe.errors import ComponentError, RecordWarning
 from rockframe.motion import GroundMotion
+from rockframe.simulation.provenance import motion_words
 
 RNG = np.random.default_rng(7)
 NORTH, EAST = RNG.normal(size=(2, 400)) * np.sin(np.pi * np.arange(400) / 399.0)
@@ -53,7 +54,8 @@ def test_a_mirrored_component_points_the_other_way():
         (START, "2020-02-03T04:05:07.500000"),
         ("2020-02-03T04:05:06.000Z", "2020-02-03T04:05:07.500000Z"),
         ("2020-02-03T04:05:06+00:00", "2020-02-03T04:05:07.500000+00:00"),
-        ("2020/02/03 04:05:06 (GMT+08)", None),
+        ("2020/02/03 04:05:06 (GMT+08)", "2020/02/03 04:05:06 (GMT+08), plus 1.5 s"),
+        ("2020/02/03 04:05:06 JST, less 15 s", "2020/02/03 04:05:06 JST, less 13.5 s"),
     ],
 )
 def test_a_window_starts_later(start, later):
@@ -69,6 +71,24 @@ def test_a_window_and_the_whole_make_no_pair():
     with pytest.raises(ComponentError, match="first starts at 2020-02-03T04:05:08, second at"):
         rf.HorizontalPair(one.window("2 s"), other)
     assert rf.HorizontalPair(one.window("2 s"), other.window("2 s")).first.duration.m == 1.99
+
+
+@pytest.mark.parametrize("start", ["2020/02/03 04:05:06 (GMT+08)", "4 h 5 min"])
+def test_starts_in_any_words_are_compared_after_windows(start):
+    one, other = motion(NORTH, record_time=start), motion(EAST, record_time=start)
+    twice = one.window("0.3 s").window("1.7 s")
+    assert twice.metadata["record_time"] == f"{start}, plus 2 s"
+    assert rf.HorizontalPair(twice, other.window("2 s")).first.duration.m == 1.99
+    with pytest.raises(ComponentError, match=r"first starts at .*, plus 2 s, second at"):
+        rf.HorizontalPair(twice, other)
+    cut = one.window("3 s").filtered(low="2 Hz", keep_padding=True)
+    assert cut.metadata["record_time"] == start
+
+
+def test_a_start_on_the_time_axis_of_the_file_moves_with_a_window():
+    whole = motion(NORTH, start_time=0.05, vertical_start_time=0.05)
+    part = whole.window("1.5 s").metadata
+    assert part["start_time"] == part["vertical_start_time"] == pytest.approx(1.55)
 
 
 def test_padding_that_is_kept_starts_earlier():
@@ -120,6 +140,43 @@ def test_components_of_different_factors_have_none_together():
 
 
 @pytest.mark.parametrize(
+    ("joined", "across", "upwards"),
+    [
+        (lambda one, other: one.scaled(2).with_vertical(other), 2.0, None),
+        (lambda one, other: one.with_vertical(other).scaled(2), 2.0, 2.0),
+        (lambda one, other: one.with_vertical(other).scaled(2).scaled(-3), -6.0, -6.0),
+        (lambda one, other: one.scaled(2).with_vertical(other).scaled(3), 6.0, 3.0),
+        (lambda one, other: one.with_vertical(other.scaled(5)).scaled(3), 3.0, 15.0),
+        (lambda one, other: one.scaled(2).with_vertical(other.scaled(5)).scaled(3), 6.0, 15.0),
+        (lambda one, other: one.with_vertical(other.scaled(5)).with_vertical(other), None, None),
+        (lambda one, other: one.with_vertical(other).scaled(2).with_vertical(None), 2.0, None),
+        (lambda one, other: one.with_vertical(other.with_vertical(one.scaled(7))), None, None),
+    ],
+)
+def test_every_scaling_of_each_component_counts(joined, across, upwards):
+    made = joined(motion(NORTH), motion(EAST))
+    assert made.metadata.get("scale_factor") == across
+    assert made.si.horizontal.samples == pytest.approx((across or 1.0) * NORTH)
+    assert made.metadata.get("vertical_scale_factor") == upwards
+    if made.si.vertical is not None:
+        assert made.si.vertical.samples == pytest.approx((upwards or 1.0) * EAST)
+    assert not any(name.startswith("vertical_vertical") for name in made.metadata)
+
+
+def test_components_of_different_scales_have_no_common_one():
+    one, other = motion(NORTH).scaled(2), motion(EAST).scaled(3)
+    assert "scale_factor" not in one.rotated(other, "30 deg").metadata
+    assert one.rotated(motion(EAST).scaled(-2), "30 deg").metadata["scale_factor"] == 2.0
+
+
+def test_the_misfit_of_a_scaled_vertical_component_is_dropped():
+    both = motion(NORTH).with_vertical(motion(EAST, spectral_misfit=0.1))
+    assert both.metadata["vertical_spectral_misfit"] == 0.1
+    assert "vertical_spectral_misfit" not in both.scaled(2).metadata
+    assert both.scaled(-1).metadata["vertical_spectral_misfit"] == 0.1
+
+
+@pytest.mark.parametrize(
     ("component", "known"), [("N", {"azimuth": 0.0}), ("DWN", {"positive": "down"})]
 )
 def test_a_mirrored_component_is_not_read_as_the_one_before(tmp_path, component, known):
@@ -153,3 +210,28 @@ def test_scaling_and_misfit():
         assert changed.metadata["scale_factor"] == factor
     for same in (scaled.scaled(-1), scaled.resampled("0.005 s"), scaled.with_vertical(scaled)):
         assert same.metadata["spectral_misfit"] == scaled.metadata["spectral_misfit"]
+
+
+@pytest.mark.parametrize(
+    ("process", "name"),
+    [
+        (lambda one: one, "one"),
+        (lambda one: one.scaled(0.5), "0.5 times one"),
+        (lambda one: one.filtered(low="1 Hz").scaled(0.5), "0.5 times one, filtered"),
+        (lambda one: one.window("1 s", taper="0.1 s").window("0.5 s"), "one, cut, tapered"),
+        (lambda one: one.resampled("0.005 s").baseline_corrected(),
+         "one, resampled, baseline corrected"),
+        (lambda one: one.resampled("0.01 s"), "one"),
+        (lambda one: one.rotated(motion(EAST), "30 deg"), "one, rotated"),
+        (lambda one: one.with_vertical(one), "one"),
+        (lambda one: one.through_storeys(periods=["0.5 s"], time_step="0.01 s"), "one, at a floor"),
+        (lambda one: one.matched(rf.TargetSpectrum.eurocode_8("0.2 g_0"),
+                                 periods=("0.1 s", "0.5 s"), tolerance=0.3), "one, matched"),
+    ],
+)  # fmt: skip
+def test_the_name_in_titles_and_labels_tells_how_a_motion_was_processed(process, name):
+    made = process(motion(NORTH))
+    system = rf.System(rf.Block(width="2 m", height="4 m", mass="2 t"))
+    run = system.simulate(made, duration="0.1 s", outputs=None)
+    assert motion_words(run.attrs) == name
+    assert rf.plot.motion(made).figure.get_suptitle() == name

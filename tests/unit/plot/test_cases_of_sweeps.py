@@ -88,6 +88,79 @@ def test_cases_of_stacks_lack_what_is_drawn_of_their_bodies():
         rf.plot.state(runs.squeeze())
 
 
+@pytest.mark.parametrize("kept", [["energy"], None])
+def test_the_advice_for_a_case_without_histories_gives_a_figure(kept):
+    runs = rf.sweep(rf.System(BLOCK), PULSE, scale=[0.5, 0.6], outputs=kept, **QUIET)
+    one = runs.isel(scale=1, motion=0)
+    advice = r"got a Dataset with a case of a sweep without .*; rf\.case\(dataset\)\.simulate\(\)"
+    for draw in (rf.plot.response, rf.plot.state, rf.plot.phase, rf.plot.player):
+        with pytest.raises(SchemaError, match=advice):
+            draw(one)
+        draw(rf.case(one).simulate())
+    with pytest.raises(SchemaError, match=r"no function .* a case of a sweep without .*rf\.case"):
+        one.rockframe.plot()
+    with pytest.raises(
+        SchemaError, match=r"many runs; rf\.plot\.sweep.*, rf\.case\(dataset, \.\.\."
+    ):
+        rf.plot.response(runs)
+    with pytest.raises(SchemaError, match=r"many runs; rf\.plot\.sweep draws it$"):
+        rf.plot.fragility(runs)
+    with pytest.raises(SchemaError, match=r"got a case of a sweep; rf\.plot\.response\(case\.sim"):
+        rf.plot.response(rf.case(one))
+
+
+def test_the_advice_for_energies_of_a_case_gives_a_figure(fallen):
+    with pytest.raises(SchemaError, match=r"rf\.case\(dataset\)\.simulate\(outputs=\('energy',\)"):
+        rf.plot.energies(fallen)
+    rf.plot.energies(rf.case(fallen).simulate(outputs=("energy",)))
+
+
+def tower(width):
+    return rf.System(BLOCK.replace(width=f"{width} m"))
+
+
+NEEDS_SYSTEM = {
+    "rf.plot.state": lambda case, path: rf.plot.state(case),
+    "rf.plot.player": lambda case, path: rf.plot.player(case),
+    "rf.plot.animation": lambda case, path: rf.plot.animation(case),
+    "report": lambda case, path: rf.report(case, path / "report.html", certify=False),
+    "case": lambda case, path: rf.case(case),
+}
+
+
+@pytest.fixture(scope="module")
+def of_a_function():
+    runs = rf.sweep(tower, PULSE, width=[0.8, 1.0], outputs=[], **QUIET)
+    return runs.isel(width=1, motion=0)
+
+
+@pytest.mark.parametrize("owner", NEEDS_SYSTEM)
+def test_a_case_without_what_it_varies_is_refused_by_the_name_of_the_caller(owner, tmp_path):
+    runs = rf.sweep(rf.System(BLOCK), PULSE, width=["0.8 m", "1 m"], outputs=[], **QUIET)
+    case = runs.isel(width=1, motion=0).drop_vars("width")
+    with pytest.raises(
+        SchemaError, match=f"^{owner}: found a sweep without its coordinate 'width'"
+    ):
+        NEEDS_SYSTEM[owner](case, tmp_path)
+
+
+@pytest.mark.parametrize("owner", NEEDS_SYSTEM)
+def test_a_case_of_an_unknown_function_is_refused_by_the_name_of_the_caller(
+    owner, tmp_path, of_a_function, monkeypatch
+):
+    NEEDS_SYSTEM[owner](of_a_function, tmp_path)
+    monkeypatch.setattr(of_cases, "_studies", {})  # as in another process
+    way = "give it as scene=" if owner == "case" else r"give rf\.case\(dataset, scene=\.\.\.\)"
+    with pytest.raises(StudyError, match=f"^{owner}: the scene was the function .*tower; {way}"):
+        NEEDS_SYSTEM[owner](of_a_function, tmp_path)
+
+
+def test_the_system_of_a_case_of_a_function_is_had_from_the_case(of_a_function):
+    with pytest.raises(SchemaError, match=r"sweep over width, .*rf\.case\(dataset\)\.system"):
+        rf.System.from_dataset(of_a_function)
+    assert rf.case(of_a_function).system == tower(1.0)
+
+
 def test_reports_take_cases_and_what_was_made_of_sweeps(fallen, tmp_path):
     system, path = rf.System(BLOCK), tmp_path / "report.html"
     some = rf.sweep(system, PULSE, scale=[0.5], outputs=["energy"], **QUIET)

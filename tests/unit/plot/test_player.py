@@ -75,7 +75,9 @@ def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
     for place, when in list(enumerate(data["times"]))[::7]:
         there = moving.drawer.lay_out(moving.at(int(np.argmin(abs(times - when)))))
         np.testing.assert_allclose(block[place], there.block, atol=0.51 * step)
-        np.testing.assert_allclose(cross[place, 0], there.centre, atol=0.51 * step)
+        np.testing.assert_allclose(cross[place], there.centres, atol=0.51 * step)
+    rest = [one for one in data["layers"]["list"] if one["name"] == "at rest"]
+    assert len(rest) == (2 if scene in ("stack", "pads, cap and soil") else 1)
     box = data["layers"]
     assert (np.nanmin(block, axis=(0, 1)) >= (box["left"], box["bottom"])).all()
     if scene == "pads":
@@ -180,20 +182,20 @@ def test_a_browser_draws_it(tmp_path):
     assert "flight" in seen or "left" in seen
 
 
-def written_by_a_browser(page, tmp_path, height=640):
-    """Give what a page writes on its lower canvas, with its place [pixels]."""
+def written_by_a_browser(page, tmp_path, height=640, canvas="traces"):
+    """Give what a page writes on a canvas, with its place [pixels]."""
     browser = which("chromium") or which("google-chrome")
     if browser is None:
         pytest.skip("neither chromium nor google-chrome is installed")
     listens = """<script>
     const plain = CanvasRenderingContext2D.prototype.fillText, told = [];
     CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
-      if (this.canvas.id === "traces") told.push(words + "@" + x + "@" + y);
+      if (this.canvas.id === "CANVAS") told.push(words + "@" + x + "@" + y);
       document.body.dataset.told = told.join("|");
       plain.call(this, words, x, y);
     };</script><script>"""
     path = tmp_path / "run.html"
-    path.write_text(page.to_html().replace("<script>", listens, 1))
+    path.write_text(page.to_html().replace("<script>", listens.replace("CANVAS", canvas), 1))
     usual = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000"]
     seen = subprocess.run(
         [browser, *usual, f"--window-size=800,{height}", f"--user-data-dir={tmp_path}/profile",
@@ -212,6 +214,16 @@ def test_times_below_the_traces_do_not_run_into_one_another(tmp_path, longer):
     places = sorted({x for words, x, _ in written if words.endswith(" s")})
     assert 4 <= len(places) <= 11
     assert np.diff(places).min() > 40.0
+
+
+@pytest.mark.parametrize(
+    ("unit", "bar"), [(None, "0.5 m"), ("ft", "2 ft"), ("in", "20 in"), ("mm", "500 mm")]
+)
+def test_the_scale_bar_has_the_unit_of_lengths(tmp_path, unit, bar):
+    units = None if unit is None else {"length": unit}
+    page = rf.plot.player(run_of("rigid ground"), units=units)
+    written = written_by_a_browser(page, tmp_path, canvas="scene")
+    assert {words for words, _, _ in written} == {bar}
 
 
 def test_numbers_beside_low_traces_do_not_overlap(tmp_path):

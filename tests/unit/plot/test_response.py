@@ -9,6 +9,7 @@ from records import record_path
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SolverWarning
+from rockframe.plot import _response
 from rockframe.plot._response import CONTACT_COLOURS, mixed_colours
 from rockframe.solve.workspace import Status
 
@@ -137,18 +138,26 @@ def words_of(axes):
     return [] if legend is None else [text.get_text() for text in legend.get_texts()]
 
 
-def test_of_a_stack_events_are_said_to_be_of_all_bodies_and_no_uplift_line_is_drawn():
+def test_of_a_stack_events_are_said_to_be_of_all_bodies_and_no_uplift_line_is_drawn(monkeypatch):
     block = rf.Block(width="1 m", height="1.5 m", mass="1 t")
     joint = rf.TwoSpringSupport(stiffness="20 MN/m", damping_ratio=0.1)
     system = rf.System(rf.Stack(block, block, interfaces=[joint]), joint)
     run = system.simulate(rf.GroundMotion.sine_pulse("8 m/s^2", "1 Hz"))
     assert 2 in run.event_body.to_numpy()
-    rotation, strip = rf.plot.response(run, panels=("rotation", "contact"), events=True)
+    rotation, *strips = rf.plot.response(run, panels=("rotation", "contact"), events=True)
     assert words_of(rotation)[0] == "body 1"
     assert rotation.get_legend().get_title().get_text() == "events of all bodies"
     # uplift is at a rotation on the base, what is drawn is that from the upright
     assert "uplift" not in [line.get_label() for line in rotation.get_lines()]
-    assert strip.get_ylabel() == "body 1"
+    assert [strip.get_ylabel() for strip in strips] == ["body 1", "body 2"]
+    first, _ = rf.plot.response([run, run], panels="contact")
+    assert first.get_ylabel() == "run 1, body 1"
+    (vertical,) = rf.plot.response(run, panels="vertical", vertical="mm")
+    assert vertical.get_ylabel() == "vertical $y$\nof body 1 [mm]"
+    monkeypatch.setattr(_response, "_MOST_STRIPS", 1)
+    (strip,) = rf.plot.response(run, panels="contact")
+    shares = (run.body_contact_state.to_numpy() != 0).mean(axis=1)
+    assert strip.get_ylabel() == f"body {1 + int(np.argmax(shares))}"
     assert "rotation of body 1 [" in rf.plot.player(run).to_html()
 
 

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.patches import Polygon
 
 import rockframe as rf
-from rockframe.errors import ComponentError, FileError, UnitsError
+from rockframe.errors import ComponentError, FileError, SchemaError, UnitsError
 from rockframe.plot._artists import Drawer
 from rockframe.plot._runs import runs_of
 from rockframe.plot._scene import Moving
@@ -47,7 +47,7 @@ def test_on_rigid_ground_a_block_turns_about_the_corner_that_bears():
         _, found = drawn(None, run, place)
         np.testing.assert_allclose(found.block, expected, atol=1e-9)
         np.testing.assert_allclose(
-            found.centre, turned((0.1, 1.8), (corner, 0.0), angle), atol=1e-9
+            found.centres, [turned((0.1, 1.8), (corner, 0.0), angle)], atol=1e-9
         )
         (touching,) = found.touching
         if int(run.contact_state[place]) != 0:
@@ -92,15 +92,54 @@ def test_pads_are_as_high_as_the_block_lets_them_be():
     for place in range(0, run.sizes["time"], 25):
         at, found = drawn(system, run, place)
         corners = at.block(np.array([(-1.0, 0.0), (1.0, 0.0)]))
-        bearing = [corner for corner, bears in zip(corners, found.pads_bear, strict=True) if bears]
-        np.testing.assert_allclose(
-            np.reshape(found.touching, (-1, 2)), np.reshape(bearing, (-1, 2)), atol=1e-12
-        )
+        bearing = np.where(np.array(found.pads_bear)[:, None], corners, np.nan)
+        np.testing.assert_allclose(np.reshape(found.touching, (-1, 2)), bearing, atol=1e-12)
         for pad, corner, bears in zip(found.pads, corners, found.pads_bear, strict=True):
             assert pad[3, 1] == pytest.approx(min(corner[1], free), abs=1e-9)
             # a dashpot may hold back a pad whose end has not come up to its free level yet
             assert not bears or corner[1] <= free + 1e-9
             assert bears or corner[1] > -0.5 * free
+
+
+@pytest.mark.parametrize("soil", [None, SOIL])
+def test_each_body_of_a_stack_has_its_contact_its_centre_and_its_outline_at_rest(soil):
+    low = rf.Block(width="2 m", height="3 m", mass="15 t")
+    stone = rf.RigidGround()
+    stack = rf.Stack(BLOCK, low, interfaces=[stone])
+    run = rf.System(stack, soil or stone).simulate(
+        rf.GroundMotion.sine_pulse("3 m/s^2", "1 Hz"), duration="1.2 s"
+    )
+    states = run.body_contact_state.to_numpy()
+    assert len({*map(tuple, states.T)}) > 2
+    for place in range(0, run.sizes["time"], 5):
+        _, found = drawn(None, run, place)
+        *_, upper = found.touching
+        if soil is None:
+            upper, lower = found.touching
+            ends = {0: found.lower[0][:2], 1: found.lower[0][:1], 2: found.lower[0][1:2]}
+            expected = ends.get(states[1, place], np.full((1, 2), np.nan))
+            np.testing.assert_array_equal(lower, expected)
+        else:
+            assert np.isnan(found.touching[0]).any() == (states[1, place] == 3)
+        ends = {0: found.block[:2], 1: found.block[:1], 2: found.block[1:2]}
+        np.testing.assert_array_equal(upper, ends.get(states[0, place], np.full((1, 2), np.nan)))
+        moves = run.isel(time=place)
+        rest = np.array([(0.1, 3.0 + 1.8), (0.0, 1.5)])
+        across, up = moves.body_horizontal_displacement, moves.body_vertical_displacement
+        np.testing.assert_allclose(found.centres, rest + np.column_stack([across, up]), atol=1e-9)
+    axes = rf.plot.state(run)
+    dashed = [one.get_xy()[:4] for one in axes.patches if one.get_linestyle() == "--"]
+    upright = Moving(run, "state", 1.0).upright
+    rest = Moving(run, "state", 1.0).drawer.lay_out(upright)
+    np.testing.assert_allclose(dashed, [rest.block, rest.lower[0]])
+    labels = [one.get_ylabel() for one in rf.plot.response(run, panels=("contact",))]
+    assert labels == ["body 1", "body 2"]
+
+
+def test_a_cap_that_moves_apart_has_its_centre():
+    run = rf.System(EVEN, PADS, CAP, SOIL).simulate(PULSE, duration="1 s")
+    moving = Moving(run, "state", 1.0)
+    assert moving.drawer.lay_out(moving.upright).centres[1] == pytest.approx([0.0, 0.2])
 
 
 def test_a_cap_under_pads_turns_about_the_end_that_the_soil_holds():
@@ -234,9 +273,27 @@ def test_a_restrainer_is_drawn_until_it_breaks():
         assert np.isnan(tie).all() == (run.time[place].item() >= broke)
     # it stays broken in a window that begins later
     (drawn,) = runs_of(run, "animation", (f"{broke + 0.1} s", None))
-    later = Moving(drawn.dataset, "animation", 1.0, whole=run)
+    later = Moving(drawn.dataset, "animation", 1.0)
     assert np.isnan(later.drawer.lay_out(later.at(0)).ties[0]).all()
     rf.plot.player(run, window=(f"{broke - 0.1} s", None))
+
+
+def test_a_restrainer_stays_broken_in_a_run_that_continues_another():
+    system = rf.System(SLIM, TIE)
+    run = system.simulate(PULSE, free_vibration="1 s")
+    assert run.broken_restrainer_count == 1
+    later = Moving(system.simulate(duration="0.2 s", initial=run), "state", 1.0)
+    for place in (0, 5):
+        assert np.isnan(later.drawer.lay_out(later.at(place)).ties[0]).all()
+
+
+def test_a_case_of_a_sweep_is_not_drawn_with_a_restrainer_that_broke():
+    runs = rf.sweep(rf.System(SLIM, TIE), PULSE, scale=[0.1, 1.0], outputs=[], progress=False)
+    rf.plot.state(runs.isel(scale=0, motion=0))
+    broke = runs.isel(scale=1, motion=0)
+    with pytest.raises(SchemaError, match=r"lacks 'restrainer_state'.*rf\.case"):
+        rf.plot.state(broke)
+    rf.plot.state(rf.case(broke).simulate())
 
 
 def test_a_restrainer_without_a_length_is_seen():

@@ -1,0 +1,97 @@
+"""Fonts for letters that those of a figure lack, such as the letters of Chinese names."""
+
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final
+
+from rockframe.errors import RockframeWarning, warn
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+_LAST_RESORT: Final = "Last Resort"
+"""Fonts that have a box in the place of every letter."""
+_LISTED: Final = 12
+"""Letters that a warning lists."""
+
+
+def make_legible(artists: "Iterable[Axes | Figure | SubFigure]") -> None:
+    """Give texts another installed font for the letters that theirs lack.
+
+    Letters that no installed font has are written as question marks, with one warning.
+    """
+    from matplotlib.font_manager import fontManager
+
+    lost = dict[str, None]()
+    for text in _texts(artists):
+        words, families = str(text.get_text()), list(text.get_fontfamily())
+        paths = _paths(families)
+        missing = frozenset(
+            one for one in words if not one.isspace() and not any(_has(p, one) for p in paths)
+        )
+        if not missing:
+            continue
+        found = _fonts_of(missing, len(fontManager.ttflist))
+        text.set_fontfamily([*families, *dict.fromkeys(found.values())])
+        without = [one for one in words if one in missing and one not in found]
+        text.set_text("".join("?" if one in without else one for one in words))
+        lost |= dict.fromkeys(without)
+    if lost:
+        more = "" if len(lost) <= _LISTED else f" and {len(lost) - _LISTED} more"
+        msg = (
+            f"no installed font has {' '.join([*lost][:_LISTED])}{more}, written as '?' in the "
+            "figure; install a font with these letters, such as Noto Sans CJK for Chinese, "
+            "Japanese and Korean"
+        )
+        warn(msg, RockframeWarning)
+
+
+def _texts(artists: "Iterable[Axes | Figure | SubFigure]") -> list[Any]:
+    """Give the texts with letters beyond ASCII."""
+    from matplotlib.text import Text
+
+    found: list[Any] = [one for artist in artists for one in artist.findobj(Text)]
+    return [one for one in found if not str(one.get_text()).isascii()]
+
+
+def _paths(families: Iterable[str]) -> list[str]:
+    """Give the files of those fonts that are installed."""
+    from matplotlib.font_manager import FontProperties, findfont
+
+    found: list[str] = []
+    for family in families:
+        try:
+            found.append(str(findfont(FontProperties(family=[family]), fallback_to_default=False)))
+        except ValueError:
+            continue
+    return found
+
+
+@lru_cache(maxsize=64)
+def _fonts_of(letters: frozenset[str], installed: int) -> dict[str, str]:
+    """Find installed fonts that have letters: upright, regular, without serifs if possible."""
+    from matplotlib.font_manager import fontManager
+
+    def rank(font: Any) -> tuple[bool, bool, bool, str]:
+        regular = font.weight in (400, "normal", "regular", "book")
+        return font.style != "normal", not regular, "serif" in font.name.lower(), font.name
+
+    found: dict[str, str] = {}
+    for font in sorted(fontManager.ttflist[:installed], key=rank):
+        if font.name.startswith(_LAST_RESORT):
+            continue
+        found |= {one: font.name for one in letters if one not in found and _has(font.fname, one)}
+        if len(found) == len(letters):
+            break
+    return found
+
+
+@lru_cache(maxsize=4096)
+def _has(path: str, letter: str) -> bool:
+    from matplotlib.font_manager import get_font
+
+    try:
+        return bool(get_font(path).get_char_index(ord(letter)))
+    except (OSError, RuntimeError):  # a font that is damaged, or was removed
+        return False

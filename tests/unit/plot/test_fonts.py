@@ -1,0 +1,94 @@
+"""Names in letters that matplotlib's usual font lacks."""
+
+import warnings
+from io import BytesIO
+
+import pytest
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.ttGlyphPen import TTGlyphPen
+from matplotlib import font_manager, pyplot, rc_context
+
+import rockframe as rf
+from rockframe.errors import RockframeWarning
+from rockframe.plot import _fonts
+
+NAME = "地震 Kōbe"
+LETTERS = "地震神戸"
+PULSE = rf.GroundMotion(rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz").si, name=NAME)
+SLIM = rf.Block(width="0.8 m", height="4 m", mass="2 t")
+TIE = rf.Restrainer(on=("-0.4 m", "4 m"), to=("-1.4 m", "4 m"), stiffness="1 kN/m", name="神戸")
+SYSTEM = rf.System(SLIM, TIE)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return SYSTEM.simulate(PULSE, duration="0.3 s")
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """A font with the letters of the names alone, with other fonts as they are."""
+    pen = TTGlyphPen(None)
+    for k, place in enumerate([(0, 0), (0, 700), (700, 700), (700, 0)]):
+        pen.lineTo(place) if k else pen.moveTo(place)
+    pen.closePath()
+    names = [".notdef", *(f"u{ord(one):X}" for one in LETTERS)]
+    font = FontBuilder(1000, isTTF=True)
+    font.setupGlyphOrder(names)
+    font.setupCharacterMap({ord(one): f"u{ord(one):X}" for one in LETTERS})
+    font.setupGlyf(dict.fromkeys(names, pen.glyph()))
+    font.setupHorizontalMetrics(dict.fromkeys(names, (800, 0)))
+    font.setupHorizontalHeader(ascent=800, descent=-200)
+    font.setupNameTable({"familyName": "Letters of names", "styleName": "Regular"})
+    font.setupOS2()
+    font.setupPost()
+    font.save(tmp_path / "letters.ttf")
+    fonts = list(font_manager.fontManager.ttflist)
+    monkeypatch.setattr(font_manager.fontManager, "ttflist", fonts)
+    font_manager.fontManager.addfont(tmp_path / "letters.ttf")
+    return "Letters of names"
+
+
+DRAWN = {
+    "motion": lambda run: rf.plot.motion(PULSE),
+    "response": lambda run: rf.plot.response({NAME: run, "other": run}),
+    "scene": lambda run: rf.plot.scene(SYSTEM),
+    "animation": lambda run: rf.plot.animation(run, title=NAME),
+    "own axes": lambda run: rf.plot.phase(run, ax=pyplot.figure().subplots(), title=NAME),
+}
+
+
+def drawn(name, run):
+    """Draw a figure to a file; give its texts and the warnings."""
+    with warnings.catch_warnings(record=True) as issued:
+        warnings.simplefilter("always")
+        made = DRAWN[name](run)
+        figure = made.figure
+        figure.savefig(BytesIO(), format="png")
+    return list(_fonts._texts([figure])), [one.message for one in issued]
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_letters_that_no_font_has_are_told_once(name, run, monkeypatch):
+    fonts = [one for one in font_manager.fontManager.ttflist if one.name == "DejaVu Sans"]
+    monkeypatch.setattr(font_manager.fontManager, "ttflist", fonts)
+    _, issued = drawn(name, run)
+    assert [type(one) for one in issued] == [RockframeWarning]
+    assert "no installed font has " in str(issued[0])
+    assert "install a font with these letters, such as Noto Sans CJK" in str(issued[0])
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_letters_are_written_in_a_font_that_has_them(name, run, installed):
+    texts, issued = drawn(name, run)
+    assert issued == []
+    foreign = [one for one in texts if set(one.get_text()) & set(LETTERS)]
+    assert foreign
+    assert all(one.get_fontfamily()[-1] == installed for one in foreign)
+
+
+def test_fonts_that_the_user_has_chosen_come_first(run, installed):
+    with rc_context({"font.family": [installed, "DejaVu Sans"]}):
+        texts, issued = drawn("response", run)
+    assert issued == []
+    assert {tuple(one.get_fontfamily()) for one in texts} == {(installed, "DejaVu Sans")}
