@@ -77,14 +77,8 @@ def dynamic_analysis(
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.incremental_dynamic_analysis`.
     panels : str or tuple of str, optional
         Panels to draw: ``"peaks"``, left, and ``"shares"``, right; both unless given.
-
-    Returns
-    -------
-    Panels
 
     Examples
     --------
@@ -206,26 +200,13 @@ def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]
     title="the verdict",
 )
 def fractile_curves(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
     """Draw the intensity over the response: runs in grey, and their fractiles.
 
     Solid lines are fractiles of the response at an intensity, dashed lines fractiles of the
     intensity at which a level of the response is reached. Where a solid line leaves the figure
     horizontally to the right, the runs beyond that fractile have overturned.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.fractile_curves`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Examples
     --------

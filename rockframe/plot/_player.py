@@ -21,7 +21,6 @@ from rockframe.plot._response import (
     OF_BODIES,
     OF_CAP,
     SLIP,
-    names_of_flags,
     of_rotation,
     strips_of,
 )
@@ -29,6 +28,7 @@ from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving
 from rockframe.proposals import proposing
 from rockframe.results.outcome import LEAST_SLIP
+from rockframe.results.variables.variable import words_of_flags
 from rockframe.signals.arrays import Array
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import UnitsLike
@@ -359,7 +359,7 @@ def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
     """Give the instants at which contact changes, and the state after each."""
     values, time = state.to_numpy(), state["time"].to_numpy()
     changes = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
-    names = dict(names_of_flags(state))
+    names = words_of_flags(state.attrs)
     return {"words": words, "times": [round(float(time[k]), 6) for k in changes],
             "states": [names[int(values[k])] for k in changes]}  # fmt: skip
 

@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import colour_of, labels_of_names, style_of
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
-from rockframe.results.variables.variable import unit_behind
+from rockframe.results.variables.variable import unit_behind, words_of_flags
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.shown import ReaderUnits
 
@@ -90,9 +90,8 @@ def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
         return units.of_sentence(str(run.attrs.get("verdict", "")))
     fell = verdict_of(run)
     if fell is None:
-        flags = run["status"].attrs
-        words = dict(zip(flags["flag_values"], str(flags["flag_meanings"]).split(), strict=True))
-        text = f"no verdict, {words[run['status'].item()].replace('_', ' ')}"
+        words = words_of_flags(run["status"].attrs)[run["status"].item()]
+        text = f"no verdict, {words.replace('_', ' ')}"
     elif fell:
         text = f"overturned at {float(run['overturning_time']):.4g} s"
     else:

@@ -7,17 +7,11 @@ import numpy as np
 import xarray as xr
 
 from rockframe.arguments import truth
+from rockframe.dynamics.events import LINK_BREAKS
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
-from rockframe.plot._checks import (
-    RUN,
-    above_zero,
-    checked_run,
-    draws,
-    refuse,
-    system_of_run,
-)
+from rockframe.plot._checks import RUN, above_zero, checked_run, draws, refuse, system_of_run
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.results.points import UPRIGHT, Placement
 from rockframe.simulation.plan import points_of
@@ -261,9 +255,7 @@ def _fractures(run: xr.Dataset) -> dict[int, float]:
     """Give when restrainers broke, by their numbers from 0 [s]."""
     if "event_restrainer" not in run:
         return {}
-    kinds = dict(zip(str(run["event_kind"].attrs["flag_meanings"]).split(),
-                     run["event_kind"].attrs["flag_values"], strict=True))  # fmt: skip
-    broke = run["event_kind"].to_numpy() == kinds["restrainer_fracture"]
+    broke = run["event_kind"].to_numpy() == LINK_BREAKS
     numbers, times = (run[f"event_{name}"].to_numpy()[broke] for name in ("restrainer", "time"))
     return {int(number) - 1: float(when) for number, when in zip(numbers, times, strict=True)}
 

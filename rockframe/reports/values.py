@@ -5,9 +5,9 @@ import re
 from collections.abc import Iterable
 from typing import Any, Final
 
-import numpy as np
 import xarray as xr
 
+from rockframe.results.variables.variable import words_of_flags
 from rockframe.units import Unit
 from rockframe.units.shown import ReaderUnits
 
@@ -21,10 +21,8 @@ _ABOVE: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
     """Write a scalar with its unit, and flags and truth values as words."""
     value: Any = variable.item()
-    if "flag_values" in variable.attrs:
-        places = np.atleast_1d(variable.attrs["flag_values"]).tolist()
-        words = str(variable.attrs["flag_meanings"]).split()
-        word = words[places.index(value)] if value in places else str(value)
+    if words := words_of_flags(variable.attrs):
+        word = words.get(value, str(value))
         return _TRUTH.get(word, word.replace("_", " "))
     if variable.dtype == bool:
         return _TRUTH[str(value).lower()]
