@@ -36,7 +36,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     ending = f".{arguments.format or 'html'}" if path == STREAM else Path(path).suffix.lower()
     if ending not in (*_PAGES, *_FILMS):
         words = f"that of an animation ends in {' or '.join((_PAGES[0], *_FILMS))}"
-        raise FileError(path, [(None, f"the name ends in {ending!r}; {words}")])
+        raise FileError(path, f"the name ends in {ending!r}; {words}")
     run = _run_of(arguments, answer)
     outputs = Outputs(arguments, [arguments.dataset], answer)
     options = typed_options(arguments, "window", "magnify", "title")
@@ -66,7 +66,7 @@ def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
         if typed:
             option = typed[0].replace("_", "-")
             words = f"this is a result, which has run; --{option} goes with a scene"
-            raise FileError(arguments.dataset, [(None, words)])
+            raise FileError(arguments.dataset, words)
         run = read_result(arguments.dataset)
     else:
         arguments.scene = arguments.dataset

@@ -31,7 +31,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 def _record(arguments: argparse.Namespace) -> NamedRecord:
     if arguments.record == STREAM:
         words = "a scene's file names its record; give a file in the place of '-'"
-        raise FileError(STREAM, [(None, words)])
+        raise FileError(STREAM, words)
     keys: dict[str, Any] = {"file": str(Path(arguments.record).expanduser().resolve())}
     keys |= typed_options(arguments, "component", "unit", "time_step")
     return NamedRecord(motion_from(arguments.record, arguments), keys)

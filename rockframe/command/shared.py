@@ -85,11 +85,11 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
         motion = motion_from(arguments.motion, arguments)
         files += (Path(arguments.motion),)
     if moved and motion is None:
-        raise FileError(arguments.scene, [(None, _NO_MOTION)])
+        raise FileError(arguments.scene, _NO_MOTION)
     if arguments.scale is not None:
         if motion is None:
             words = f"--scale {arguments.scale:g} multiplies a motion, and {_NO_MOTION}"
-            raise FileError(arguments.scene, [(None, words)])
+            raise FileError(arguments.scene, words)
         motion = motion.scaled(arguments.scale)
     return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
 
@@ -238,7 +238,7 @@ class Outputs:
         if path is None:
             return
         if str(path) == STREAM:
-            self._answer.hands_on(_bytes_of(content, kind))
+            self._answer.hands_on(_bytes_of(content, kind.endings[0]))
             return
         write_file(path, kind, content, **self._given)
         self._answer.wrote(title, path)
@@ -251,28 +251,25 @@ class Outputs:
         self, path: str | Path, ending: str, title: str, save: Callable[[Path], object]
     ) -> None:
         """Write by a function of a path to a file, or to the standard output; report the file."""
-        if str(path) != STREAM:
-            if Path(path).suffix.lower() == ending.lower():  # `save` refuses other endings
-                check_not_read(path, self._given["read"])
-            save(Path(path))
-            self._answer.wrote(title, path)
+        if str(path) == STREAM:
+            self._answer.hands_on(_bytes_of(save, ending))
             return
-        with TemporaryDirectory() as folder:
-            place = Path(folder) / f"file{ending}"
-            save(place)
-            self._answer.hands_on(place.read_bytes())
+        if Path(path).suffix.lower() == ending.lower():  # `save` refuses other endings
+            check_not_read(path, self._given["read"])
+        save(Path(path))
+        self._answer.wrote(title, path)
 
     def table(self, values: "pd.DataFrame") -> None:
         """Write a table to the file of ``--csv``, if there is one, and report it."""
         self.write(*self._named["csv"], "Table", lambda part: values.to_csv(part))
 
 
-def _bytes_of(content: Content, kind: FileKind) -> bytes:
-    """Give the bytes of a file."""
+def _bytes_of(content: Content, ending: str) -> bytes:
+    """Give the bytes of a file whose name has an ending."""
     if isinstance(content, bytes):
         return content
     with TemporaryDirectory() as folder:
-        part = Path(folder) / f"part{kind.endings[0]}"
+        part = Path(folder) / f"file{ending}"
         content(part)
         return part.read_bytes()
 
@@ -296,12 +293,12 @@ def read_result(path: str) -> xr.Dataset:
 def _result_in(place: Path, path: str) -> xr.Dataset:
     if not place.is_file():
         found = "this is a folder" if place.is_dir() else "there is no such file"
-        raise FileError(path, [(None, f"{found}; {_OF_RESULTS}")])
+        raise FileError(path, f"{found}; {_OF_RESULTS}")
     try:
         with xr.open_dataset(place) as dataset:
             return dataset.load()
     except (OSError, ValueError) as problem:
-        raise FileError(path, [(None, f"this is no netCDF file; {_OF_RESULTS}")]) from problem
+        raise FileError(path, f"this is no netCDF file; {_OF_RESULTS}") from problem
 
 
 def result_kind(words: str, *, axes: bool) -> FileKind:

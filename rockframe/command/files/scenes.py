@@ -9,14 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts, part_slots
-from rockframe.command.files.tables import (
-    Place,
-    TomlFile,
-    arguments_of,
-    checked,
-    made,
-    table_title,
-)
+from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
 from rockframe.command.typed_calls import check_of
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
