@@ -16,6 +16,11 @@ class CommandArgument:
     settings: dict[str, Any]  # further arguments of :meth:`argparse.ArgumentParser.add_argument`
     of_files: bool = False  # whether it names a file
 
+    @property
+    def attribute(self) -> str:
+        """Name of its value among the arguments as they are parsed."""
+        return self.names[-1].removeprefix("--").replace("-", "_")
+
 
 @dataclass(frozen=True)
 class Command:

@@ -14,7 +14,7 @@ from rockframe.command.streams import STREAM
 from rockframe.command.typed_calls import values_by_name
 from rockframe.errors import ComponentError
 from rockframe.plot._checks import drawn_by
-from rockframe.reports.figures import close, figure_of
+from rockframe.reports.page import close, figure_of
 from rockframe.version import __version__
 from rockframe.writing import FileKind
 

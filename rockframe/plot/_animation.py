@@ -200,8 +200,6 @@ def animation(
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A result with histories.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is shown; the whole run unless given [s].
     speed : float, optional

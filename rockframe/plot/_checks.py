@@ -95,9 +95,9 @@ def draws(
 ) -> Callable[[Drawing], Drawing]:  # fmt: skip
     """Register what a figure is drawn from, for a dataset by a `DatasetKind`.
 
-    Add to the docstring what figures share: the dataset, `window`, `units`, `ax`, `title`, what is
-    returned, and errors. The words `ax` and `title` describe the Axes and the default title in the
-    manual.
+    Add to the docstring what figures share: `dataset`, `run`, `window`, `units`, `ax`, `title`,
+    what is returned, and errors. The words `ax` and `title` describe the Axes and the default title
+    in the manual.
     """
     kind = what if isinstance(what, DatasetKind) else DatasetKind(what, call, known, needed)
     usual = f"; {title} unless given" if title else ""
@@ -106,6 +106,7 @@ def draws(
         "dataset": Argument(
             None, "xarray.Dataset", f"Result of :func:`rockframe.{call[3:].partition('(')[0]}`."
         ),
+        "run": Argument(None, "xarray.Dataset", "A result with histories."),
         "window": Argument(
             None,
             "(str or Quantity or None, str or Quantity or None), optional",

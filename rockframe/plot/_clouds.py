@@ -13,11 +13,10 @@ from rockframe.plot._axes import (
     label_log_ticks,
     label_of,
     label_of_intensity,
-    raised,
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, single
-from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, raised
 
 
 @draws(

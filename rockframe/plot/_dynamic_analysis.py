@@ -14,7 +14,6 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
-    raised,
     style_of,
     units_of,
 )
@@ -22,7 +21,7 @@ from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, chosen_panels, sheet, single
 from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.fragility.trials import at_scales
-from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, raised
 
 _PANELS: Final = {"peaks": 1.4, "shares": 1.0}
 """Panels, which are side by side, and their relative widths."""

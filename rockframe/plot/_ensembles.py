@@ -15,7 +15,6 @@ from rockframe.plot._axes import (
     label_of_intensity,
     label_of_value,
     labels_of_names,
-    raised,
     style_of,
     units_of,
 )
@@ -25,7 +24,7 @@ from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.fragility.words import measures_of, verdict_of_fragility
 from rockframe.studies.sweeps.words import cases_verdict
-from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, raised
 
 
 @draws("an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability"))

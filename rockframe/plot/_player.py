@@ -14,7 +14,7 @@ import xarray as xr
 
 from rockframe.arguments import text
 from rockframe.plot._artists import CONTACT, SOIL, Layout
-from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_of
+from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, units_of
 from rockframe.plot._checks import RUN, checked_run, draws
 from rockframe.plot._response import (
     CONTACT_COLOURS,
@@ -31,7 +31,7 @@ from rockframe.results.outcome import LEAST_SLIP
 from rockframe.results.variables.variable import words_of_flags
 from rockframe.signals.arrays import Array
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, raised
 from rockframe.version import __version__
 from rockframe.writing import FileKind, generator, write_file
 
@@ -150,8 +150,6 @@ def player(
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A result with histories.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is shown; the whole run unless given [s].
     magnify : float, optional

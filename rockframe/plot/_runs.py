@@ -59,7 +59,7 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
     if window is None:
         return -np.inf, np.inf
     owner = f"rf.plot.{function}"
-    ends = list(cast("Any", window)) if isinstance(window, tuple | list) else []
+    ends = list(window) if isinstance(window, tuple | list) else []
     if len(ends) != 2:
         msg = (
             f"{owner}: {name} must be a pair of times, such as ('2 s', '8 s'), or None for an open "
@@ -116,7 +116,7 @@ def _labels_of(run: xr.Dataset) -> str:
 def _labelled(value: object) -> dict[str, Any] | None:
     """Give several runs by their labels; None for a single run."""
     if isinstance(value, Mapping) and not isinstance(value, xr.Dataset):
-        labels = {str(key): one for key, one in cast("Mapping[Any, Any]", value).items()}
+        labels = {str(key): one for key, one in value.items()}
         return labels if labels and _all_runs(list(labels.values())) else None
     if not isinstance(value, list | tuple) or not value:
         return None

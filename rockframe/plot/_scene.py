@@ -122,8 +122,6 @@ def state(
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A result with histories.
     time : str or Quantity, optional
         The instant; the nearest sample is drawn. By default the instant of the largest rotation
         over the overturning angle [s].
