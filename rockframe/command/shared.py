@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import xarray as xr
 
 from rockframe.command.answer import Answer
+from rockframe.command.arguments import READING
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
 from rockframe.command.streams import INPUT, STREAM, StandardInput, bar_for, opened
@@ -47,8 +48,7 @@ _LONGEST_HEAD: Final = 65536
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
     """Read the file of a motion with the options for reading."""
-    options = typed_options(arguments, "component", "unit", "time_step")
-    return GroundMotion.read(opened(path, "a record"), **options)
+    return GroundMotion.read(opened(path, "a record"), **reading_options(arguments))
 
 
 def suite_from(paths: Sequence[str], arguments: argparse.Namespace) -> MotionSuite:
@@ -96,11 +96,10 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
 
 def refuse_of_record(arguments: argparse.Namespace, way: str) -> None:
     """Refuse options on how a record is read, where no record is named."""
-    for name in ("component", "unit", "time_step"):
-        values = getattr(arguments, name, None)
-        if values is not None:
-            option = f"--{name.replace('_', '-')}"
-            msg = f"{option} {values}: this says how a record is read; {way}"
+    for one in READING:
+        value = getattr(arguments, one.attribute, None)
+        if value is not None:
+            msg = f"{one.names[-1]} {value}: this says how a record is read; {way}"
             raise ComponentError(msg)
 
 
@@ -130,6 +129,11 @@ def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, 
     """Give the arguments of a run that an analysis takes too."""
     known = arguments_of(function)
     return {name: value for name, value in run.items() if name in known}
+
+
+def reading_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Give the typed options on how a record is read."""
+    return typed_options(arguments, *(one.attribute for one in READING))
 
 
 def typed_options(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:

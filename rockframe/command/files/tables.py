@@ -172,7 +172,7 @@ class TomlFile:
     def table(self, where: Place, argument: object) -> dict[str, Any] | None:
         """Give a value that must be a table, or note a fault."""
         if isinstance(argument, dict):
-            return {str(name): value for name, value in argument.items()}  # pyright: ignore[reportUnknownVariableType]
+            return {str(name): value for name, value in argument.items()}
         self.fault(
             where,
             f"{where[-1]} must be a table, [{table_title(where)}] with its keys below it, "
