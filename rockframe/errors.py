@@ -115,16 +115,16 @@ class FileError(RockframeError, ValueError):
     ----------
     path : str
         File that was read or to be written.
-    faults : sequence of (int or None, str)
-        Every fault found, with its line number, counted from 1, where it has one.
+    faults : str, or sequence of (int or None, str)
+        The fault; or every fault found, with its line number, counted from 1, where it has one.
     """
 
-    def __init__(self, path: str, faults: Sequence[tuple[int | None, str]]) -> None:
+    def __init__(self, path: str, faults: str | Sequence[tuple[int | None, str]]) -> None:
         self.path = path
-        self.faults = tuple(faults)
+        self.faults = ((None, faults),) if isinstance(faults, str) else tuple(faults)
         lines = [
             f"{path}: {words}" if line is None else f"{path}, line {line}: {words}"
-            for line, words in faults
+            for line, words in self.faults
         ]
         super().__init__("\n".join(lines))
 

@@ -118,10 +118,10 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 
 def completed(text: str, names: Iterable[str], declared: Mapping[str, Argument]) -> str:
     """Insert rows for declared arguments into the section on parameters of a docstring."""
-    clean = inspect.cleandoc(text)
-    section = _PARAMETERS.search(clean)
-    if section is None:  # also if Python runs without docstrings
+    if not text:  # if Python runs without docstrings
         return text
+    clean = with_section(text, "Parameters", "", ("Returns", "Raises", "Notes", "Examples"))
+    section = cast("re.Match[str]", _PARAMETERS.search(clean))
     rows = {
         name.strip().lstrip("*"): row.rstrip()
         for row in _ROW.split(section[0])
@@ -147,9 +147,14 @@ def _row(name: str, one: Argument) -> str:
 
 def with_raises(text: str, raises: str) -> str:
     """Insert a section Raises before Notes and Examples, unless there is one."""
+    return with_section(text, "Raises", raises, ("See Also", "Notes", "Examples"))
+
+
+def with_section(text: str, title: str, words: str, following: Iterable[str]) -> str:
+    """Insert a section before others into a docstring, unless it has one of that title."""
     clean = inspect.cleandoc(text)
-    if not clean or "\nRaises\n---" in clean:
+    if not clean or f"\n{title}\n---" in clean:
         return clean
-    places = (clean.find(f"\n\n{head}\n---") for head in ("See Also", "Notes", "Examples"))
+    places = (clean.find(f"\n\n{head}\n---") for head in following)
     end = min((place for place in places if place >= 0), default=len(clean))
-    return f"{clean[:end]}\n\nRaises\n------\n{raises}{clean[end:]}"
+    return f"{clean[:end]}\n\n{title}\n{'-' * len(title)}\n{words}{clean[end:]}"

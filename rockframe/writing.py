@@ -62,9 +62,9 @@ def checked_path(
             fault = _fault_of_present(place, kind, overwrite, read)
     except (TypeError, ValueError, OSError, RuntimeError) as problem:
         words = f"found {shown(path)}; expected the path of a file that can be written ({problem})"
-        raise FileError(shown(path), [(None, words)]) from problem
+        raise FileError(shown(path), words) from problem
     if fault is not None:
-        raise FileError(os.fspath(path), [(None, fault)])
+        raise FileError(os.fspath(path), fault)
     return place
 
 
@@ -91,7 +91,7 @@ def write_file(
         part.replace(place)
     except OSError as problem:
         words = f"it cannot be written ({problem.strerror or problem})"
-        raise FileError(os.fspath(path), [(None, words)]) from problem
+        raise FileError(os.fspath(path), words) from problem
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
@@ -118,7 +118,7 @@ def check_not_read(path: PathLike, read: Iterable[PathLike]) -> None:
     place = Path(os.path.realpath(Path(path).expanduser()))
     fault = _fault_of_read(place, read) if os.path.lexists(place) else None
     if fault is not None:
-        raise FileError(os.fspath(path), [(None, fault)])
+        raise FileError(os.fspath(path), fault)
 
 
 def _fault_of_read(place: Path, read: Iterable[PathLike]) -> str | None:

@@ -7,6 +7,7 @@ from typing import Final
 import xarray as xr
 
 from rockframe.command.answer import Answer
+from rockframe.command.arguments import RUNNING
 from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
@@ -20,13 +21,9 @@ from rockframe.command.shared import (
 from rockframe.command.streams import STREAM
 from rockframe.errors import ComponentError, FileError
 from rockframe.plot import Animation, Player, animation, player
-from rockframe.reports.figures import close
 
 _PAGES: Final = (".html", ".htm")
 _FILMS: Final = (".gif", ".mp4")
-_OF_SCENES: Final = (
-    "motion", "component", "unit", "time_step", "scale", "accuracy", "free_vibration", "duration",
-)  # fmt: skip
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
@@ -36,7 +33,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     ending = f".{arguments.format or 'html'}" if path == STREAM else Path(path).suffix.lower()
     if ending not in (*_PAGES, *_FILMS):
         words = f"that of an animation ends in {' or '.join((_PAGES[0], *_FILMS))}"
-        raise FileError(path, [(None, f"the name ends in {ending!r}; {words}")])
+        raise FileError(path, f"the name ends in {ending!r}; {words}")
     run = _run_of(arguments, answer)
     outputs = Outputs(arguments, [arguments.dataset], answer)
     options = typed_options(arguments, "window", "magnify", "title")
@@ -55,18 +52,17 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         )  # fmt: skip
     finally:
         if isinstance(moving, Animation):
-            close(moving.figure)
+            moving.close()
     return 0 if is_result(arguments.dataset) or finished(run) else 1
 
 
 def _run_of(arguments: argparse.Namespace, answer: Answer) -> xr.Dataset:
     """Read a run, or simulate a scene."""
     if is_result(arguments.dataset):
-        typed = [name for name in _OF_SCENES if getattr(arguments, name) is not None]
+        typed = [one for one in RUNNING if getattr(arguments, one.attribute) is not None]
         if typed:
-            option = typed[0].replace("_", "-")
-            words = f"this is a result, which has run; --{option} goes with a scene"
-            raise FileError(arguments.dataset, [(None, words)])
+            words = f"this is a result, which has run; {typed[0].names[-1]} goes with a scene"
+            raise FileError(arguments.dataset, words)
         run = read_result(arguments.dataset)
     else:
         arguments.scene = arguments.dataset

@@ -17,8 +17,6 @@ _LABEL: Final = 9
 """Width of the label at the head of a line [characters]."""
 _ALONG: Final = {"time", "event", "sample_after_end"}
 """Dimensions of histories, which only the files of results hold."""
-_TRUTH: Final = ["false", "true"]
-"""Meanings of flags that are truth values."""
 
 
 class Answer:
@@ -68,10 +66,10 @@ class Answer:
         if self.as_json or self.data is not None:
             other = "the answer in JSON" if self.as_json else "another file"
             words = f"{other} goes to the standard output already; name a file instead of '-'"
-            raise FileError(STREAM, [(None, words)])
+            raise FileError(STREAM, words)
         if is_terminal(sys.stdout) and b"\0" in data:
             words = "the standard output is a terminal, which shows no such file; name one"
-            raise FileError(STREAM, [(None, words)])
+            raise FileError(STREAM, words)
         self.data = data
 
     def warned(self, words: str) -> None:
@@ -128,13 +126,14 @@ def _in_words(values: Any, attributes: Mapping[str, Any]) -> Any:
     """Replace flags by their meanings, and flags of truth by true and false."""
     import numpy as np
 
-    meanings = str(attributes.get("flag_meanings", "")).split()
-    if not meanings:
+    from rockframe.results.variables.variable import TRUTH, words_of_flags
+
+    words: dict[Any, str | bool] = {**words_of_flags(attributes)}
+    if not words:
         return values
-    words = dict(zip(np.atleast_1d(attributes["flag_values"]).tolist(), meanings, strict=True))
-    if meanings == _TRUTH:
-        words = {value: word == "true" for value, word in words.items()}
-    return np.vectorize(lambda flag: words.get(flag), otypes=[object])(values)
+    if (*words.values(),) == TRUTH:
+        words = {value: word == TRUTH[1] for value, word in words.items()}
+    return np.vectorize(words.get, otypes=[object])(values)
 
 
 def _as_json(value: Any) -> Any:

@@ -1,7 +1,7 @@
 """Declarations of the arguments of commands; this module imports no large library."""
 
 from argparse import ArgumentTypeError
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -15,6 +15,11 @@ class CommandArgument:
     names: tuple[str, ...]  # as typed
     settings: dict[str, Any]  # further arguments of :meth:`argparse.ArgumentParser.add_argument`
     of_files: bool = False  # whether it names a file
+
+    @property
+    def attribute(self) -> str:
+        """Name of its value among the arguments as they are parsed."""
+        return self.names[-1].removeprefix("--").replace("-", "_")
 
 
 @dataclass(frozen=True)
@@ -40,30 +45,26 @@ def word(*names: str, **settings: Any) -> CommandArgument:
 
 def number_option(name: str, metavar: str, words: str) -> CommandArgument:
     """Declare an option that is a number."""
-    return word(name, type=_number_typed, metavar=metavar, help=words)
+    return word(name, type=_reads(float, "a number such as 1.5"), metavar=metavar, help=words)
 
 
 def whole_option(name: str, words: str, usual: int | None = None) -> CommandArgument:
     """Declare an option that is a whole number."""
-    return word(name, type=_whole_typed, metavar="N", help=words, default=usual)
+    read = _reads(int, "a whole number such as 100")
+    return word(name, type=read, metavar="N", help=words, default=usual)
 
 
-def _number_typed(typed: str) -> float:
-    """Read an argument that is a number."""
-    try:
-        return float(typed)
-    except ValueError:
-        words = f"expected a number such as 1.5, got {typed!r}"
-        raise ArgumentTypeError(words) from None
+def _reads(kind: type[float], expected: str) -> Callable[[str], float]:
+    """Give a function that reads an argument that is a number."""
 
+    def read(typed: str) -> float:
+        try:
+            return kind(typed)
+        except ValueError:
+            words = f"expected {expected}, got {typed!r}"
+            raise ArgumentTypeError(words) from None
 
-def _whole_typed(typed: str) -> int:
-    """Read an argument that is a whole number."""
-    try:
-        return int(typed)
-    except ValueError:
-        words = f"expected a whole number such as 100, got {typed!r}"
-        raise ArgumentTypeError(words) from None
+    return read
 
 
 EVERYWHERE: Final = (

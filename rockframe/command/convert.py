@@ -7,12 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from rockframe.command.answer import Answer
-from rockframe.command.shared import (
-    Outputs,
-    dataset_kind,
-    motions_from,
-    table_kind,
-)
+from rockframe.command.shared import Outputs, dataset_kind, motions_from, table_kind
 from rockframe.command.streams import STREAM
 from rockframe.errors import FileError, RockframeWarning, warn
 from rockframe.motion import GroundMotion
@@ -68,7 +63,7 @@ def _form_of(output: str) -> str:
             f"the ending gives no format; expected {known}, or a folder and a format such as "
             "--to at2"
         )
-        raise FileError(output, [(None, words)])
+        raise FileError(output, words)
     return found
 
 
@@ -77,7 +72,7 @@ def _make(folder: Path, named: str) -> None:
         folder.mkdir(exist_ok=True)
     except OSError as problem:
         words = f"this folder cannot be made ({problem.strerror})"
-        raise FileError(named, [(None, words)]) from problem
+        raise FileError(named, words) from problem
 
 
 def _names(motions: Mapping[str, GroundMotion], folder: Path, ending: str) -> dict[str, Path]:
@@ -102,7 +97,7 @@ def _only(motions: Mapping[str, GroundMotion], arguments: argparse.Namespace) ->
         f"{len(motions)} motions do not fit into one file of this format: {_listed(motions)}; name "
         "one with --component, or a folder with --to, or a file ending in .nc"
     )
-    raise FileError(arguments.output, [(None, words)])
+    raise FileError(arguments.output, words)
 
 
 def _listed(motions: Mapping[str, GroundMotion]) -> str:

@@ -4,7 +4,7 @@ import argparse
 from typing import Any, Final
 
 from rockframe.command.answer import Answer
-from rockframe.command.plot import PICTURE, save
+from rockframe.command.plot import PICTURE, concluded
 from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
@@ -16,7 +16,6 @@ from rockframe.command.shared import (
     taken_by,
     typed_options,
 )
-from rockframe.plot import critical_scale as draw
 from rockframe.simulation.provenance import motion_words
 from rockframe.studies import critical_scale
 
@@ -44,8 +43,5 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     measure = dataset[dataset.attrs["intensity"]]
     if bool(measure.notnull()):
         answer.says("Shaking", f"{in_words(measure, dataset)} at the critical scale")
-    answer.numbers(dataset)
-    outputs.result(dataset)
-    if arguments.picture is not None:
-        save(draw(dataset), arguments.picture, outputs)
+    concluded(dataset, arguments, answer, outputs)
     return 0 if finished(dataset) else 1

@@ -9,7 +9,7 @@ import xarray as xr
 from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES
 from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
-from rockframe.command.plot import PICTURE, save
+from rockframe.command.plot import PICTURE, concluded
 from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
@@ -22,9 +22,9 @@ from rockframe.command.shared import (
     with_project,
 )
 from rockframe.errors import FileError, StudyError
-from rockframe.plot import fragility as draw
 from rockframe.reports.project import ATTRIBUTE
 from rockframe.results.variables.analyses import FragilityStatus
+from rockframe.results.variables.variable import words_of_flags
 from rockframe.studies import fragility, open_study, sweep
 
 _RESULT: Final = analysis_kind("a fragility", "exceedance_probability", "fragility_status")
@@ -57,10 +57,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     if found is not None:
         answer.subject("Scene", system_words(found.system))
     answer.subject("Runs", str(runs.attrs["verdict"]))
-    answer.numbers(dataset)
-    outputs.result(dataset)
-    if arguments.picture is not None:
-        save(draw(dataset), arguments.picture, outputs)
+    concluded(dataset, arguments, answer, outputs)
     return 0 if finished(runs) else 1
 
 
@@ -71,7 +68,7 @@ def _runs_of_study(arguments: argparse.Namespace) -> xr.Dataset:
     )  # fmt: skip
     if any(getattr(arguments, name) for name in more):
         words = "its runs are finished; records, scales, a store or durations go with a scene"
-        raise FileError(arguments.scene, [(None, f"this is a result: {words}")])
+        raise FileError(arguments.scene, f"this is a result: {words}")
     if Path(arguments.scene).expanduser().is_dir():
         return open_study(arguments.scene)
     return read_result(arguments.scene)
@@ -81,7 +78,7 @@ def _line(state: str, row: xr.Dataset) -> str:
     """Write the median and dispersion of a limit state."""
     median = row["median_intensity"]
     status = row["fragility_status"]
-    words = str(status.attrs["flag_meanings"]).split()[int(status)].replace("_", " ")
+    words = words_of_flags(status.attrs)[int(status)].replace("_", " ")
     if bool(median.isnull()):
         return f"  {state}: no fit, {words}"
     if int(status) != FragilityStatus.FITTED:

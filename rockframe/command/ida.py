@@ -6,7 +6,7 @@ from typing import Any, Final
 from rockframe.command.answer import Answer
 from rockframe.command.files.studies import AXES, CASES, KNOWN
 from rockframe.command.over_motions import SCALE, scene_and_motions, typed_intensity
-from rockframe.command.plot import PICTURE, save
+from rockframe.command.plot import PICTURE, concluded
 from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
@@ -19,7 +19,6 @@ from rockframe.command.shared import (
     typed_options,
 )
 from rockframe.errors import FileError
-from rockframe.plot import dynamic_analysis as draw
 from rockframe.results.table import table
 from rockframe.studies import fragility, incremental_dynamic_analysis
 
@@ -40,9 +39,9 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     axes = {**found.arguments.get(AXES, {})}
     if CASES in found.arguments:
         words = "a dynamic analysis has axes, and no table of cases"
-        raise FileError(arguments.scene, [(None, f"{words}; 'fragility' fits each structure")])
+        raise FileError(arguments.scene, f"{words}; 'fragility' fits each structure")
     if KNOWN in found.arguments:
-        raise FileError(arguments.scene, [(None, f"a dynamic analysis takes no {KNOWN!r} stores")])
+        raise FileError(arguments.scene, f"a dynamic analysis takes no {KNOWN!r} stores")
     values: dict[str, Any] = {
         "intensity": _USUAL,
         "store": found.store,
@@ -60,9 +59,6 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     capacities = table(dataset[list(_SHOWN)].drop_vars("rotation_limit"))
     if len(capacities) <= _MOST_SHOWN:
         answer.text(printed(capacities))
-    answer.numbers(dataset)
     outputs.table(capacities)
-    outputs.result(dataset)
-    if arguments.picture is not None:
-        save(draw(dataset), arguments.picture, outputs)
+    concluded(dataset, arguments, answer, outputs)
     return 0 if finished(dataset) else 1

@@ -9,7 +9,7 @@ import xarray as xr
 from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
-from rockframe.command.plot import PICTURE, save
+from rockframe.command.plot import PICTURE, concluded
 from rockframe.command.run import finished
 from rockframe.command.shared import (
     Outputs,
@@ -24,7 +24,6 @@ from rockframe.command.shared import (
 from rockframe.errors import ComponentError
 from rockframe.motion import GroundMotion
 from rockframe.motion.description import CONSTRUCTORS
-from rockframe.plot import overturning_map as draw
 from rockframe.shared_arguments import suggestion
 from rockframe.studies import overturning_map
 from rockframe.studies.limit_states import overturns
@@ -51,10 +50,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.subject("Scene", f"{system_words(found.system)} ({dataset.attrs['model']})")
     answer.subject("Pulse", words)
     answer.text("\n".join(_lines(dataset)))
-    answer.numbers(dataset)
-    outputs.result(dataset)
-    if arguments.picture is not None:
-        save(draw(dataset), arguments.picture, outputs)
+    concluded(dataset, arguments, answer, outputs)
     return 0 if finished(dataset) else 1
 
 

@@ -38,7 +38,7 @@ def scene_and_motions(arguments: argparse.Namespace) -> DescribedStudy:
         files = (*found.files, *map(Path, arguments.records))
         found = replace(found, motions=dict(suite.items()), files=files)
     if found.motions is None:
-        raise FileError(arguments.scene, [(None, _NO_MOTIONS)])
+        raise FileError(arguments.scene, _NO_MOTIONS)
     values = run_from(found.arguments, arguments)
     if arguments.scales is not None:
         scales, _ = values_of(arguments.scales, "--scales", "0.25:4:0.25")

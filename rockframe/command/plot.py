@@ -5,6 +5,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 
+import xarray as xr
+
 from rockframe import plot
 from rockframe.command.answer import Answer
 from rockframe.command.shared import Outputs, check_format, read_result
@@ -12,7 +14,7 @@ from rockframe.command.streams import STREAM
 from rockframe.command.typed_calls import values_by_name
 from rockframe.errors import ComponentError
 from rockframe.plot._checks import drawn_by
-from rockframe.reports.figures import close, figure_of
+from rockframe.reports.page import close, figure_of
 from rockframe.version import __version__
 from rockframe.writing import FileKind
 
@@ -42,6 +44,16 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
         named["panels"] = tuple(arguments.panels)
     save(getattr(plot, name)(dataset, **named), arguments.output, outputs, arguments.format)
     return 0
+
+
+def concluded(
+    dataset: xr.Dataset, arguments: argparse.Namespace, answer: Answer, outputs: Outputs
+) -> None:
+    """Give the numbers of an analysis, and write its result and its picture."""
+    answer.numbers(dataset)
+    outputs.result(dataset)
+    if arguments.picture is not None:
+        save(getattr(plot, drawn_by(dataset))(dataset), arguments.picture, outputs)
 
 
 def save(drawn: Any, path: str | Path, outputs: Outputs, of_stream: str | None = None) -> None:

@@ -31,7 +31,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     path = arguments.output
     if path is None and arguments.dataset == STREAM:
         words = "a result from the standard input has no name; name the report with -o report.html"
-        raise FileError(INPUT, [(None, words)])
+        raise FileError(INPUT, words)
     place = Path(arguments.dataset)
     folder = place.expanduser().is_dir()
     dataset = open_study(arguments.dataset) if folder else read_result(arguments.dataset)
@@ -118,12 +118,12 @@ def _case_of(dataset: xr.Dataset, arguments: argparse.Namespace, motions: object
     """Simulate the case of a study that was named."""
     if "axes_json" not in dataset.attrs:
         words = f"found --case {' '.join(arguments.case)}; expected a study, which has axes"
-        raise FileError(arguments.dataset, [(None, words)])
+        raise FileError(arguments.dataset, words)
     values = values_by_name(arguments.case, "--case", "scale=2")
     strange = [name for name in values if name in arguments_of(case)]
     if strange:
         words = f"--case: there is no axis {strange[0]!r}; records are given by --motions"
-        raise FileError(arguments.dataset, [(None, words)])
+        raise FileError(arguments.dataset, words)
     found = case(dataset, motions=motions, **values)
     again = found.simulate()
     again.encoding["source"] = str(Path(arguments.dataset).expanduser())

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rockframe.command.answer import Answer
-from rockframe.command.shared import motion_from, refuse_of_record, typed_options
+from rockframe.command.shared import motion_from, reading_options, refuse_of_record
 from rockframe.command.streams import STREAM, tell
 from rockframe.errors import FileError
 from rockframe.serve import Server
@@ -31,7 +31,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
 def _record(arguments: argparse.Namespace) -> NamedRecord:
     if arguments.record == STREAM:
         words = "a scene's file names its record; give a file in the place of '-'"
-        raise FileError(STREAM, [(None, words)])
+        raise FileError(STREAM, words)
     keys: dict[str, Any] = {"file": str(Path(arguments.record).expanduser().resolve())}
-    keys |= typed_options(arguments, "component", "unit", "time_step")
+    keys |= reading_options(arguments)
     return NamedRecord(motion_from(arguments.record, arguments), keys)

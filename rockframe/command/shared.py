@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import xarray as xr
 
 from rockframe.command.answer import Answer
+from rockframe.command.arguments import READING
 from rockframe.command.files.scenes import Described, read_scene
 from rockframe.command.files.tables import arguments_of
 from rockframe.command.streams import INPUT, STREAM, StandardInput, bar_for, opened
@@ -47,8 +48,7 @@ _LONGEST_HEAD: Final = 65536
 
 def motion_from(path: str, arguments: argparse.Namespace) -> GroundMotion:
     """Read the file of a motion with the options for reading."""
-    options = typed_options(arguments, "component", "unit", "time_step")
-    return GroundMotion.read(opened(path, "a record"), **options)
+    return GroundMotion.read(opened(path, "a record"), **reading_options(arguments))
 
 
 def suite_from(paths: Sequence[str], arguments: argparse.Namespace) -> MotionSuite:
@@ -85,22 +85,21 @@ def scene_from(arguments: argparse.Namespace, *, moved: bool = False) -> Describ
         motion = motion_from(arguments.motion, arguments)
         files += (Path(arguments.motion),)
     if moved and motion is None:
-        raise FileError(arguments.scene, [(None, _NO_MOTION)])
+        raise FileError(arguments.scene, _NO_MOTION)
     if arguments.scale is not None:
         if motion is None:
             words = f"--scale {arguments.scale:g} multiplies a motion, and {_NO_MOTION}"
-            raise FileError(arguments.scene, [(None, words)])
+            raise FileError(arguments.scene, words)
         motion = motion.scaled(arguments.scale)
     return replace(found, motion=motion, run=run_from(found.run, arguments), files=files)
 
 
 def refuse_of_record(arguments: argparse.Namespace, way: str) -> None:
     """Refuse options on how a record is read, where no record is named."""
-    for name in ("component", "unit", "time_step"):
-        values = getattr(arguments, name, None)
-        if values is not None:
-            option = f"--{name.replace('_', '-')}"
-            msg = f"{option} {values}: this says how a record is read; {way}"
+    for one in READING:
+        value = getattr(arguments, one.attribute, None)
+        if value is not None:
+            msg = f"{one.names[-1]} {value}: this says how a record is read; {way}"
             raise ComponentError(msg)
 
 
@@ -130,6 +129,11 @@ def taken_by(function: Callable[..., Any], run: Mapping[str, Any]) -> dict[str, 
     """Give the arguments of a run that an analysis takes too."""
     known = arguments_of(function)
     return {name: value for name, value in run.items() if name in known}
+
+
+def reading_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Give the typed options on how a record is read."""
+    return typed_options(arguments, *(one.attribute for one in READING))
 
 
 def typed_options(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
@@ -244,7 +248,7 @@ class Outputs:
         if path is None:
             return
         if str(path) == STREAM:
-            self._answer.hands_on(_bytes_of(content, kind))
+            self._answer.hands_on(_bytes_of(content, kind.endings[0]))
             return
         write_file(path, kind, content, **self._given)
         self._answer.wrote(title, path)
@@ -257,28 +261,25 @@ class Outputs:
         self, path: str | Path, ending: str, title: str, save: Callable[[Path], object]
     ) -> None:
         """Write by a function of a path to a file, or to the standard output; report the file."""
-        if str(path) != STREAM:
-            if Path(path).suffix.lower() == ending.lower():  # `save` refuses other endings
-                check_not_read(path, self._given["read"])
-            save(Path(path))
-            self._answer.wrote(title, path)
+        if str(path) == STREAM:
+            self._answer.hands_on(_bytes_of(save, ending))
             return
-        with TemporaryDirectory() as folder:
-            place = Path(folder) / f"file{ending}"
-            save(place)
-            self._answer.hands_on(place.read_bytes())
+        if Path(path).suffix.lower() == ending.lower():  # `save` refuses other endings
+            check_not_read(path, self._given["read"])
+        save(Path(path))
+        self._answer.wrote(title, path)
 
     def table(self, values: "pd.DataFrame") -> None:
         """Write a table to the file of ``--csv``, if there is one, and report it."""
         self.write(*self._named["csv"], "Table", lambda part: values.to_csv(part))
 
 
-def _bytes_of(content: Content, kind: FileKind) -> bytes:
-    """Give the bytes of a file."""
+def _bytes_of(content: Content, ending: str) -> bytes:
+    """Give the bytes of a file whose name has an ending."""
     if isinstance(content, bytes):
         return content
     with TemporaryDirectory() as folder:
-        part = Path(folder) / f"part{kind.endings[0]}"
+        part = Path(folder) / f"file{ending}"
         content(part)
         return part.read_bytes()
 
@@ -302,12 +303,12 @@ def read_result(path: str) -> xr.Dataset:
 def _result_in(place: Path, path: str) -> xr.Dataset:
     if not place.is_file():
         found = "this is a folder" if place.is_dir() else "there is no such file"
-        raise FileError(path, [(None, f"{found}; {_OF_RESULTS}")])
+        raise FileError(path, f"{found}; {_OF_RESULTS}")
     try:
         with xr.open_dataset(place) as dataset:
             return dataset.load()
     except (OSError, ValueError) as problem:
-        raise FileError(path, [(None, f"this is no netCDF file; {_OF_RESULTS}")]) from problem
+        raise FileError(path, f"this is no netCDF file; {_OF_RESULTS}") from problem
 
 
 def result_kind(words: str, *, axes: bool) -> FileKind:

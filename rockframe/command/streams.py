@@ -39,11 +39,9 @@ class StandardInput(BytesIO):
                 f"{cls.taken_by} is read from it already, and {what} cannot be too; name a file "
                 "for one of them"
             )
-            raise FileError(INPUT, [(None, words)])
+            raise FileError(INPUT, words)
         if sys.stdin is None or sys.stdin.closed:
-            raise FileError(
-                INPUT, [(None, f"it is closed; name the file of {what} instead of '-'")]
-            )
+            raise FileError(INPUT, f"it is closed; name the file of {what} instead of '-'")
         cls.taken_by = what
         return cls(sys.stdin.buffer.read())
 

@@ -100,7 +100,7 @@ def _columns_of(path: str) -> tuple[tuple[Any, str], tuple[Any, str]]:
                 columns[match[1]] = (frame[head].to_numpy(float), match[2])
     except (OSError, ValueError) as problem:
         words = f"the table cannot be read ({problem}); expected {_TABLE}"
-        raise FileError(path, [(None, words)]) from problem
+        raise FileError(path, words) from problem
     if len(columns) != 2:
         found = ", ".join(map(str, frame.columns))
         raise FileError(path, [(1, f"found the columns {found}; expected {_TABLE}")])

@@ -124,7 +124,7 @@ class Animation:
         checked_path(path, _PICTURES, overwrite=overwrite)
         if ending == ".mp4" and not FFMpegWriter.isAvailable():
             words = "needs the program ffmpeg, which was not found; '.gif' and '.html' do without"
-            raise FileError(str(path), [(None, words)])
+            raise FileError(str(path), words)
 
         def write(part: Path) -> None:
             if ending == ".mp4":
@@ -200,8 +200,6 @@ def animation(
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A result with histories.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is shown; the whole run unless given [s].
     speed : float, optional

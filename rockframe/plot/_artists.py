@@ -21,7 +21,6 @@ from rockframe.plot._axes import (
     as_label,
     ink,
     measured_in,
-    raised,
 )
 from rockframe.plot._panels import NO_BREAK, Axes
 from rockframe.results.points import Placement
@@ -29,7 +28,7 @@ from rockframe.signals.arrays import Array
 from rockframe.system.geometry import Geometry, LinkedPoints
 from rockframe.system.links import link_labels
 from rockframe.system.parts import Parts
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, raised
 
 _PAD_WIDTH: Final = 0.17
 """Width of a pad over that of the base."""

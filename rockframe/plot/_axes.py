@@ -159,14 +159,6 @@ def powers_in_mathtext(unit: str) -> str:
     return re.sub(r"\^(-?\d+)", r"$^{\1}$", unit)
 
 
-_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def raised(text: str) -> str:
-    """Write the powers of units in a text as superscript characters."""
-    return re.sub(r"(?<=[^\W\d_])\^(-?\d+)", lambda power: power[1].translate(_RAISED), text)
-
-
 def grid(axes: "Axes") -> None:
     """Draw a light grid behind the data."""
     axes.grid(visible=True, which="major", color=GREY, alpha=0.25, linewidth=0.6)

@@ -14,7 +14,7 @@ import xarray as xr
 from rockframe.errors import RockframeWarning, SchemaError
 from rockframe.motion import GroundMotion
 from rockframe.proposals import hinted
-from rockframe.shared_arguments import Argument, completed, with_raises
+from rockframe.shared_arguments import Argument, completed, with_raises, with_section
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.axes import in_unit, in_units_of_schema
 from rockframe.studies.sweeps.case import SweepCase, system_of_case
@@ -98,13 +98,23 @@ def draws(
 ) -> Callable[[Drawing], Drawing]:  # fmt: skip
     """Register what a figure is drawn from, for a dataset by a `DatasetKind`.
 
-    Add to the docstring what figures share: `units`, `ax`, `title` and errors. The words `ax` and
-    `title` describe the Axes and the default title in the manual.
+    Add to the docstring what figures share: `dataset`, `run`, `window`, `units`, `ax`, `title`,
+    what is returned, and errors. The words `ax` and `title` describe the Axes and the default title
+    in the manual.
     """
     kind = what if isinstance(what, DatasetKind) else DatasetKind(what, call, known, needed)
     usual = f"; {title} unless given" if title else ""
     within = "" if ax == "Axes" else " A figure or subfigure gets new panels."
     shared = {
+        "dataset": Argument(
+            None, "xarray.Dataset", f"Result of :func:`rockframe.{call[3:].partition('(')[0]}`."
+        ),
+        "run": Argument(None, "xarray.Dataset", "A result with histories."),
+        "window": Argument(
+            None,
+            "(str or Quantity or None, str or Quantity or None), optional",
+            "Start and end of what is drawn; the whole run unless given [s].",
+        ),
         "units": Argument(None, "mapping of str to str, optional", _UNITS),
         "ax": Argument(
             None, f"{ax}, optional", f"Axes to draw in; a new figure unless given.{within}"
@@ -118,11 +128,14 @@ def draws(
 
     def decorate(drawing: Drawing) -> Drawing:
         name, text = drawing.__name__, drawing.__doc__ or ""
-        drawing.__doc__ = completed(text, signature(drawing).parameters, shared)
+        text = completed(text, signature(drawing).parameters, shared)
+        drawn = "matplotlib.axes.Axes" if ax == "Axes" else "Panels"
+        text = with_section(text, "Returns", drawn, ("Raises", "Notes", "Examples"))
         _NEEDED[name] = kind.words
         if known:
             KINDS[name] = kind
-            drawing.__doc__ = with_raises(drawing.__doc__, refused)
+            text = with_raises(text, refused)
+        drawing.__doc__ = text
         return hinted()(drawing)
 
     return decorate

@@ -13,11 +13,10 @@ from rockframe.plot._axes import (
     label_log_ticks,
     label_of,
     label_of_intensity,
-    raised,
 )
 from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, single
-from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, raised
 
 
 @draws(
@@ -27,25 +26,12 @@ from rockframe.units.shown import UnitsLike
     title="the verdict",
 )
 def cloud(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
     """Draw runs on logarithmic axes, with their regression line and the limit states.
 
     Light bands reach one and two dispersions from the line. Runs that overturned are drawn above
     all others, runs in which nothing moved below them.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.cloud_analysis`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Examples
     --------
@@ -104,11 +90,7 @@ def cloud(
     title="the verdict",
 )
 def annual_rate(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
     """Draw the contributions of intensities to the annual rate of limit states.
 
@@ -116,10 +98,6 @@ def annual_rate(
     ----------
     dataset : xarray.Dataset
         Result of :func:`rockframe.annual_rate`, of one structure.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Examples
     --------

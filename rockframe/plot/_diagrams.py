@@ -58,8 +58,6 @@ def phase(
     ----------
     runs : xarray.Dataset, or sequence or mapping of them
         A result with histories; or several to compare, as for :func:`rockframe.plot.response`.
-    window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is drawn; the whole run unless given [s].
     rotation : str, optional
         Unit of rotations, such as ``"deg"``, and of angular velocities per second; or
         ``"relative"``, the default: over the overturning angle.
@@ -210,8 +208,6 @@ def energies(
     ----------
     run : xarray.Dataset
         A result with ``outputs=("energy",)``.
-    window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is drawn; the whole run unless given [s].
     energy : str, optional
         Unit; kJ unless given.
 

@@ -14,7 +14,6 @@ from rockframe.plot._axes import (
     grid,
     label_of,
     label_of_intensity,
-    raised,
     style_of,
     units_of,
 )
@@ -22,7 +21,7 @@ from rockframe.plot._checks import drawable, draws
 from rockframe.plot._panels import Axes, AxesLike, Panels, chosen_panels, sheet, single
 from rockframe.studies.dynamic_analysis import verdict_of_analysis
 from rockframe.studies.fragility.trials import at_scales
-from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, raised
 
 _PANELS: Final = {"peaks": 1.4, "shares": 1.0}
 """Panels, which are side by side, and their relative widths."""
@@ -77,14 +76,8 @@ def dynamic_analysis(
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.incremental_dynamic_analysis`.
     panels : str or tuple of str, optional
         Panels to draw: ``"peaks"``, left, and ``"shares"``, right; both unless given.
-
-    Returns
-    -------
-    Panels
 
     Examples
     --------
@@ -206,26 +199,13 @@ def _fractiles(lines: list[tuple[Any, Any]], up: Any) -> list[tuple[float, Any]]
     title="the verdict",
 )
 def fractile_curves(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
     """Draw the intensity over the response: runs in grey, and their fractiles.
 
     Solid lines are fractiles of the response at an intensity, dashed lines fractiles of the
     intensity at which a level of the response is reached. Where a solid line leaves the figure
     horizontally to the right, the runs beyond that fractile have overturned.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.fractile_curves`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Examples
     --------

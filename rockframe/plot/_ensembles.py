@@ -15,7 +15,6 @@ from rockframe.plot._axes import (
     label_of_intensity,
     label_of_value,
     labels_of_names,
-    raised,
     style_of,
     units_of,
 )
@@ -25,29 +24,16 @@ from rockframe.results.outcome import overturns
 from rockframe.results.variables.analyses import FragilityStatus
 from rockframe.studies.fragility.words import measures_of, verdict_of_fragility
 from rockframe.studies.sweeps.words import cases_verdict
-from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, raised
 
 
 @draws("an ensemble", "rf.ensemble_statistics(runs)", ("ordered_value", "cumulative_probability"))
 def ensemble(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
     """Draw an empirical distribution with its bands.
 
     The dark band has the bounds at each single value, the light one the simultaneous bounds.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.ensemble_statistics`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Examples
     --------
@@ -88,25 +74,12 @@ def ensemble(
     title="the verdict",
 )
 def probability(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Panels:
     """Draw the sensitivity of the verdict to parameters.
 
     The left panel shows first-order indices. The right one shows, for the parameter with the
     largest index, the shares that overturned in groups of cases.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.probability_of_overturning`.
-
-    Returns
-    -------
-    Panels
 
     Examples
     --------
@@ -161,25 +134,12 @@ def probability(
     title="the verdict",
 )
 def subset_simulation(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
     """Draw the probability that the demand reaches a value, level by level.
 
     Dotted lines are the thresholds of the levels. The probability of the limit state, with its
     bounds, is drawn at the limit, or at the right if the limit is infinite.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.subset_simulation`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Examples
     --------
@@ -245,11 +205,7 @@ _KNOWN: Final = (FragilityStatus.FITTED, FragilityStatus.SEPARATED)
     title="the verdict",
 )
 def fragility(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes | Panels:
     """Draw the probability that limit states are exceeded.
 
@@ -257,11 +213,6 @@ def fragility(
     counted shares with the bounds of Clopper and Pearson. Several structures have a panel for each
     limit state, with a curve for each structure. Over two measures there are contours of the
     probability, in a panel for each limit state that has a fit.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.fragility`.
 
     Returns
     -------

@@ -58,17 +58,15 @@ def drawn_motions(value: object, function: str) -> list[Drawn]:
     """Read one or several motions."""
     labelled: dict[str, Any] = {}
     if isinstance(value, Mapping):
-        labelled = {str(key): one for key, one in cast("Mapping[Any, Any]", value).items()}
+        labelled = {str(key): one for key, one in value.items()}
     elif isinstance(value, list | tuple):
-        several = cast("Sequence[Any]", value)
         names = [
-            shown_name(str(getattr(one, "name", "")), getattr(one, "history", ()))
-            for one in several
+            shown_name(str(getattr(one, "name", "")), getattr(one, "history", ())) for one in value
         ]
         alike = len(set(names)) < len(names)
         labelled = {
             f"{name} ({number})" if alike else name: one
-            for number, (name, one) in enumerate(zip(names, several, strict=True), start=1)
+            for number, (name, one) in enumerate(zip(names, value, strict=True), start=1)
         }
     if labelled and all(isinstance(one, GroundMotion) for one in labelled.values()):
         return [

@@ -40,18 +40,9 @@ _CAPPED: Final = 1.0
     ("impacts_before_overturning", "amplitude_above", "amplitude"),
 )
 def overturning_map(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
     """Draw which pulses overturn, after how many impacts, and the boundaries between them.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.overturning_map`.
 
     Returns
     -------
@@ -113,22 +104,9 @@ def overturning_map(
     ax="Axes, one for each slenderness",
 )
 def rocking_spectrum(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Panels:
     """Draw peak rotations over the size of the block, with a panel for each slenderness.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.rocking_spectrum`.
-
-    Returns
-    -------
-    Panels
 
     Examples
     --------
@@ -159,22 +137,9 @@ def rocking_spectrum(
     ax="Axes, one for each slenderness",
 )
 def overturning_spectrum(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Panels:
     """Draw the least intensity that overturns over the size of the block, on logarithmic axes.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.overturning_spectrum`.
-
-    Returns
-    -------
-    Panels
 
     Examples
     --------

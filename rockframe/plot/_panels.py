@@ -86,7 +86,7 @@ class Panels(tuple[Any, ...]):
     def figure(self) -> "Figure":
         """The figure to which the panels belong."""
         # the figure of a panel may be a subfigure
-        return cast("Figure", self[0].figure.figure)
+        return self[0].figure.figure
 
     def __repr__(self) -> str:
         names = ", ".join(repr(_called(axes)) for axes in self)

@@ -14,14 +14,13 @@ import xarray as xr
 
 from rockframe.arguments import text
 from rockframe.plot._artists import CONTACT, SOIL, Layout
-from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, raised, units_of
+from rockframe.plot._axes import BLUE, GREEN, ORANGE, VERMILLION, units_of
 from rockframe.plot._checks import RUN, checked_run, draws
 from rockframe.plot._response import (
     CONTACT_COLOURS,
     OF_BODIES,
     OF_CAP,
     SLIP,
-    names_of_flags,
     of_rotation,
     strips_of,
 )
@@ -29,9 +28,10 @@ from rockframe.plot._runs import Window, runs_of, verdict_of_case
 from rockframe.plot._scene import Moving
 from rockframe.proposals import proposing
 from rockframe.results.outcome import LEAST_SLIP
+from rockframe.results.variables.variable import words_of_flags
 from rockframe.signals.arrays import Array
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
-from rockframe.units.shown import UnitsLike
+from rockframe.units.shown import UnitsLike, raised
 from rockframe.version import __version__
 from rockframe.writing import FileKind, generator, write_file
 
@@ -150,8 +150,6 @@ def player(
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A result with histories.
     window : (str or Quantity or None, str or Quantity or None), optional
         Start and end of what is shown; the whole run unless given [s].
     magnify : float, optional
@@ -358,7 +356,7 @@ def _strip(state: xr.DataArray, words: str) -> dict[str, Any]:
     """Give the instants at which contact changes, and the state after each."""
     values, time = state.to_numpy(), state["time"].to_numpy()
     changes = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
-    names = dict(names_of_flags(state))
+    names = words_of_flags(state.attrs)
     return {"words": words, "times": [round(float(time[k]), 6) for k in changes],
             "states": [names[int(values[k])] for k in changes]}  # fmt: skip
 

@@ -35,6 +35,7 @@ from rockframe.plot._checks import RUN, draws, overturning_angles
 from rockframe.plot._panels import Axes, AxesLike, Panels, sheet
 from rockframe.plot._runs import Run, RunsLike, Window, runs_of, runs_title
 from rockframe.results.outcome import LEAST_SLIP
+from rockframe.results.variables.variable import words_of_flags
 from rockframe.units import ACCELERATION, ANGLE, LENGTH
 from rockframe.units.shown import ReaderUnits, UnitsLike
 
@@ -68,7 +69,7 @@ def draw_contact_legend(axes: Axes, state: xr.DataArray) -> None:
     """Write the legend of the colours below the strip."""
     from matplotlib.patches import Patch
 
-    names = [name for _, name in names_of_flags(state)]
+    names = words_of_flags(state.attrs).values()
     axes.legend(
         handles=[Patch(facecolor=CONTACT_COLOURS[name], label=name) for name in names],
         loc="upper center", bbox_to_anchor=(0.5, -1.6), ncols=len(names),
@@ -83,17 +84,11 @@ def mixed_colours(state: xr.DataArray, columns: int) -> Any:
     time, values = state["time"].to_numpy(), state.to_numpy()
     edges = np.linspace(time[0], time[-1], columns + 1)
     colours = np.zeros((columns, 3))
-    for value, name in names_of_flags(state):
+    for value, name in words_of_flags(state.attrs).items():
         held = np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[:-1] == value))])
         share = np.diff(np.interp(edges, time, held)) / np.diff(edges)
         colours += share[:, np.newaxis] * np.array(to_rgb(CONTACT_COLOURS[name]))
     return np.clip(colours, 0.0, 1.0)
-
-
-def names_of_flags(flags: xr.DataArray) -> list[tuple[int, str]]:
-    """Give the numbers of contact states, or of kinds of events, with their names."""
-    meanings = str(flags.attrs["flag_meanings"]).split()
-    return list(zip(flags.attrs["flag_values"], meanings, strict=True))
 
 
 MARKS: Final = {
@@ -132,7 +127,7 @@ def draw_events(axes: Axes, runs: list[Run], unit: Shown | None) -> None:
         drawn = drawn if unit is None else unit.of(rotation)
         when = dataset["event_time"].to_numpy()
         kinds = dataset["event_kind"].to_numpy()
-        for value, name in names_of_flags(dataset["event_kind"]):
+        for value, name in words_of_flags(dataset["event_kind"].attrs).items():
             chosen = kinds == value
             if name not in MARKS or not chosen.any():
                 continue
@@ -195,8 +190,6 @@ def response(
         history of the runs by its name, such as ``"base_shear"``; these four unless given, and
         the slip if a body slid. Contact is a strip for each run; for a single run one for each
         body of a stack, of four at most, and for each base of a block on a cap.
-    window : (str or Quantity or None, str or Quantity or None), optional
-        Start and end of what is drawn; the whole run unless given [s].
     rotation : str, optional
         Unit of rotations, such as ``"deg"`` or ``"rad"``; or ``"relative"``, the default: over the
         overturning angle, with degrees on the right.

@@ -12,7 +12,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.plot._axes import colour_of, labels_of_names, style_of
 from rockframe.plot._checks import checked_run
 from rockframe.results.outcome import verdict_of
-from rockframe.results.variables.variable import unit_behind
+from rockframe.results.variables.variable import unit_behind, words_of_flags
 from rockframe.units import TIME, QuantityLike, to_si
 from rockframe.units.shown import ReaderUnits
 
@@ -59,7 +59,7 @@ def window_of(window: object, function: str, name: str = "window") -> tuple[floa
     if window is None:
         return -np.inf, np.inf
     owner = f"rf.plot.{function}"
-    ends = list(cast("Any", window)) if isinstance(window, tuple | list) else []
+    ends = list(window) if isinstance(window, tuple | list) else []
     if len(ends) != 2:
         msg = (
             f"{owner}: {name} must be a pair of times, such as ('2 s', '8 s'), or None for an open "
@@ -90,9 +90,8 @@ def verdict_of_case(run: xr.Dataset, units: ReaderUnits) -> str:
         return units.of_sentence(str(run.attrs.get("verdict", "")))
     fell = verdict_of(run)
     if fell is None:
-        flags = run["status"].attrs
-        words = dict(zip(flags["flag_values"], str(flags["flag_meanings"]).split(), strict=True))
-        text = f"no verdict, {words[run['status'].item()].replace('_', ' ')}"
+        words = words_of_flags(run["status"].attrs)[run["status"].item()]
+        text = f"no verdict, {words.replace('_', ' ')}"
     elif fell:
         text = f"overturned at {float(run['overturning_time']):.4g} s"
     else:
@@ -117,7 +116,7 @@ def _labels_of(run: xr.Dataset) -> str:
 def _labelled(value: object) -> dict[str, Any] | None:
     """Give several runs by their labels; None for a single run."""
     if isinstance(value, Mapping) and not isinstance(value, xr.Dataset):
-        labels = {str(key): one for key, one in cast("Mapping[Any, Any]", value).items()}
+        labels = {str(key): one for key, one in value.items()}
         return labels if labels and _all_runs(list(labels.values())) else None
     if not isinstance(value, list | tuple) or not value:
         return None

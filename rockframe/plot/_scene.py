@@ -11,14 +11,7 @@ from rockframe.dynamics.events import LinkState
 from rockframe.errors import ComponentError, SchemaError, shown
 from rockframe.plot._artists import Drawer, SceneArtist, part_labels
 from rockframe.plot._axes import FigureUnits, units_of
-from rockframe.plot._checks import (
-    RUN,
-    above_zero,
-    checked_run,
-    draws,
-    refuse,
-    system_of_run,
-)
+from rockframe.plot._checks import RUN, above_zero, checked_run, draws, refuse, system_of_run
 from rockframe.plot._panels import Axes, AxesLike, single
 from rockframe.plot._response import CONTACT_OF_BODIES
 from rockframe.results.points import UPRIGHT, Placement
@@ -132,8 +125,6 @@ def state(
 
     Parameters
     ----------
-    run : xarray.Dataset
-        A result with histories.
     time : str or Quantity, optional
         The instant; the nearest sample is drawn. By default the instant of the largest rotation
         over the overturning angle [s].

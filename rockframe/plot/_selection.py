@@ -40,11 +40,7 @@ _LETTERS: Final = 34
     title="the target and the number of motions",
 )
 def selection(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Panels:
     """Draw the scaled spectra of a set, their median and spread, and the target.
 

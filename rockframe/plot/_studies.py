@@ -45,18 +45,9 @@ _PANELS: Final = ("histories", "residual")
     title="the verdict",
 )
 def critical_scale(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Axes:
     """Draw the peak rotation over the scale of a motion, and where the verdict changes.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.critical_scale`.
 
     Returns
     -------
@@ -185,8 +176,6 @@ def free_decay(
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.fit_free_decay`.
     rotation : str, optional
         Unit of rotations; degrees unless given.
 

@@ -35,11 +35,7 @@ _ERROR: Final = "largest error of the rotation{}over its peak [-]"
     title="scene and motion",
 )
 def tradeoff(
-    dataset: xr.Dataset,
-    *,
-    units: UnitsLike = None,
-    ax: AxesLike = None,
-    title: str | None = None,
+    dataset: xr.Dataset, *, units: UnitsLike = None, ax: AxesLike = None, title: str | None = None
 ) -> Panels:
     """Draw a comparison of models and accuracies.
 
@@ -47,15 +43,6 @@ def tradeoff(
     model. The right one shows the error of model and integration together; errors below 1e-6 are
     in one band. Each accuracy has its marker, hollow for small rotations. A cross marks a verdict
     that differs from that of the scene itself.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Result of :func:`rockframe.tradeoff`.
-
-    Returns
-    -------
-    Panels
 
     Examples
     --------

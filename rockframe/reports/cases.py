@@ -9,12 +9,12 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rockframe.reports import page
-from rockframe.reports.values import column_head, number_in, powers_in_html, value_of
+from rockframe.reports.values import column_head, number_in, value_of
 from rockframe.results.outcome import overturned_by
 from rockframe.results.variables.runs import RunStatus
 from rockframe.results.variables.variable import TIME
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, raised
 
 MOST_ROWS: Final = 300
 """Largest number of rows of a table of cases; of more cases it has the worst ones."""
@@ -181,7 +181,7 @@ def labels_of(dataset: xr.Dataset, place: int, units: ReaderUnits) -> dict[str, 
     found: dict[str, str] = {}
     for name, value in labels_at(dataset, place).items():
         unit = units.of(str(dataset[name].attrs.get("units", Unit.ONE)) if name in dataset else "1")
-        words = "" if unit.words == Unit.ONE else f" {powers_in_html(unit.words)}"
+        words = "" if unit.words == Unit.ONE else f" {raised(unit.words)}"
         shown = value / unit.size if isinstance(value, float) else value
         found[name] = f"{written(shown)}{words}"
     return found

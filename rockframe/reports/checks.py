@@ -13,9 +13,8 @@ from rockframe.notebook import card, number_with_unit
 from rockframe.proposals import proposing
 from rockframe.reports import page
 from rockframe.reports.page import KIND
-from rockframe.reports.values import powers_in_html
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, UnitsLike, reader_units
+from rockframe.units.shown import ReaderUnits, UnitsLike, raised, reader_units
 from rockframe.writing import write_file
 
 _SAID: Final = {True: ("satisfied", "good"), False: ("not satisfied", "bad")}
@@ -222,7 +221,7 @@ class CodeCheck:
             cells = [
                 (
                     one.symbol,
-                    powers_in_html(one.written(units)),
+                    raised(one.written(units)),
                     units.of_sentence(one.words),
                     one.source,
                 )

@@ -18,10 +18,6 @@ class Limit:
     concerns: Callable[[Parts], bool] = lambda _: True
 
 
-def _on_rigid_ground(parts: Parts) -> bool:
-    return parts.pads is None and parts.soil is None and not parts.own
-
-
 SLIDING: Final = "Sliding"
 FLIGHT: Final = "Flight on rigid ground"
 LIMITS: Final = (
@@ -48,7 +44,7 @@ LIMITS: Final = (
         FLIGHT,
         "Free flight of a block on rigid ground is not modelled; the run warns where the block "
         "would leave the ground.",
-        _on_rigid_ground,
+        lambda parts: parts.pads is None and parts.soil is None and not parts.own,
     ),
     Limit(
         "Flight on pads",

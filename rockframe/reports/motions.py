@@ -15,8 +15,7 @@ from rockframe.arguments import iterates
 from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.reports import page
-from rockframe.reports.figures import figure_of
-from rockframe.reports.values import column_head, number_in, powers_in_html
+from rockframe.reports.values import column_head, number_in
 from rockframe.results.schema import SCHEMA
 from rockframe.studies.sweeps.case import known_motions
 from rockframe.suites import MotionSuite, TargetSpectrum
@@ -24,7 +23,7 @@ from rockframe.suites.candidates import usual_periods
 from rockframe.suites.columns import column
 from rockframe.suites.scaling import compared_target
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits, reader_units
+from rockframe.units.shown import ReaderUnits, raised, reader_units
 
 OF_RECORDS: Final = (
     "event",
@@ -105,7 +104,7 @@ def spectra_section(
     """Give the spectra of motions with a target, and what is known of each motion."""
     damping = 0.05 if aim is None else aim.target.damping_ratio
     if aim is not None:
-        name = powers_in_html(units.of_sentence(aim.target.name))
+        name = raised(units.of_sentence(aim.target.name))
         yield page.paragraph(
             f"Target: {name}. Compared at {aim.periods.size} periods from {aim.periods[0]:.4g} s "
             f"to {aim.periods[-1]:.4g} s, {100.0 * damping:g} % damping."
@@ -120,7 +119,7 @@ def spectra_section(
     several = len(motions) > 1
     words = f"Response spectr{'a of the motions' if several else 'um of the motion'}"
     words += f" at {100.0 * damping:g} % damping{', their mean' * several}{behind}."
-    yield page.picture(figure_of(drawn), words)
+    yield page.picture(drawn, words)
     misfits: Numbers | None = None
     if aim is not None:
         # scale factors of one, for the misfit of each motion as it is

@@ -1,12 +1,12 @@
 """Elements of an HTML page that needs no other file and no network."""
 
 import base64
+import sys
 from collections.abc import Iterable, Sequence
 from html import escape
 from io import BytesIO
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
-from rockframe.reports.figures import close
 from rockframe.version import __version__
 from rockframe.writing import FileKind, generator
 
@@ -153,8 +153,9 @@ def verbatim(text: str) -> str:
     return f"<pre>{escape(text)}</pre>"
 
 
-def picture(figure: "Figure", words: str) -> str:
-    """Give a figure with its caption, with the image inside the page."""
+def picture(drawn: Any, words: str) -> str:
+    """Give the figure of what was drawn with its caption, with the image inside the page."""
+    figure = figure_of(drawn)
     data, kind = _drawn(figure, "svg"), "svg+xml"
     if len(data) > LARGEST_DRAWING:
         data, kind = _drawn(figure, "png"), "png"
@@ -162,6 +163,20 @@ def picture(figure: "Figure", words: str) -> str:
     source = f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
     caption = f"<figcaption>{escape(words)}</figcaption>"
     return f'<figure><img src="{source}" alt="{escape(words)}">{caption}</figure>'
+
+
+def figure_of(drawn: Any) -> "Figure":
+    """Give the figure of what was drawn: itself, or that of an axes or of several."""
+    while not hasattr(drawn, "savefig"):
+        drawn = drawn.figure if hasattr(drawn, "figure") else next(iter(drawn))
+    return cast("Figure", drawn)
+
+
+def close(figure: "Figure") -> None:
+    """Close a figure, which pyplot would otherwise keep."""
+    pyplot = sys.modules.get("matplotlib.pyplot")
+    if pyplot is not None:
+        pyplot.close(figure)
 
 
 def _drawn(figure: "Figure", kind: str) -> bytes:

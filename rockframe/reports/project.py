@@ -94,7 +94,7 @@ def _texts(value: object, name: str, owner: str) -> tuple[str, ...]:
     if not isinstance(value, list | tuple):
         msg = f"{owner}: {name} must be a list of texts, got {shown(value)}"
         raise ComponentError(msg)
-    return tuple(_text(one, name, owner) for one in cast("list[object]", value))
+    return tuple(_text(one, name, owner) for one in value)
 
 
 def _text(value: object, name: str, owner: str) -> str:

@@ -18,10 +18,9 @@ from rockframe.motion import GroundMotion
 from rockframe.plot._checks import RUN
 from rockframe.plot._response import SLIPS, has_slid, histories_of
 from rockframe.reports import page
-from rockframe.reports.figures import figure_of
 from rockframe.reports.limits import GENERAL, limits_of
 from rockframe.reports.motions import Aim, record_rows, spectra_section
-from rockframe.reports.values import extremes_of, powers_in_html, table_of, value_of
+from rockframe.reports.values import extremes_of, table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, verdict_of
 from rockframe.results.variables.runs import CERTIFICATE, PROOF
 from rockframe.simulation.certify.certificate import NEAR_WORDS
@@ -30,7 +29,7 @@ from rockframe.simulation.run import NONE
 from rockframe.simulation.system import System
 from rockframe.studies.sweeps.words import slips_of_cases
 from rockframe.units import ACCELERATION, Unit, to_si
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, raised
 from rockframe.version import __version__
 
 _LIBRARIES: Final = ("numpy", "scipy", "xarray")
@@ -152,7 +151,7 @@ def motion_section(
         for words, value in table_of(measures, units=units)
     )
     yield page.picture(
-        figure_of(plot.spectra(found, units=units.words)),
+        plot.spectra(found, units=units.words),
         f"History of the {'horizontal ' * across}ground acceleration, its response spectra at 5 % "
         "damping and its Fourier spectrum.",
     )
@@ -166,9 +165,7 @@ def response_section(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
     if dataset.sizes.get("time", 0) > 1 and {*RUN.known, *RUN.needed} <= {*dataset.variables}:
         angle = units.chosen.get(Unit.RADIAN)
         yield page.picture(
-            figure_of(
-                plot.response(dataset, rotation="deg" if angle else "relative", units=units.words)
-            ),
+            plot.response(dataset, rotation="deg" if angle else "relative", units=units.words),
             "From the top: ground acceleration; rotation"
             f"{'' if angle else ' over the overturning angle'}; vertical displacement; "
             f"{'slip; ' if has_slid(dataset) else ''}and contact states.",
@@ -191,7 +188,7 @@ def _histories(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
         names = below[start : start + _PANELS]
         drawn = plot.response(dataset, panels=tuple(names), units=units.words, title=" ")
         words = ", ".join(name.replace("_", " ") for name in names)
-        yield page.picture(figure_of(drawn), f"{words[0].upper()}{words[1:]}, over time.")
+        yield page.picture(drawn, f"{words[0].upper()}{words[1:]}, over time.")
     if beside:
         yield page.subtitle("Least and greatest values over time")
         rows = extremes_of(dataset, beside, units)
@@ -232,7 +229,7 @@ def _drawing(system: System, units: ReaderUnits) -> Iterator[str]:
         drawn = draw(system, units=units.words)
     except RockframeError:  # a base of a user's own
         return
-    yield page.picture(figure_of(drawn), "The scene, to scale.")
+    yield page.picture(drawn, "The scene, to scale.")
 
 
 def _part(title: str, part: Component, units: ReaderUnits) -> Iterator[str]:
@@ -280,7 +277,7 @@ def _value(value: object, units: ReaderUnits) -> str:
         return ", ".join(_value(one, units) for one in value)
     number, blank, unit = units.of_sentence(str(value)).partition(" ")
     try:
-        return f"{float(number):.6g}{blank}{powers_in_html(unit)}"
+        return f"{float(number):.6g}{blank}{raised(unit)}"
     except ValueError:
         return units.of_sentence(str(value))
 

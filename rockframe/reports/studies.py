@@ -13,15 +13,14 @@ from rockframe.motion import GroundMotion
 from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
 from rockframe.reports.cases import case_tables, from_worst, labels_at, labels_of
-from rockframe.reports.figures import figure_of
 from rockframe.reports.project import Project
-from rockframe.reports.values import powers_in_html, table_of, value_of
+from rockframe.reports.values import table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
 from rockframe.studies.sweeps.case import system_of_case
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, raised
 
 
 def verdict_sections(
@@ -105,7 +104,7 @@ def _is_sweep(dataset: xr.Dataset) -> bool:
 
 def _banner(dataset: xr.Dataset, sentence: str) -> str:
     if "status" not in dataset:
-        return page.banner("Result", powers_in_html(sentence), "")
+        return page.banner("Result", raised(sentence), "")
     fallen = overturned_by(dataset["status"].to_numpy())
     slid = _slid(dataset)
     if (fallen == 1.0).any():
@@ -129,7 +128,7 @@ def _figure(dataset: xr.Dataset, units: ReaderUnits) -> str:
         drawn = getattr(plot, drawn_by(dataset))(dataset, units=units.words)
     except RockframeError:
         return ""
-    return page.picture(figure_of(drawn), str(dataset.attrs.get("title", "The study")) + ".")
+    return page.picture(drawn, str(dataset.attrs.get("title", "The study")) + ".")
 
 
 def _of_limit_states(dataset: xr.Dataset, units: ReaderUnits) -> list[str]:

@@ -5,26 +5,22 @@ import re
 from collections.abc import Iterable
 from typing import Any, Final
 
-import numpy as np
 import xarray as xr
 
+from rockframe.results.variables.variable import words_of_flags
 from rockframe.units import Unit
-from rockframe.units.shown import ReaderUnits
+from rockframe.units.shown import ReaderUnits, raised
 
 _TRUTH: Final = {"true": "yes", "false": "no"}
 _GAP: Final = re.compile(r", NaN if .*$")
 """Words on missing numbers in their meanings; reports write "none" for these."""
-_POWER: Final = re.compile(r"\^(-?\d+)")
-_ABOVE: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
     """Write a scalar with its unit, and flags and truth values as words."""
     value: Any = variable.item()
-    if "flag_values" in variable.attrs:
-        places = np.atleast_1d(variable.attrs["flag_values"]).tolist()
-        words = str(variable.attrs["flag_meanings"]).split()
-        word = words[places.index(value)] if value in places else str(value)
+    if words := words_of_flags(variable.attrs):
+        word = words.get(value, str(value))
         return _TRUTH.get(word, word.replace("_", " "))
     if variable.dtype == bool:
         return _TRUTH[str(value).lower()]
@@ -36,7 +32,7 @@ def value_of(variable: xr.DataArray, units: ReaderUnits | None = None) -> str:
     number = f"{value / unit.size + 0.0:.4g}"  # no negative zero
     if unit.words == Unit.RADIAN:
         return f"{number} rad ({math.degrees(value):.3g}°)"
-    return number if unit.words == Unit.ONE else f"{number} {powers_in_html(unit.words)}"
+    return number if unit.words == Unit.ONE else f"{number} {raised(unit.words)}"
 
 
 def number_in(value: float, unit: str, units: ReaderUnits) -> str:
@@ -47,12 +43,7 @@ def number_in(value: float, unit: str, units: ReaderUnits) -> str:
 def column_head(name: str, unit: str, units: ReaderUnits) -> str:
     """Write the name of a variable with the reader's unit, above a column."""
     words, shown_in = name.replace("_", " "), units.of(unit).words
-    return words if shown_in == Unit.ONE else f"{words} [{powers_in_html(shown_in)}]"
-
-
-def powers_in_html(unit: str) -> str:
-    """Write the powers of a unit as superscript characters."""
-    return _POWER.sub(lambda power: power[1].translate(_ABOVE), unit)
+    return words if shown_in == Unit.ONE else f"{words} [{raised(shown_in)}]"
 
 
 def table_of(
@@ -83,6 +74,6 @@ def extremes_of(
             whose = f" ({row[first].item()})" if values.ndim > 1 and first in row.coords else ""
             ends = unit.of([float(row.min()), float(row.max())])
             least, most = (f"{one + 0.0:.4g}" for one in ends)
-            words = "" if unit.words == Unit.ONE else powers_in_html(unit.words)
+            words = "" if unit.words == Unit.ONE else raised(unit.words)
             found.append((name.replace("_", " ") + whose, words, least, most))
     return found

@@ -171,31 +171,19 @@ def report(
         body += _of_run(dataset, system, about, chosen, aim)
     else:
         heading = value or str(dataset.attrs.get("title", "Study"))
-        body = [*studies.verdict_sections(dataset, about, chosen, by_codes)]
         found = motions_of(dataset, motions, _OWNER)
         _warn_of_target(target, found, "motions")
+        body = [*studies.verdict_sections(dataset, about, chosen, by_codes)]
         if found:
             spectra = spectra_section(found, aim, chosen)
             body.append(page.section("Ground motions", spectra))
-        words, worst = studies.worst_case(dataset, found, chosen)
-        if worst is not None:
-            run, system = worst
-            verdict = sections.outcome_of(run, chosen)
-            body.append(page.section("The worst case in full", [page.paragraph(words), verdict]))
-            body += _of_run(run, system, about, chosen)
-        else:
-            if words:
-                body.append(page.section("The worst case", [page.paragraph(words)]))
-            system = _system_of(dataset, None)
-            if system is not None:
-                body.append(page.section("Scene", sections.scene_section(dataset, system, chosen)))
-            limits = sections.limits_section(system, about.assumptions)
-            body.append(page.section("Limits of validity", limits))
+        body += _of_study(dataset, found, about, chosen)
     body += [one.section(chosen) for one in checked]
-    made = str(dataset.attrs.get("history", "")).splitlines()
+    made = str(dataset.attrs.get("history", "")).splitlines()[-1:]
+    head = [f"<h1>{escape(heading)}</h1>", *(page.paragraph(one, kind="soft") for one in made)]
     file = Path(source).name
     content = [
-        f"<header>\n{_heading(heading, made)}\n</header>",
+        "\n".join(["<header>", *head, "</header>"]),
         *about.block(),
         *body,
         page.section("Provenance", sections.provenance_section(dataset, file)),
@@ -228,6 +216,24 @@ def _of_run(
     ]
 
 
+def _of_study(
+    dataset: xr.Dataset, motions: Mapping[str, GroundMotion], about: Project, units: ReaderUnits
+) -> list[str]:
+    """Give the sections on a study that follow its motions: its worst case, or its scene."""
+    words, worst = studies.worst_case(dataset, motions, units)
+    if worst is not None:
+        run, system = worst
+        inner = [page.paragraph(words), sections.outcome_of(run, units)]
+        body = [page.section("The worst case in full", inner)]
+        return [*body, *_of_run(run, system, about, units)]
+    body = [page.section("The worst case", [page.paragraph(words)])] if words else []
+    system = _system_of(dataset, None)
+    if system is not None:
+        body.append(page.section("Scene", sections.scene_section(dataset, system, units)))
+    limits = sections.limits_section(system, about.assumptions)
+    return [*body, page.section("Limits of validity", limits)]
+
+
 def _check(dataset: xr.Dataset) -> None:
     """Raise on a dataset that is not the result of a run or of a study."""
     if not _is_run(dataset) and not studies.is_study(dataset):
@@ -244,13 +250,6 @@ def _is_run(dataset: xr.Dataset) -> bool:
     needed = ("overturned", "status", "peak_rotation")
     known = "model" in dataset.attrs or "axes_json" in dataset.attrs  # a case of a sweep
     return known and all(name in dataset and not dataset[name].dims for name in needed)
-
-
-def _heading(words: str, made: list[str]) -> str:
-    lines = [f"<h1>{escape(words)}</h1>"]
-    if made:
-        lines.append(page.paragraph(made[-1], kind="soft"))
-    return "\n".join(lines)
 
 
 def _system_of(dataset: xr.Dataset, motion: GroundMotion | None) -> System | None:

@@ -15,7 +15,7 @@ from rockframe.results.schema import SCHEMA
 from rockframe.results.variables.bodies import BODY, RESTRAINER
 from rockframe.results.variables.requests import POINT
 from rockframe.results.variables.studies import MOTION
-from rockframe.results.variables.variable import EVENT, TIME, TRUTH
+from rockframe.results.variables.variable import EVENT, TIME, TRUTH, words_of_flags
 from rockframe.units import Unit
 from rockframe.units.shown import UnitsLike, reader_units
 
@@ -272,9 +272,9 @@ def head(name: str, unit: object) -> str:
 
 def _in_words(column: Any, values: xr.Variable) -> pd.Series:
     """Give flags as words, and truth values with gaps as nullable booleans."""
-    meanings = str(values.attrs.get("flag_meanings", "")).split()
-    if values.dtype == bool or not meanings:
+    words = words_of_flags(values.attrs)
+    if values.dtype == bool or not words:
         return column
-    if tuple(meanings) == TRUTH:
+    if (*words.values(),) == TRUTH:
         return column.astype("boolean")
-    return column.map(dict(zip(values.attrs["flag_values"], meanings, strict=True)))
+    return column.map(words)

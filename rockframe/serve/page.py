@@ -7,8 +7,8 @@ from typing import Final
 from urllib.parse import urlencode
 
 from rockframe.reports.page import banner
-from rockframe.reports.values import powers_in_html
 from rockframe.serve.controls import BASES, CONTROLS, PULSES, Control, Tried
+from rockframe.units.shown import raised
 
 STYLE: Final = "/page.css"
 SCRIPT: Final = "/page.js"
@@ -97,7 +97,7 @@ def _numbers(choice: Tried, of: str, *, only: str = "", without: Sequence[str] =
 
 
 def _number(one: Control, value: float) -> str:
-    unit = f" [{escape(powers_in_html(one.unit))}]" if one.unit else ""
+    unit = f" [{escape(raised(one.unit))}]" if one.unit else ""
     ends = f'min="{one.low:g}" max="{one.high:g}"'
     return (
         f'<div class="number"><label for="{one.name}">{one.words}{unit}</label>'

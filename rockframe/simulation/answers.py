@@ -1,9 +1,9 @@
 """Histories, peaks of forces and motions of points of a run, as far as they are requested."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
@@ -81,72 +81,46 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     What cannot be computed is named in `missing`.
     """
     setting, load, model = system.setting, system.setting.load, system.model
-    whole = bool(plan.points or plan.diagnostics)  # whether all columns are needed along the steps
-    columns, values, events, ground, moved = _observed(system, plan, run, whole)
-    # energies are computed apart; other requested values that are no columns follow from columns
-    if whole or set(plan.requested).difference(values, ENERGIES):
-        values |= force_histories(values, moved, load)
-    values |= {
-        name: model.contact_states(run.mode, body).astype(np.int8)
-        for body, name in enumerate(model.contacts)
-    }
-    if setting.cap_offset is not None:
-        values |= cap_histories(values, setting, setting.cap_offset)
-    if model.selects:
-        values = body_histories(model, run, values)
-    values |= relative_histories(values, setting)
-    values |= ground_histories(ground, has_vertical_motion=plan.has_vertical_motion)
-    values["time"] = run.time
+    seen = _Observed(system, plan, run)
+    values, upright = seen.histories(), seen.events
     fell = run.overturning_time <= run.end_time
-    until = run.overturning_time if fell else math.inf
-    along, upright = _along(system, plan, run, columns, events, whole, until), events
+    along = seen.along(run.overturning_time if fell else math.inf)
     if not along.steps.complete:
         missing.append(
             f"peaks of forces and at points are those until {along.steps.time[-1]:.4g} s: the run "
             "made more steps than are kept"
         )
     if fell:  # the fall after overturning does not count
-        upright = events.those(events.time <= run.overturning_time)
+        upright = upright.those(upright.time <= run.overturning_time)
     found = slidings(system, along)
     of_forces, of_settlement = peaks_along(along, upright, load)
     scalars: dict[str, Generic | float] = {
-        **of_forces, **sliding_scalars(found), **residuals(_at_the_end(system, plan, run), load),
+        **of_forces, **sliding_scalars(found), **residuals(seen.at_the_end(), load),
         **of_settlement,
     }  # fmt: skip
     if model.shows_bodies:
         # peaks of the whole run, as for the peak rotation of the highest body
-        every = _along(system, plan, run, columns, events, whole, math.inf) if fell else along
+        every = seen.along(math.inf) if fell else along
         scalars["peak_body_rotation"] = _peaks_of(rotations_of(model.system.bodies()), every)
     places: dict[str, Generic] = {}
     if model.links:
-        forces = forces_of_links(model.links)
-        scalars["peak_restrainer_force"] = _peaks_of(forces, along)
+        scalars["peak_restrainer_force"] = _peaks_of(forces_of_links(model.links), along)
         places = {"restrainer": np.array(setting.link_names)}
     if plan.points:
         scalars |= point_peaks(plan.points, along, load)
         places |= point_labels(plan.points)
         values |= point_histories(plan.points, values, load)
     shown = run.events.kind != SILENT
-    impulses = {name: each[shown] for name, each in events.impulses(load.body.mass).items()}
+    impulses = seen.events.impulses(load.body.mass)
+    everything = values | {name: each[shown] for name, each in impulses.items()}
     if "slip" in values:
-        impulses["event_slip"] = events.after["slip"][shown]
-    everything = values | impulses
+        everything["event_slip"] = seen.events.after["slip"][shown]
     if plan.energies:
-        displacement = values["horizontal_displacement"]
-        everything |= energy_histories(model, run, displacement, system.options.slope)
-    owners = [one for one in (setting, *system.parts.structural()) if isinstance(one, OwnAnswers)]
-    if plan.histories and owners:
-        own = _own_answers(owners, everything, events.those(shown), missing)
-        scalars |= {name: each for name, each in own.items() if not SCHEMA[name].dims}
-        everything |= {name: each for name, each in own.items() if SCHEMA[name].dims}
-    for one in plan.diagnostics:
-        state = _state_of(values, run.time, ground)
-        history_and_peak = or_missing(
-            lambda one=one, state=state: (one.of(state), _peak_of(one, along)),
-            None, f"the diagnostic {one.name!r}", missing,
-        )  # fmt: skip
-        if history_and_peak is not None:
-            everything[one.name], scalars[one.rows[1].name] = history_and_peak
+        across = values["horizontal_displacement"]
+        everything |= energy_histories(model, run, across, system.options.slope)
+    of_users = _of_users(seen, values, everything, along, missing)
+    scalars |= {name: each for name, each in of_users.items() if not SCHEMA[name].dims}
+    everything |= {name: each for name, each in of_users.items() if SCHEMA[name].dims}
     kept = {
         name: each
         for name, each in everything.items()
@@ -155,115 +129,139 @@ def answers_of(system: Assembly, plan: Plan, run: Trajectory, missing: list[str]
     return Answers(kept if plan.histories else {}, scalars, places, found)
 
 
-def _own_answers(
-    owners: Sequence[OwnAnswers],
-    values: dict[str, Generic],
-    events: EventStates,
-    missing: list[str],
-) -> dict[str, Generic]:
-    """Give what the methods `answers` of users' own bases and scenes return."""
-    sides = [{**side, "time": events.time} for side in (events.before, events.after)]
-    sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
-    found: dict[str, Generic] = {}
-    for own in owners:
-        what = f"what {type(own).__name__} tells of the run"
-        found |= or_missing(
-            lambda own=own: fitting(own.answers(values, *sides), sizes), {}, what, missing
+class _Observed:
+    """The columns of a model in a run: along the steps, at samples, and around events."""
+
+    def __init__(self, system: Assembly, plan: Plan, run: Trajectory) -> None:
+        self.system, self.plan, self.run = system, plan, run
+        # whether all columns are needed along the steps, or those alone whose peaks are results
+        self.whole = bool(plan.points or plan.diagnostics)
+        events, slope, count = run.events, system.options.slope, len(run.time)
+        ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
+        moved, resolved = ground_on_slope(ground, slope)
+        model, names = system.model, BODY_FORCES + OF_SETTLEMENT
+        names += forces_of_links(model.links) if model.links else ()
+        names += OF_SOIL_FRICTION if system.setting.stacked else ()
+        names += rotations_of(model.system.bodies()) if model.shows_bodies else ()
+        self.columns, shown = observe_run(model, run, None if self.whole else names, resolved)
+        shown, last = without_gravity(shown, slope), count + len(events.time)
+        self.values, before, after = (
+            {name: each[part] for name, each in shown.items()}
+            for part in (slice(count), slice(count, last), slice(last, None))
         )
+        is_impact = (events.kind == IMPACT) & system.setting.struck_by_base
+        self.events = EventStates(events.time, is_impact, before, after)
+        # at the samples, horizontal and vertical, and along and normal to the base
+        self.ground, self.moved = ground[:count], moved[:count]
+
+    def histories(self) -> dict[str, Generic]:
+        """Give the histories of a run, without those at points and those that take events."""
+        plan, run, setting, model = self.plan, self.run, self.system.setting, self.system.model
+        values = self.values
+        # energies are computed apart; other requested values that are no columns follow from these
+        if self.whole or set(plan.requested).difference(values, ENERGIES):
+            values |= force_histories(values, self.moved, setting.load)
+        values |= {
+            name: model.contact_states(run.mode, body).astype(np.int8)
+            for body, name in enumerate(model.contacts)
+        }
+        if setting.cap_offset is not None:
+            values |= cap_histories(values, setting, setting.cap_offset)
+        if model.selects:
+            values = body_histories(model, run, values)
+        values |= relative_histories(values, setting)
+        values |= ground_histories(self.ground, has_vertical_motion=plan.has_vertical_motion)
+        values["time"] = run.time
+        return values
+
+    def at_the_end(self) -> dict[str, Generic]:
+        """Give the model's columns at the end of a run, which need not be a sample."""
+        run, ending, slope = self.run, self.run.ending, self.system.options.slope
+        ground = ground_at(self.plan.motion, np.array([run.end_time]))
+        return observe_states(
+            self.system.model, np.array([ending.mode]), ending.state[None], ending.memory[None],
+            np.zeros(1, dtype=np.int64), ground_on_slope(ground, slope)[1],
+        )  # fmt: skip
+
+    def along(self, until: float) -> AlongSteps:
+        """Give the quantities along the steps up to a time, from the columns along all steps.
+
+        Steps are left out in which friction stops the small slip that an impact or a change of the
+        held point has left: a base that holds takes an impulse there instead, which is no force.
+        """
+        run, slope, load = self.run, self.system.options.slope, self.system.setting.load
+        memory, steps = memory_at_outputs(run)[0], run.kept_steps.until(until)
+        shown = {name: each[: len(steps.time)] for name, each in self.columns.items()}
+        if STICK in run.events.kind:
+            stops = _stops(run, self.events, STOPPED_WITHIN * 2.0 * load.body.half_width)
+            kept = ~np.isin(steps.memory_row, stops)
+            steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
+            shown = {name: each[kept] for name, each in shown.items()}
+        if self.whole:
+            moved = steps.ground - np.array([slope.along_gravity, 0.0])
+            ground = _level(moved, slope)
+            shown = self._further(without_gravity(shown, slope), steps.time, ground, moved)
+        else:
+            shown |= friction_demands(shown, load)
+
+        def inside(which: Integers) -> dict[str, Generic]:
+            places, length = len(FRACTIONS), steps.length[which]
+            time = (steps.time[which] - length)[:, None] + length[:, None] * FRACTIONS
+            time, states = time.ravel(), steps.inside(which, self.system.model, FRACTIONS)
+            ground = ground_at(self.plan.motion, time)
+            moved, resolved = ground_on_slope(ground, slope)
+            modes, rows = (np.repeat(of[which], places) for of in (steps.mode, steps.memory_row))
+            states = states.reshape(-1, states.shape[-1])
+            found = observe_states(self.system.model, modes, states, memory, rows, resolved)
+            found = without_gravity(found, slope)
+            if not self.whole:
+                return found | friction_demands(found, load)
+            return self._further(found, time, ground, moved)
+
+        return AlongSteps(steps, shown, inside)
+
+    def _further(
+        self, shown: dict[str, Generic], time: Array, ground: Array, moved: Array
+    ) -> dict[str, Generic]:
+        """Give columns with what follows from them, and with the state that diagnostics take."""
+        shown = shown | force_histories(shown, moved, self.system.setting.load)
+        return shown | _state_of(shown, time, ground)
+
+
+def _of_users(
+    seen: _Observed,
+    values: dict[str, Generic],
+    everything: dict[str, Generic],
+    along: AlongSteps,
+    missing: list[str],
+) -> dict[str, Any]:
+    """Give what users' own bases, scenes and diagnostics tell of a run."""
+    plan, system, found = seen.plan, seen.system, dict[str, Any]()
+    for own in (system.setting, *system.parts.structural()) if plan.histories else ():
+        if isinstance(own, OwnAnswers):
+            events = seen.events.those(seen.run.events.kind != SILENT)
+            sides = [{**side, "time": events.time} for side in (events.before, events.after)]
+            sizes = {TIME[0]: len(values["time"]), EVENT[0]: len(events.time)}
+            found |= or_missing(
+                lambda own=own, sides=sides, sizes=sizes: fitting(
+                    own.answers(everything, *sides), sizes
+                ),
+                {}, f"what {type(own).__name__} tells of the run", missing,
+            )  # fmt: skip
+    for one in plan.diagnostics:
+        state = _state_of(values, seen.run.time, seen.ground)
+        history_and_peak = or_missing(
+            lambda one=one, state=state: (one.of(state), _peak_of(one, along)),
+            None, f"the diagnostic {one.name!r}", missing,
+        )  # fmt: skip
+        if history_and_peak is not None:
+            found[one.name], found[one.rows[1].name] = history_and_peak
     return found
 
 
 def _peak_of(one: Diagnostic, along: AlongSteps) -> float:
     """Give the largest absolute value of a diagnostic along the steps."""
     return along.largest(lambda state: np.abs(one.of(state))[None])[0].item()
-
-
-def _observed(
-    system: Assembly, plan: Plan, run: Trajectory, whole: bool
-) -> tuple[dict[str, Generic], dict[str, Generic], EventStates, Array, Array]:
-    """Give the model's columns along the steps, at samples, and before and after events.
-
-    Also the ground acceleration at the samples, in horizontal and vertical components and in those
-    along and normal to the base. Unless `whole`, only columns whose peaks are results are given
-    along the steps.
-    """
-    events, slope, count = run.events, system.options.slope, len(run.time)
-    ground = ground_at(plan.motion, np.concatenate([run.time, events.time, events.time]))
-    moved, resolved = ground_on_slope(ground, slope)
-    names: tuple[str, ...] | None = None
-    if not whole:  # columns whose peaks are results
-        names = BODY_FORCES + OF_SETTLEMENT
-        names += forces_of_links(system.model.links) if system.model.links else ()
-        names += OF_SOIL_FRICTION if system.setting.stacked else ()
-        if system.model.shows_bodies:
-            names += rotations_of(system.model.system.bodies())
-    along, shown = observe_run(system.model, run, names, resolved)
-    shown, last = without_gravity(shown, slope), count + len(events.time)
-    values, before, after = (
-        {name: each[part] for name, each in shown.items()}
-        for part in (slice(count), slice(count, last), slice(last, None))
-    )
-    is_impact = (events.kind == IMPACT) & system.setting.struck_by_base
-    states = EventStates(events.time, is_impact, before, after)
-    return along, values, states, ground[:count], moved[:count]
-
-
-def _at_the_end(system: Assembly, plan: Plan, run: Trajectory) -> dict[str, Generic]:
-    """Give the model's columns at the end of a run, which need not be a sample."""
-    ending, ground = run.ending, ground_at(plan.motion, np.array([run.end_time]))
-    return observe_states(
-        system.model, np.array([ending.mode]), ending.state[None], ending.memory[None],
-        np.zeros(1, dtype=np.int64), ground_on_slope(ground, system.options.slope)[1],
-    )  # fmt: skip
-
-
-def _along(
-    system: Assembly,
-    plan: Plan,
-    run: Trajectory,
-    columns: dict[str, Generic],
-    events: EventStates,
-    whole: bool,
-    until: float,
-) -> AlongSteps:
-    """Give the quantities along the steps up to a time, from the columns along all steps.
-
-    Steps are left out in which friction stops the small slip that an impact or a change of the held
-    point has left: a base that holds takes an impulse there instead, which is no force.
-    """
-    slope, load, memory = system.options.slope, system.setting.load, memory_at_outputs(run)[0]
-    steps = run.kept_steps.until(until)
-    shown = {name: each[: len(steps.time)] for name, each in columns.items()}
-    if STICK in run.events.kind:
-        stops = _stops(run, events, STOPPED_WITHIN * 2.0 * load.body.half_width)
-        kept = ~np.isin(steps.memory_row, stops)
-        steps = replace(steps, values=steps.values[kept], codes=steps.codes[kept])
-        shown = {name: each[kept] for name, each in shown.items()}
-    if whole:
-        shown = without_gravity(shown, slope)
-        moved = steps.ground - np.array([slope.along_gravity, 0.0])
-        shown |= force_histories(shown, moved, load)
-        shown |= _state_of(shown, steps.time, _level(moved, slope))
-    else:
-        shown |= friction_demands(shown, load)
-
-    def inside(which: Integers) -> dict[str, Generic]:
-        places, length = len(FRACTIONS), steps.length[which]
-        time = (steps.time[which] - length)[:, None] + length[:, None] * FRACTIONS
-        states = steps.inside(which, system.model, FRACTIONS)
-        time = time.ravel()
-        ground = ground_at(plan.motion, time)
-        moved, resolved = ground_on_slope(ground, slope)
-        modes, rows = (np.repeat(of[which], places) for of in (steps.mode, steps.memory_row))
-        states = states.reshape(-1, states.shape[-1])
-        found = observe_states(system.model, modes, states, memory, rows, resolved)
-        found = without_gravity(found, slope)
-        if not whole:
-            return found | friction_demands(found, load)
-        found |= force_histories(found, moved, load)
-        return found | _state_of(found, time, ground)
-
-    return AlongSteps(steps, shown, inside)
 
 
 def rotations_of(bodies: int) -> tuple[str, ...]:

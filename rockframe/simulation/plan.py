@@ -116,10 +116,10 @@ def points_of(
         faults.append(f"points must name places, such as {EXAMPLE}, got {shown(value)}")
         return ()
     points: list[BodyPoint] = []
-    for name, place in cast("Mapping[Any, Any]", value).items():
+    for name, place in value.items():
         if not (isinstance(name, str) and name.strip()):
             faults.append(f"points needs names, such as {EXAMPLE}, got {shown(name)}")
-        elif not (isinstance(place, tuple | list) and len(cast("tuple[object]", place)) == 2):
+        elif not (isinstance(place, tuple | list) and len(place) == 2):
             faults.append(
                 f"point {name!r} needs two lengths, to the right of the middle of the base and "
                 f"above it, such as {EXAMPLE}, got {shown(place)}"
@@ -127,8 +127,7 @@ def points_of(
         else:
             try:
                 x, y = (
-                    to_si(each, LENGTH, owner=owner, name=f"points[{name!r}]")
-                    for each in cast("tuple[Any, Any]", place)
+                    to_si(each, LENGTH, owner=owner, name=f"points[{name!r}]") for each in place
                 )
                 points.append(BodyPoint(name, x, y))
             except RockframeError as problem:
@@ -398,7 +397,7 @@ def _initial(value: object, faults: list[str]) -> "InitialState | xr.Dataset":
 def _motion_hint(value: object) -> str:
     """Say how to make a motion from what was given, if that is known."""
     if isinstance(value, str | PathLike):
-        return f"; read the file first: GroundMotion.read({str(value)!r})"  # pyright: ignore[reportUnknownArgumentType]
+        return f"; read the file first: GroundMotion.read({str(value)!r})"
     if hasattr(value, "shape") or isinstance(value, list):
         return "; build one: GroundMotion.from_arrays((samples, 'm/s^2'), '0.01 s')"
     if isinstance(value, HorizontalPair):

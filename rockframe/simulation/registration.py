@@ -83,7 +83,7 @@ def register(
         for what, given in (("name", name), ("unit", unit), ("long_name", long_name))
         if given is not None
     ]
-    rows = [row for row in cast("Sequence[Any]", columns) if isinstance(row, Variable)]
+    rows = [row for row in columns if isinstance(row, Variable)]
     scalars = [row.name for row in rows if row.dims != TIME]
     if scalars and getattr(kind, "answers", None) is OwnAnswers.answers:
         faults.append(
@@ -155,7 +155,7 @@ def _faults_of_base(kind: type[OwnBase]) -> list[str]:
 
 
 def _faults_of_scene(kind: type[OwnScene]) -> list[str]:
-    missing = cast("frozenset[str]", getattr(kind, "__abstractmethods__", frozenset()))
+    missing = getattr(kind, "__abstractmethods__", frozenset())
     faults = [f"{kind.__name__} has no {_ASKED[name]}" for name in _ASKED if name in missing]
     made_of: Any = kind.made_of
     if not (isinstance(made_of, Mapping) and made_of):
@@ -164,13 +164,12 @@ def _faults_of_scene(kind: type[OwnScene]) -> list[str]:
             f"{kind.__name__}.made_of must name slots and classes of parts, such as "
             f"{{'block': Block, 'floor': Floor}}, got {shown(made_of)}",
         ]
-    rows = cast("Mapping[Any, Any]", made_of)
-    of_parts = [fault for row in rows.items() for fault in _faults_of_part(kind.__name__, *row)]
+    of_parts = [fault for row in made_of.items() for fault in _faults_of_part(kind.__name__, *row)]
     if of_parts:
         return [*faults, *of_parts]
-    if not any(issubclass(part, Block) for part in rows.values()):
+    if not any(issubclass(part, Block) for part in made_of.values()):
         faults.append(f"{kind.__name__} has no Block among its parts, of which the response is")
-    if not set(rows) - set(SHIPPED):
+    if not set(made_of) - set(SHIPPED):
         faults.append(
             f"{kind.__name__} is made of rockframe's own parts alone, and so could not be told "
             "from its scenes; add a part of your own"

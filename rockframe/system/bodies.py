@@ -7,6 +7,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from rockframe.components import Component
 from rockframe.components.bases import CushionCapSI
 from rockframe.components.block_numbers import BlockSI, BodyGeometry, greatest_restitutions
 from rockframe.dynamics.body import Body
@@ -32,8 +33,9 @@ class Restitutions(NamedTuple):
         return f"{self.left:.6g} (onto the left corner), {self.right:.6g} (onto the right one)"
 
 
-def resolve_restitution(value: float | None, greatest: Restitutions) -> Restitutions:
-    """Give the restitutions of a scene: eps_max of Eq. (4) unless the user chose one."""
+def restitution_on(base: Component | None, greatest: Restitutions) -> Restitutions:
+    """Give the restitutions on a base: eps_max of Eq. (4) unless the user chose one."""
+    value = None if base is None else base.si.restitution
     return greatest if value is None else Restitutions(value, value)
 
 

@@ -5,14 +5,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from rockframe.components import (
-    Component,
-    FrameEquivalent,
-    RearWall,
-    RockingFrame,
-    Stack,
-    Tendon,
-)
+from rockframe.components import Component, FrameEquivalent, RearWall, RockingFrame, Stack, Tendon
 from rockframe.components.block_numbers import BlockSI
 from rockframe.components.rocking_frame import column_places, frame_outlines
 from rockframe.notebook import Polygon, arguments_in_words, card, drawing

@@ -16,7 +16,7 @@ from rockframe.system.bodies import (
     Restitutions,
     SupportedBody,
     body_of_block,
-    resolve_restitution,
+    restitution_on,
 )
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
@@ -150,8 +150,7 @@ def rear_wall_setting(parts: Parts, options: Options) -> RearWallSetting:
     """Resolve the parts of a block before a wall."""
     load = BaseLoad(body_of_block(parts.the_block, OnCorners), options)
     wall = cast("RearWall", parts.wall)
-    stated = None if parts.ground is None else parts.ground.si.restitution
-    restitution = resolve_restitution(stated, load.body.maximum_restitution)
+    restitution = restitution_on(parts.ground, load.body.maximum_restitution)
     if not load.options.slope.level:
         raise AssemblyError(["RearWall: a wall stands on level ground, without inclination"])
     height = parts.the_block.height

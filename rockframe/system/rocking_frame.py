@@ -12,7 +12,7 @@ from rockframe.components import RockingFrame, Tendon
 from rockframe.components.rocking_frame import RockingFrameSI
 from rockframe.errors import AssemblyError
 from rockframe.signals.arrays import Array
-from rockframe.system.bodies import BaseLoad, OnCorners, Restitutions, resolve_restitution
+from rockframe.system.bodies import BaseLoad, OnCorners, Restitutions, restitution_on
 from rockframe.system.links import called_alike, link_labels, tie_of, tie_words
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
@@ -247,8 +247,7 @@ def rocking_frame_setting(parts: Parts, options: Options) -> RockingFrameSetting
             f"RockingFrame: the columns are so squat that the frame cannot rock: its greatest "
             f"restitution is {greatest.left:.4g}"
         ])  # fmt: skip
-    stated = parts.ground.si.restitution if parts.ground is not None else None
-    restitution = resolve_restitution(stated, greatest)
+    restitution = restitution_on(parts.ground, greatest)
     setting = RockingFrameSetting(load, restitution, frame)
     refuse_fall(setting)
     if not parts.links:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rockframe.components.bases import Impact
 from rockframe.errors import AssemblyError
 from rockframe.many import largest, python_number
-from rockframe.system.bodies import SupportedBody, load_of, resolve_restitution
+from rockframe.system.bodies import SupportedBody, load_of, restitution_on
 from rockframe.system.fitting import SMALL_SLIDING, BaseFriction, friction_under
 from rockframe.system.options import Options
 from rockframe.system.parts import Parts
@@ -103,10 +103,8 @@ class SlidingSetting(RigidGroundSetting):
 def rigid_ground_setting(parts: Parts, options: Options) -> RigidGroundSetting:
     """Resolve the parts of a scene on rigid ground."""
     load = load_of(parts.the_block, options)
-    ground, numbers = parts.ground, None if parts.ground is None else parts.ground.si
-    restitution = resolve_restitution(
-        None if numbers is None else numbers.restitution, load.body.maximum_restitution
-    )
+    ground = parts.ground
+    restitution = restitution_on(ground, load.body.maximum_restitution)
     setting = RigidGroundSetting(load, restitution)
     friction = None if ground is None else friction_under(ground, options)
     if ground is not None and friction is not None:

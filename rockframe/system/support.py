@@ -20,8 +20,8 @@ from rockframe.many import sqrt
 from rockframe.system.bodies import (
     BaseLoad,
     Restitutions,
-    resolve_restitution,
     restitution_cautions,
+    restitution_on,
 )
 from rockframe.system.statics import Statics, required_states, static_values
 from rockframe.system.words import uplift_words, vibration_words
@@ -346,8 +346,7 @@ def pads_under(pads: TwoSpringSupport, load: BaseLoad) -> PadSupport:
         damping = numbers.damping_ratio * body.mass * vertical
     # the restitution of a body too squat to rock from corner to corner is zero
     greatest = Restitutions(*(max(one, 0.0) for one in body.maximum_restitution))
-    restitution = resolve_restitution(numbers.restitution, greatest)
-    return PadSupport(load, stiffness, damping, restitution)
+    return PadSupport(load, stiffness, damping, restitution_on(pads, greatest))
 
 
 _SEPARATION = {

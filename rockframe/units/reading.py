@@ -237,12 +237,11 @@ def to_si_values(value: object, measure: Measure, *, owner: str, name: str) -> l
     """Convert an argument of one or several values to floats in SI units."""
     if isinstance(value, pint.Quantity):
         argument: Any = value
-        return [to_si(one, measure, owner=owner, name=name) for one in _each(argument)]
-    if (
-        isinstance(value, Iterable)
-        and not isinstance(value, str)
-        and getattr(value, "ndim", 1) != 0
-    ):
+        each = argument if getattr(argument.magnitude, "ndim", 0) == 1 else [argument]
+        return [to_si(one, measure, owner=owner, name=name) for one in each]
+    if isinstance(value, str) or getattr(value, "ndim", 1) == 0:
+        return [to_si(value, measure, owner=owner, name=name)]
+    if isinstance(value, Iterable):
         items: list[Any] = list(value)
         alone = isinstance(items[0], str | pint.Quantity | None) if items else True
         if len(items) == 2 and isinstance(items[1], str) and not alone:

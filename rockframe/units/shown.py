@@ -167,3 +167,11 @@ def reader_units(value: object, *, owner: str) -> ReaderUnits:
         kind = KINDS[name]
         chosen[str(kind.unit)] = shown_unit(unit, kind, owner=owner, name=f"units[{name!r}]")
     return ReaderUnits(chosen, dict(cast("Mapping[str, str]", value)))
+
+
+_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def raised(text: str) -> str:
+    """Write the powers of units in a text as superscript characters."""
+    return re.sub(r"(?<=[^\W\d_])\^(-?\d+)", lambda power: power[1].translate(_RAISED), text)

@@ -30,7 +30,7 @@ ROUNDS = 40
 SHOWN = ("fast", "standard")
 STEP, SAMPLES, FADE = 0.005, 12_000, 1000
 PARTS = {
-    "columns": (answers, "_observed"),
+    "columns": (answers, "_Observed"),
     "peaks": (answers, "peaks_along"),
     "dataset": (run, "build_dataset"),
 }

@@ -5,14 +5,7 @@ from dataclasses import dataclass
 from inspect import getmembers, ismethod
 from typing import Any, Final
 
-from rockframe.command.files.tables import (
-    Place,
-    TomlFile,
-    arguments_of,
-    checked,
-    made,
-    table_title,
-)
+from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
 from rockframe.components import Component, RockingFrame, Stack
 from rockframe.components.registry import kinds
 from rockframe.errors import nearest, shown

@@ -9,14 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from rockframe.command.files.parts import CONSTRUCTOR, MODULES, described_parts, part_slots
-from rockframe.command.files.tables import (
-    Place,
-    TomlFile,
-    arguments_of,
-    checked,
-    made,
-    table_title,
-)
+from rockframe.command.files.tables import Place, TomlFile, arguments_of, checked, made, table_title
 from rockframe.command.typed_calls import check_of
 from rockframe.components import Component, InitialState
 from rockframe.components.registry import kinds
@@ -28,8 +21,7 @@ from rockframe.reports.project import CHECKS, project_json
 from rockframe.simulation.plan import certification_of, read_arguments
 from rockframe.simulation.run_arguments import Certification
 from rockframe.simulation.system import System
-from rockframe.solve.accuracy import Accuracy, AccuracyLevel
-from rockframe.system.options import Overturning
+from rockframe.solve.accuracy import Accuracy
 from rockframe.system.parts import slot_of_kind
 
 _FILE: Final = "file"
@@ -71,7 +63,7 @@ def _read(file: TomlFile, where: Place, table: dict[str, Any]) -> GroundMotion |
         return None
     component = table.get("component")
     if isinstance(component, list):  # TOML has no tuples
-        table["component"] = tuple(component)  # pyright: ignore[reportUnknownArgumentType]
+        table["component"] = tuple(component)
     if isinstance(table.get(_RESPONSE), str):
         table[_RESPONSE] = file.path_relative_to(table[_RESPONSE])
     return made(
@@ -103,18 +95,16 @@ def _operated(
         file.fault(where, f"{words}, got {shown(operations)}")
         return None
     found: GroundMotion | None = motion
-    for number, one in enumerate(operations):  # pyright: ignore[reportUnknownArgumentType]
+    for number, one in enumerate(operations):
         here = (*where, number)
-        if not isinstance(one, dict) or len(one) != 1:  # pyright: ignore[reportUnknownArgumentType]
-            file.fault(
-                here,
-                f"an operation is written {{ scaled = {{ factor = 1.5 }} }}, got {shown(one)}",
-            )  # pyright: ignore[reportUnknownArgumentType]
+        if not isinstance(one, dict) or len(one) != 1:
+            words = "an operation is written { scaled = { factor = 1.5 } }"
+            file.fault(here, f"{words}, got {shown(one)}")
             return None
-        ((name, value),) = one.items()  # pyright: ignore[reportUnknownVariableType]
+        ((name, value),) = one.items()
         if found is None:
             return None
-        found = _done(file, (*here, str(name)), found, value)  # pyright: ignore[reportUnknownArgumentType]
+        found = _done(file, (*here, str(name)), found, value)
     return found
 
 
@@ -254,14 +244,9 @@ def _read_project(**values: Any) -> str:
 
 def _read_arguments(**values: Any) -> None:
     """Check the arguments of a run before it begins, so that faults have their lines."""
-    usual: dict[str, Any] = {
-        "accuracy": AccuracyLevel.STANDARD,
-        "outputs": (),
-        "overturning": Overturning.STOP,
-    }
     certification_of(values.pop("certify", False))
     faults: list[str] = []
-    read_arguments(faults, **(usual | values))
+    read_arguments(faults, **values)
     if faults:
         raise AssemblyError(faults)
 
@@ -283,9 +268,9 @@ def import_modules(file: TomlFile) -> None:
     if not isinstance(value, list):
         file.fault((MODULES,), f'modules must be a list such as ["mine.py"], got {shown(value)}')
         return
-    for name in value:  # pyright: ignore[reportUnknownVariableType]
+    for name in value:
         try:
-            _import(file, str(name))  # pyright: ignore[reportUnknownArgumentType]
+            _import(file, str(name))
         except RockframeError as problem:
             file.fault((MODULES,), f"{name}: {problem}")
         except Exception as problem:  # code of users may raise anything

@@ -42,9 +42,7 @@ SWEEP: Final = "sweep"
 KNOWN: Final = "known"
 KEYS: Final = (SCENE, MOTIONS, AXES, CASES, STORE, OUTPUT, SWEEP)
 """Keys of the file of a study, besides the tables of its scene."""
-_NOT_OF_SWEEP: Final = (
-    "scene", "motions", "axes", "cases", "store", "executor", "progress",
-)  # fmt: skip
+_NOT_OF_SWEEP: Final = (SCENE, MOTIONS, AXES, CASES, STORE, "executor", "progress")
 _FROM_RUN: Final = ("duration", "free_vibration", "initial", "accuracy", "output_step",
                     "overturning")  # fmt: skip
 """Arguments of a run that its study takes over from the file of the scene."""

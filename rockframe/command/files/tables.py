@@ -170,7 +170,7 @@ class TomlFile:
     def table(self, where: Place, argument: object) -> dict[str, Any] | None:
         """Give a value that must be a table, or note a fault."""
         if isinstance(argument, dict):
-            return {str(name): value for name, value in argument.items()}  # pyright: ignore[reportUnknownVariableType]
+            return {str(name): value for name, value in argument.items()}
         self.fault(
             where,
             f"{where[-1]} must be a table, [{table_title(where)}] with its keys below it, "
@@ -197,12 +197,12 @@ def _bytes_of(path: str | Path) -> tuple[Path, bytes]:
         place = Path(path).expanduser()
         return place, place.read_bytes()
     except FileNotFoundError as problem:
-        raise FileError(str(path), [(None, "there is no such file")]) from problem
+        raise FileError(str(path), "there is no such file") from problem
     except IsADirectoryError as problem:
         words = "this is a folder; expected the file of a scene or a study"
-        raise FileError(str(path), [(None, words)]) from problem
+        raise FileError(str(path), words) from problem
     except (OSError, ValueError, RuntimeError) as problem:  # also names that no file can have
-        raise FileError(str(path), [(None, f"it cannot be read ({problem})")]) from problem
+        raise FileError(str(path), f"it cannot be read ({problem})") from problem
 
 
 def _text_of(name: str, data: bytes) -> str:
@@ -213,7 +213,7 @@ def _text_of(name: str, data: bytes) -> str:
     except UnicodeDecodeError as problem:
         text = data.decode("cp1252", "replace")
         if _CONTROL.search(text):
-            raise FileError(name, [(None, _NO_TEXT)]) from problem
+            raise FileError(name, _NO_TEXT) from problem
         line = data[: problem.start].count(b"\n") + 1
         sign = data[problem.start : problem.start + 1].decode("cp1252", "replace")
         words = (

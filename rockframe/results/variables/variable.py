@@ -88,6 +88,12 @@ def unit_behind(attributes: Mapping[Any, Any]) -> str:
     return "" if unit == Unit.ONE else f" {unit}"
 
 
+def words_of_flags(attributes: Mapping[Any, Any]) -> dict[Any, str]:
+    """Give the words of a variable's flags, by their values; none for other variables."""
+    values = np.atleast_1d(attributes.get("flag_values", ())).tolist()
+    return dict(zip(values, str(attributes.get("flag_meanings", "")).split(), strict=True))
+
+
 def rows_over(dims: tuple[str, ...], /, **meanings: str | tuple[str, type]) -> tuple[Variable, ...]:
     """Make rows of variables over some dimensions, from their names and meanings.
 

@@ -136,7 +136,8 @@ def scan(
         reached = place
 
     while True:
-        nearest = _nearest_flip(sides)
+        # the interval that may contain the nearest flip is the one that begins first
+        nearest = min(_flips(sides), key=lambda one: one[1:], default=None)
         if nearest is not None and not close_in:
             doubtful, end = None, nearest[1]
             break
@@ -165,11 +166,6 @@ _Task = tuple[Side, float, float]
 
 def _flips(sides: Sequence[Side]) -> list[_Task]:
     return [(side, *flip) for side in sides if (flip := side.flip()) is not None]
-
-
-def _nearest_flip(sides: Sequence[Side]) -> _Task | None:
-    """Give the interval that may contain the nearest flip: the one that begins first."""
-    return min(_flips(sides), key=lambda one: one[1:], default=None)
 
 
 def _wide(near: float, far: float, resolution: float) -> bool:
