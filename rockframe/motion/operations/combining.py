@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning, warn
-from rockframe.motion.operations.following import following, other_motion, warn_of_other_start
+from rockframe.motion.operations.following import (
+    following,
+    other_motion,
+    warn_of_other_start,
+    without_vertical,
+)
 from rockframe.motion.operations.scaling import times
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.value import Made, MotionValue
@@ -67,10 +72,10 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     if other is None:
         if si.vertical is None:
             return motion
-        of_it = {key: None for key in motion.metadata if key.startswith("vertical_")}
         return following(
             motion, Motion(si.horizontal, None), "vertical component left out",
-            operation={"with_vertical": {"other": None}}, metadata=of_it, same_spectrum=True,
+            operation={"with_vertical": {"other": None}}, metadata=without_vertical(motion),
+            same_spectrum=True,
         )  # fmt: skip
     theirs = other_motion(other, si, owner).si
     warn_of_other_start(motion, other, owner)
@@ -93,7 +98,8 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
     result = Motion(padded(si.horizontal, count), upwards)
-    added = {f"vertical_{key}": value for key, value in other.metadata.items()}
+    added: dict[str, Any] = without_vertical(motion)
+    added |= {f"vertical_{key}": value for key, value in other.metadata.items()}
     if sense is not None:
         added[f"vertical_{SENSE}"] = UPWARDS
     known = None if other.recipe is None else dict(other.recipe)

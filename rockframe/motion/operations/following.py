@@ -93,6 +93,11 @@ def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | None]
     return {key: time_after(motion.metadata[key], seconds) for key in known if seconds != 0.0}
 
 
+def without_vertical(motion: MotionValue) -> dict[str, None]:
+    """Give the metadata of a vertical component that the result no longer has, as None."""
+    return {key: None for key in motion.metadata if key.startswith("vertical_")}
+
+
 def warn_of_other_start(motion: MotionValue, other: MotionValue, owner: str) -> None:
     """Warn if the files of two motions state different starts."""
     starts = motion.metadata.get(_START), other.metadata.get(_START)
