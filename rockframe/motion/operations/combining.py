@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
 from rockframe.errors import ComponentError, RecordWarning, warn
-from rockframe.motion.operations.following import following, other_motion, warn_of_other_start
+from rockframe.motion.operations.following import (
+    OF_VERTICAL,
+    following,
+    other_motion,
+    warn_of_other_start,
+    without_vertical,
+)
 from rockframe.motion.operations.scaling import times
 from rockframe.motion.processing.samples import padded
 from rockframe.motion.value import Made, MotionValue
@@ -25,8 +31,6 @@ if TYPE_CHECKING:
 
 _RIGHT_ANGLE_TOLERANCE: Final = 1.0  # degree; agencies round azimuths to whole degrees
 _ROUNDING: Final = 1e-15
-_OF_VERTICAL: Final = "vertical_"
-"""Prefix of the metadata of a vertical component."""
 
 
 @hinted()
@@ -66,15 +70,13 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
     True
     """
     owner, si = f"{type(motion).__name__}.with_vertical", motion.si
-    of_it: dict[str, str | float | None] = {
-        key: None for key in motion.metadata if key.startswith(_OF_VERTICAL)
-    }
     if other is None:
         if si.vertical is None:
             return motion
         return following(
             motion, Motion(si.horizontal, None), "vertical component left out",
-            operation={"with_vertical": {"other": None}}, metadata=of_it, same_spectrum=True,
+            operation={"with_vertical": {"other": None}}, metadata=without_vertical(motion),
+            same_spectrum=True,
         )  # fmt: skip
     theirs = other_motion(other, si, owner).si
     warn_of_other_start(motion, other, owner)
@@ -97,17 +99,18 @@ def with_vertical(motion: Made, other: MotionValue | None) -> Made:
         if len(one) < count:
             steps.append(f"{label} component padded with {count - len(one)} zeros")
     result = Motion(padded(si.horizontal, count), upwards)
-    added = {
-        f"{_OF_VERTICAL}{key}": value
+    added: dict[str, Any] = without_vertical(motion)
+    added |= {
+        f"{OF_VERTICAL}{key}": value
         for key, value in other.metadata.items()
-        if not key.startswith(_OF_VERTICAL)
+        if not key.startswith(OF_VERTICAL)
     }
     if sense is not None:
-        added[f"{_OF_VERTICAL}{SENSE}"] = UPWARDS
+        added[f"{OF_VERTICAL}{SENSE}"] = UPWARDS
     known = None if other.recipe is None else dict(other.recipe)
     operation = None if known is None else {"with_vertical": {"other": known}}
     return following(
-        motion, result, *steps, operation=operation, metadata=of_it | added, same_spectrum=True
+        motion, result, *steps, operation=operation, metadata=added, same_spectrum=True
     )
 
 

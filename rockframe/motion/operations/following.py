@@ -29,6 +29,9 @@ _START: Final = "record_time"
 _START_IN_FILE: Final = "start_time"
 """Time of the first sample in the column of times of the file [s]."""
 
+OF_VERTICAL: Final = "vertical_"
+"""Prefix of the metadata of a vertical component."""
+
 _DROPPED: Final = "the analytic pieces between samples are replaced by straight lines"
 
 
@@ -47,7 +50,7 @@ def following(
         recipe = {**motion.recipe, "operations": done}
     lost: tuple[str, ...] = () if same_spectrum else _OF_ITS_SPECTRUM
     if lost and si.vertical is not motion.si.vertical:
-        lost += tuple(f"vertical_{name}" for name in _OF_ITS_SPECTRUM)
+        lost += tuple(f"{OF_VERTICAL}{name}" for name in _OF_ITS_SPECTRUM)
     added: dict[str, Any] = {k: value for k, value in motion.metadata.items() if k not in lost}
     added |= metadata or {}
     return type(motion)(
@@ -94,13 +97,18 @@ def other_motion(other: object, si: Motion, owner: str) -> MotionValue:
 def starting_later(motion: MotionValue, seconds: float) -> dict[str, str | float]:
     """Give the known start times in the metadata, moved by some seconds."""
     moved: dict[str, str | float] = {}
-    for prefix in ("", "vertical_") if seconds != 0.0 else ():
+    for prefix in ("", OF_VERTICAL) if seconds != 0.0 else ():
         if f"{prefix}{_START}" in motion.metadata:
             moved[f"{prefix}{_START}"] = time_after(motion.metadata[f"{prefix}{_START}"], seconds)
         first = motion.metadata.get(f"{prefix}{_START_IN_FILE}")
         if isinstance(first, int | float):
             moved[f"{prefix}{_START_IN_FILE}"] = first + seconds
     return moved
+
+
+def without_vertical(motion: MotionValue) -> dict[str, None]:
+    """Give the metadata of a vertical component that the result no longer has, as None."""
+    return {key: None for key in motion.metadata if key.startswith(OF_VERTICAL)}
 
 
 def warn_of_other_start(motion: MotionValue, other: MotionValue, owner: str) -> None:

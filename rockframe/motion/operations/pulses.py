@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.following import following, lost_pieces, starting_later
+from rockframe.motion.operations.following import (
+    following,
+    lost_pieces,
+    starting_later,
+    without_vertical,
+)
 from rockframe.motion.processing import velocity_pulses
 from rockframe.motion.quantities import with_quantity
 from rockframe.motion.value import Made
@@ -109,7 +114,11 @@ def velocity_pulse(
         pulse_start=with_quantity(found.pulse_start, TIME),
         motion_start=with_quantity(found.motion_start, TIME),
         extracted=following(
-            motion, Motion.of_samples(dt, pulse), *steps, "the pulse alone", metadata=start
+            motion,
+            Motion.of_samples(dt, pulse),
+            *steps,
+            "the pulse alone",
+            metadata={**start, **without_vertical(motion)},
         ),
         residual=following(motion, residual, *steps, "the pulse taken out", metadata=start),
         lead=with_quantity(before * dt, TIME),

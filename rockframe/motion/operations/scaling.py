@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from rockframe.errors import ComponentError
-from rockframe.motion.operations.following import following
+from rockframe.motion.operations.following import OF_VERTICAL, following
 from rockframe.motion.processing.samples import warn_of_coarse_samples
 from rockframe.motion.value import Made
 from rockframe.proposals import hinted
@@ -169,7 +169,7 @@ def _times(motion: Made, ratio: float, step: str, values: dict[str, float | str]
     if ratio < 0.0 and component is not None:  # no name from which the old direction is read
         name = str(component)
         added["component"] = name[1:] if name.startswith("-") else f"-{name}"
-    prefixes = ("",) if motion.si.vertical is None else ("", "vertical_")
+    prefixes = ("",) if motion.si.vertical is None else ("", OF_VERTICAL)
     for name in (f"{prefix}scale_factor" for prefix in prefixes):
         factor = known.get(name)
         added[name] = ratio * (factor if isinstance(factor, int | float) else 1.0)

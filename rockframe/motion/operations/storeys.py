@@ -12,7 +12,7 @@ import numpy as np
 
 from rockframe.arguments import iterates, one_of_words, whole_number
 from rockframe.errors import ComponentError, RecordWarning, shown, warn
-from rockframe.motion.operations.following import following, lost_pieces
+from rockframe.motion.operations.following import following, lost_pieces, without_vertical
 from rockframe.motion.processing.floors import (
     FloorModes,
     building_modes,
@@ -342,7 +342,8 @@ def through_storeys(
         }
     }
     dropped = lost_pieces(Motion(si.horizontal))
-    return following(motion, result, *steps, *dropped, operation=operation)
+    lost = without_vertical(motion) if above is None else None
+    return following(motion, result, *steps, *dropped, operation=operation, metadata=lost)
 
 
 def _floor(ground: Signal, modes: FloorModes, parts: int) -> tuple[Signal, float]:

@@ -129,6 +129,22 @@ def test_every_scaling_counts():
     assert scaled.si.horizontal.samples == pytest.approx(factor * NORTH)
 
 
+def test_what_is_known_of_a_vertical_component_goes_with_it():
+    first = motion(EAST, station="first", component="U")
+    both = motion(NORTH, station="here").with_vertical(first)
+    assert both.metadata["vertical_station"] == "first"
+    other = both.with_vertical(motion(EAST, component="Z"))
+    assert dict(other.metadata) == {"station": "here", "vertical_component": "Z"}
+    for alone in (
+        both.with_vertical(None),
+        both.through_storeys(periods=["0.5 s"], vertical="omitted"),
+        both.velocity_pulse().extracted,
+    ):
+        assert alone.si.vertical is None
+        assert dict(alone.metadata) == {"station": "here"}
+    assert both.velocity_pulse().residual.metadata["vertical_station"] == "first"
+
+
 def test_components_of_different_factors_have_none_together():
     once, twice = motion(NORTH).scaled(2.0), motion(EAST).scaled(4.0)
     assert "scale_factor" not in once.rotated(twice, "30 deg").metadata
