@@ -58,7 +58,7 @@ class Course:
     states: SetOfStates = field(default_factory=lambda: SetOfStates.about([ZERO, ZERO], []))
     fresh: bool = False  # whether it has just left the upright position
     beyond: tuple[Ball, Ball] | None = None  # from when to when it may pass the overturning angle
-    impact: Struck | None = None  # the impact that it has just had
+    impact: Struck | None = None  # its last impact, as long as members may still have it
     impacts: int = 0  # number of impacts enclosed one by one
     widest: float = 0.0  # largest radius of a rotation so far [rad]
 
@@ -190,9 +190,12 @@ class Course:
         if impact is not None:
             self.sign, self.impacts = -self.sign, self.impacts + 1
         self._move(step, to_end=to_end)
-        self.impact = impact
         if impact is not None:
+            self.impact = impact
             self._bounce()
+        elif self.impact is not None:  # some members may not have struck yet
+            late = self.impact.at - step
+            self.impact = None if late < 0 else self.impact._replace(at=late)
         return self._settled() if self.number >= self.problem.count and self.sign else None
 
     def _move(self, step: Ball, *, to_end: bool) -> None:
@@ -304,10 +307,10 @@ class Course:
 
         The set is at rest, or lifted, then.
         """
-        problem, (rotation, rate) = self.problem, self.states.box()
-        height, speed = upper(rotation), upper(rate)
+        problem, (height, speed) = self.problem, self.states.box()
         if self.impact is not None:
-            height, speed = self.impact.height, self.impact.speed
+            height, speed = height.union(self.impact.height), speed.union(self.impact.speed)
+        height, speed = upper(height), upper(speed)
         if float(speed) > SLOW * problem.frequency or self.number >= problem.count:
             return False
         try:

@@ -7,9 +7,10 @@ import rockframe as rf
 
 pytest.importorskip("flint", reason="python-flint is not installed")
 
-from rockframe.proof import bounces
+from rockframe.proof import bounces, course
 from rockframe.proof.balls import UNIT, ball, working_precision
 from rockframe.proof.bounces import Instant, Lifted, settle
+from rockframe.proof.impacts import Struck
 from rockframe.proof.problem import Deviations, Problem
 
 STEP = 0.02
@@ -117,6 +118,28 @@ def test_rotations_that_grow_as_a_slow_ground_lifts_the_block_are_bounded():
                 initial=rf.InitialState(rotation="0 rad", angular_velocity="0.01 rad/s"),
             )  # fmt: skip
             assert found is None or float(run.peak_rotation) <= found.height
+
+
+def test_members_that_may_not_have_struck_yet_keep_the_speed_before_their_impact(monkeypatch):
+    system, seen = rf.System(BLOCKS["symmetric"], gravity="9.81 m/s^2"), []
+    assembly = system.assembly
+    monkeypatch.setattr(course, "settle", lambda *given: seen.append(float(given[3])))
+    with working_precision(106):
+        problem = Problem.of(
+            assembly.model.system, GROUNDS["still"].si, assembly.options.slope,
+            assembly.setting.overturning_angles, 1.0, Deviations(), 0.1,
+        )  # fmt: skip
+        one = course.Course(problem)
+        one.start(0.0, SPEED)
+        # all members strike within two and a half samples from now
+        one.impact = Struck(one.states, ball(0, 2.5 * STEP), ball(HEIGHT), ball(2 * SPEED))
+        for _ in range(3):
+            one.states, one.fresh = one.states._replace(centre=[ball(0), ball(0.1)]), True
+            one._rocks()
+            one.states = one.states._replace(centre=[ball(HEIGHT), ball(SPEED)])
+            one._bounce(lift=True)
+    assert min(seen[:2]) >= 2 * SPEED
+    assert seen[2] < 1.1 * SPEED
 
 
 def test_a_ground_that_may_jump_is_known_and_pays_for_it():
