@@ -75,12 +75,10 @@ def takes(
             if others and further is None:
                 raise ArgumentError(_unknown(function.__qualname__, others[0], whole.parameters))
             if others and further is not None:
-                mapping = named.get(further) or {}
-                twice = [name for name in others if name in mapping]
-                if twice:
-                    msg = f"{function.__qualname__}() got {twice[0]!r} twice, also in {further!r}"
-                    raise ArgumentError(msg)
-                named[further] = {**mapping, **{name: named.pop(name) for name in others}}
+                more_named = {name: named.pop(name) for name in others}
+                mapping = {} if named.get(further) is None else named[further]
+                if isinstance(mapping, Mapping):  # the function refuses anything else
+                    named[further] = _together(function.__qualname__, further, mapping, more_named)
             try:
                 return function(*values, **{**otherwise, **named})
             except TypeError as problem:
@@ -93,6 +91,17 @@ def takes(
         return cast("Function", call)
 
     return decorate
+
+
+def _together(
+    called: str, further: str, mapping: Mapping[Any, Any], more: Mapping[str, Any]
+) -> dict[Any, Any]:
+    """Add arguments to those of a mapping; refuse one that is given twice."""
+    twice = [name for name in more if name in mapping]
+    if twice:
+        msg = f"{called}() got {twice[0]!r} twice, also in {further!r}"
+        raise ArgumentError(msg)
+    return {**mapping, **more}
 
 
 def _unknown(function: str, name: str, known: Iterable[str]) -> str:

@@ -224,18 +224,18 @@ def scalar_of(runs: xr.Dataset, name: str, label: object = None, *, owner: str) 
     if not known or name not in runs or runs[name].dtype.kind not in "biuf":
         msg = f"{owner}: the runs have no {shown(name)}{_instead(runs, name) if known else ''}"
         raise SchemaError(msg)
-    chosen = "" if label is None else str(label)
     values = runs[name]
     beside = [dim for dim in values.dims if dim not in runs["status"].dims]
     labels = values[beside[0]].to_numpy().astype(str).tolist() if beside else [""]
-    chosen = labels[0] if not chosen and len(labels) == 1 else chosen
-    if len(beside) > 1 or chosen not in labels:
+    wanted = "" if label is None else str(label)
+    wanted = labels[0] if not wanted and len(labels) == 1 else wanted
+    if len(beside) > 1 or wanted not in labels:
         msg = (
             f"{owner}: {name} is of {' and '.join(map(str, beside)) or 'the whole'}; "
-            f"give one of {', '.join(map(repr, labels))}, got {chosen!r}"
+            f"give one of {', '.join(map(repr, labels))}, got {wanted!r}"
         )
         raise ComponentError(msg)
-    return values.isel({beside[0]: labels.index(chosen)}, drop=True) if beside else values
+    return values.isel({beside[0]: labels.index(wanted)}, drop=True) if beside else values
 
 
 def _instead(runs: xr.Dataset, name: str) -> str:

@@ -267,7 +267,7 @@ def own_unit(values: object) -> str | None:
     """Give the unit that an array carries: as a Quantity, or in an attribute ``units``."""
     held: Any = values
     attributes = getattr(held, "attrs", None)
-    # an array of numpy has data too, which cannot be had of dates
+    # arrays of numpy have data too, which those of dates do not give
     for one in (held, None if attributes is None else getattr(held, "data", None)):
         if isinstance(one, pint.Quantity):
             return f"{one.units:~}"
@@ -296,8 +296,8 @@ def check_own_unit(values: object, unit: str, *, owner: str, name: str) -> None:
 
 def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> float:
     """Convert one of several values that have a common unit."""
+    _check_mask(number, owner=owner, name=name)
     if getattr(number, "ndim", None) == 0:
-        _check_mask(number, owner=owner, name=name)
         number = number.item()
     if isinstance(number, str):
         with suppress(ValueError):
@@ -313,7 +313,7 @@ def _times(number: Any, factor: float, unit: str, *, owner: str, name: str) -> f
 
 def _check_mask(number: Any, *, owner: str, name: str) -> None:
     """Refuse a masked number, which is zero where it is read."""
-    if bool(getattr(number, "mask", False)):
+    if getattr(number, "ndim", None) == 0 and bool(getattr(number, "mask", False)):
         msg = f"{owner}: {name} has masked values; fill them in first"
         raise ComponentError(msg)
 
@@ -405,8 +405,7 @@ def _in_si(value: object, measure: Measure) -> float | None:
 
 def _parse(value: object, measure: Measure, *, owner: str, name: str) -> Quantity:
     if isinstance(value, pint.Quantity):
-        if getattr(value.magnitude, "ndim", None) == 0:
-            _check_mask(value.magnitude, owner=owner, name=name)
+        _check_mask(value.magnitude, owner=owner, name=name)
         return value
     value = _joined(value)
     needed = f"{owner}: {name} needs {measure.needed}"

@@ -123,6 +123,7 @@ def test_a_study_of_axes_goes_on_and_comes_back(tmp_path, wide):
         ({"cases": {"width [m]": [1.0]}}, "takes no 'cases', as rf.sweep does"),
         ({"PGA": ["1 m/s^2"]}, "give scale alone"),
         ({"axes": 3}, "axes must be a mapping"),
+        ({"axes": ["1 m"], "width": ["1 m"]}, "axes must be a mapping"),
         ({"peak_ground_acceleration": ["1 m/s^2"]}, "give scale alone"),
         ({"width": []}, "no values"),
         ({"width": ["1 m", "1 m"]}, "has the value 1.0 twice"),
