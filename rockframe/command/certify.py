@@ -23,13 +23,13 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     answer.text(fill(f"{kind.capitalize()}: {sentence}", 100), **{kind: sentence})
     if wanted != PROVED:
         sure = {
-            "verdict_converged": "by finer means",
-            "verdict_robust": "with nudged parameters",
+            "verdict_converged": "at higher accuracy",
+            "verdict_robust": "with slightly changed parameters",
         }
         for name, words in sure.items():
-            answer.text(f"  the same {words}: {'yes' if bool(response[name]) else 'no'}")
+            answer.text(f"  same verdict {words}: {'yes' if bool(response[name]) else 'no'}")
         count = int(response.attrs["certificate_runs"])
-        answer.text(f"  runs beside it: {count}", certificate_runs=count)
+        answer.text(f"  further runs: {count}", certificate_runs=count)
     answer.numbers(response)
     outputs.result(response)
     return 0 if finished(response) else 1

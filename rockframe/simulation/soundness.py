@@ -93,7 +93,7 @@ def unbalanced(
         return None
     ends = "overturns" if other.overturned else f"has a peak rotation of {other.peak:.4g} rad"
     return (
-        f"{found}, and steps by tolerance give another course, which {ends}: this is no "
+        f"{found}, and adaptive steps give another course, which {ends}: this is no "
         f"solution; {remedy}"
     )
 

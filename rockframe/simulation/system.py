@@ -178,7 +178,7 @@ class System(SystemValue):
             parameters and scaled motions, show how sure the verdict is; or ``"proved"``, to
             prove the verdict as :func:`rockframe.prove` does.
         second_look : bool
-            Whether a run with ``accuracy="fast"`` is repeated with half as many steps more and
+            Whether a run with ``accuracy="fast"`` is repeated with 1.5 times as many steps and
             without histories, to show whether its verdict and its peak rotation are sure. Runs
             of other accuracies, and runs that are certified, are not repeated.
 

@@ -220,7 +220,7 @@ def flips_sentence(found: Followed, *, width: float, resolution: float = 1.0) ->
     if gaps:
         text += f", stands again {_listed(gaps)}"
     plural = "" if len(scales) == 1 else "s"
-    text += f"; looked at {len(scales)} scale{plural} up to {number(largest)}"
+    text += f"; {len(scales)} scale{plural} tried up to {number(largest)}"
     if not math.isnan(gap := found.largest_gap):  # to two digits, rounded up
         size = 10.0 ** (math.floor(math.log10(gap)) - 1)
         text += f", at most {math.ceil(gap / size - _ROUNDING) * size:.2g} apart"

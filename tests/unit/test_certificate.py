@@ -277,7 +277,7 @@ def test_a_course_that_cannot_be_followed_ends_the_margin():
     assert 0.09 < found.margin < 0.12
     assert math.isnan(found.flip)
     assert found.robust
-    assert "200 runs were too few to follow it farther" in found.sentence
+    assert "200 runs were too few to extend this range" in found.sentence
     assert found.runs <= 200
     more = certify(
         SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(runs=400), run
@@ -297,7 +297,7 @@ def test_a_course_that_is_lost_beside_the_run_says_how_many_runs_lost_it():
     plan = planned()
     found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
     assert found.margin < 0.01
-    told = "Near the boundary: the body stands, but 200 runs were too few to follow"
+    told = "Near the boundary: the body stands, but 200 runs were too few to resolve"
     assert told in found.sentence
 
 
@@ -401,9 +401,9 @@ def test_the_sentence_says_what_the_numbers_say():
         assert doubt != sure, text
         if not doubt and not math.isnan(margin):
             assert f"tried from {1.0 - margin:.6g} to {1.0 + margin:.6g}" in text
-            assert found.along.followed != ("were too few to follow it" in text)
+            assert found.along.followed != ("were too few to extend" in text)
         if found.along.tried and margin <= max(NEAR, found.wanted.nudge):
-            assert found.along.followed or "to follow how it" in text or scaled in text
+            assert found.along.followed or "to resolve the dependence" in text or scaled in text
         stops = found.plan.stop_at_overturning
         words = ("overturns", "stands") if stops else ("falls flat", "does not fall flat")
         assert f"body {words[not found.base.overturned]}" in text
@@ -486,7 +486,7 @@ def test_fixed_steps_are_certified_by_a_tolerance():
     exact = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy="standard", outputs=None)
     off = abs(float(run.peak_rotation) - float(exact.peak_rotation))
     assert float(run.peak_error_estimate) >= SAFETY * off * (1.0 - 1e-12)
-    assert "with steps by tolerance instead of fixed ones" in run.attrs["certificate"]
+    assert "with adaptive steps instead of fixed ones" in run.attrs["certificate"]
 
 
 def test_the_sensitivity_is_that_of_nudged_parameters():
@@ -704,7 +704,9 @@ def test_the_page_says_what_is_done():
     page = "guide/tradeoff.md"
     assert said(page, "at most `rf.Certification(runs=...)`, # unless given") == [200]
     assert said(page, "steps # times shorter than they were on average") == [SHORTER]
-    assert said(page, "three with every interval of the motion cut into #, # and #") == list(CUTS)
+    assert said(page, "three with every interval of the motion divided into #, # and #") == list(
+        CUTS
+    )
     assert "is three times the largest difference of their peaks" in read(page).replace("\n  ", " ")
     assert SAFETY == 3.0
     assert said(page, "down to `certificate_resolution`, # %") == [100.0 * RESOLUTION]

@@ -122,7 +122,7 @@ def test_what_is_said(base):
     assert "the verdict is not sure" in other
     assert told(base, CUT, standing) == []
     [cut] = told(base, standing, CUT)
-    assert cut.startswith("with half as many steps again the run cannot be finished: the verdict")
+    assert cut.startswith("with 1.5 times as many steps the run cannot be finished: the verdict")
     verdict, peak = told(base, standing, falling)
     assert "the body overturns to the right at 2.000 s: the verdict is not sure" in verdict
     assert f"its peak rotation is {angle:.4g} rad, not 0.1: it is not sure" in peak

@@ -120,5 +120,5 @@ def test_motion_that_is_not_felt_is_compared_all_the_same():
     assert said("fast", 2.0 * FIXED, base=still, other=replace(still, peak=2e-6))[0] is None
     for other in (STOOD, replace(STOOD, overturned=True, time=1.0)):
         text, tried = said("fast", 2.0 * FIXED, base=still, other=other)
-        assert "steps by tolerance give another course" in text
+        assert "adaptive steps give another course" in text
         assert len(tried) == 1

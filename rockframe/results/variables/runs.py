@@ -127,21 +127,21 @@ EVENTS_AND_SCALARS: Final = (
 CERTIFICATE: Final = rows_over(
     (),
     verdict_converged=(
-        "whether runs by finer means have the same verdict, by more than they differ",
+        "whether runs of higher accuracy have the same verdict, by more than they differ",
         bool,
     ),
     verdict_robust=(
-        "whether runs with a parameter or the scale nudged have the same verdict",
+        "whether runs with a parameter or the scale slightly changed have the same verdict",
         bool,
     ),
     verdict_margin="largest relative change of the motion's scale up to which no other verdict was "
     "found",
     verdict_flip_scale="scale of the motion nearest to 1 that was found to change the verdict, NaN "
     "if none",
-    peak_error_estimate="three times the largest difference of the peak rotation from a run by "
-    "finer means [rad]",
-    peak_sensitivity="largest difference of the peak rotation from that of a run with a nudged "
-    "parameter [rad]",
+    peak_error_estimate="three times the largest difference of the peak rotation from a run "
+    "of higher accuracy [rad]",
+    peak_sensitivity="largest difference of the peak rotation from that of a run with a "
+    "slightly changed parameter [rad]",
 )
 """Certificate: how sure the verdict is, on request."""
 

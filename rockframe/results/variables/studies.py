@@ -60,8 +60,8 @@ SWEEP: Final = (
         (),
         message=("what is said of the case, none if nothing", str),
         repeated=(
-            "whether the case was run again by tolerance, its verdict at fixed steps being in "
-            "doubt",
+            "whether the case was run again with adaptive steps, its verdict at fixed steps being "
+            "in doubt",
             bool,
         ),
         verdict_changed=("whether the case then had another verdict", bool),

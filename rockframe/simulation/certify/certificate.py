@@ -1,7 +1,7 @@
 """The certificate of a run: how sure its verdict is, in numbers and words.
 
-It follows from runs "by finer means", of higher accuracy than the run itself, from runs with
-slightly changed ("nudged") parameters, and from runs with a scaled motion.
+It follows from runs of higher accuracy than the run itself ("finer"), from runs with slightly
+changed ("nudged") parameters, and from runs with a scaled motion.
 """
 
 import math
@@ -30,7 +30,7 @@ from rockframe.solve.accuracy import FEWEST
 from rockframe.system.assembly import Assembly
 
 SAFETY: Final = 3.0
-"""Estimated error of a run, over its largest difference from a run by finer means."""
+"""Estimated error of a run, over its largest difference from a run of higher accuracy."""
 RESOLUTION: Final = 0.004
 """Length of an interval of scales, over its distance from 1, below which it is not divided."""
 NUDGE_RESOLUTION: Final = 0.06
@@ -50,7 +50,7 @@ class Certificate:
     wanted: Certification  # the further runs to make
     plan: Plan  # the run's arguments
     base: RunSummary  # the run
-    finer: Sequence[tuple[str, RunSummary]] = ()  # runs by finer means, each with these in words
+    finer: Sequence[tuple[str, RunSummary]] = ()  # runs of higher accuracy, each with what is finer
     nudged: Sequence[tuple[str, Scan]] = ()  # runs with a parameter changed, by its name
     along: Scan = NOT_TRIED  # runs with a scaled motion or start
 
@@ -61,7 +61,7 @@ class Certificate:
 
     @property
     def converged(self) -> bool:
-        """Whether all runs by finer means have the same verdict, with a margin above the error."""
+        """Whether runs of higher accuracy have the same verdict, with a margin above the error."""
         return self.finished and all(settles(self.base, other) for _, other in self.finer)
 
     @property
@@ -86,7 +86,7 @@ class Certificate:
 
     @property
     def peak_error(self) -> float:
-        """Largest difference of peak rotations by finer means, times a safety factor [rad]."""
+        """Largest difference of peaks from runs of higher accuracy, times a safety factor [rad]."""
         return SAFETY * self._farthest([other for _, other in self.finer])
 
     @property
@@ -198,7 +198,7 @@ def _perturbed_run(system: Assembly, plan: Plan, run: Run) -> RunSummary | None:
 
 
 def settles(base: RunSummary, finer: RunSummary) -> bool:
-    """Whether a run by finer means has the same verdict, with a margin above the error."""
+    """Whether a run of higher accuracy has the same verdict, with a margin above the error."""
     if not base.alike(finer):
         return False
     pairs = zip(base.clearances, finer.clearances, strict=True)
@@ -228,7 +228,7 @@ def certificate_sentence(found: Certificate) -> str:
         return text if near_scale or not flip else f"{text} {flip.capitalize()}."
     means = [tolerance_words(found.plan.accuracy), f"steps {SHORTER:g} times shorter"]
     if found.plan.motion is not None:
-        means.append("the motion cut finer")
+        means.append("the intervals of the motion divided")
     body = "The body"
     if found.base.in_motion:
         body = "To the end of the run, where it can still overturn, the body"
@@ -260,7 +260,7 @@ class _Ends:
 
 
 def _unsettled(found: Certificate, ends: _Ends) -> Iterator[str]:
-    """Say which runs by finer means have another verdict, or come too near to another one."""
+    """Say which runs of higher accuracy have another verdict, or come too near to another one."""
     if found.converged:
         return
     verdict = found.base.overturned
@@ -269,7 +269,7 @@ def _unsettled(found: Certificate, ends: _Ends) -> Iterator[str]:
         words, other = others[0]
         yield f"with {words}{_more(others)} {ends.of(other)}"
     elif not found.base.within_the_angle:
-        yield f"runs by finer means {ends.beyond} otherwise, or only just"
+        yield f"runs of higher accuracy {ends.beyond} in another way, or only just"
     else:
         yield (
             f"its peak rotation is uncertain by {found.peak_error:.2g} rad, about "
@@ -287,7 +287,7 @@ def _fragile(found: Certificate, ends: _Ends) -> Iterator[str]:
         return
     lost = [words for words, scan in found.nudged if not scan.followed]
     if lost:
-        yield f"it depends on the {lost[0]}{_more(lost)} in too intricate a way to be followed"
+        yield f"the dependence of the verdict on the {lost[0]}{_more(lost)} was not resolved"
 
 
 def _near(found: Certificate, ends: _Ends) -> list[str]:
@@ -300,8 +300,8 @@ def _near(found: Certificate, ends: _Ends) -> list[str]:
         way = "up" if change > 0.0 else "down"
         return [f"with {what} scaled {way} by {_share(abs(change))} {ends.of(along.ended)}"]
     return [
-        f"{found.wanted.runs} runs were too few to follow how it depends on the scale of {what} "
-        f"farther than {_share(margin)}"
+        f"{found.wanted.runs} runs were too few to resolve the dependence of the verdict on the "
+        f"scale of {what} beyond {_share(margin)}"
     ]
 
 
@@ -325,7 +325,7 @@ def _tried(found: Certificate) -> str:
         f"No other verdict was found at the {along.within(margin)} scales of {what} tried from "
         f"{low} to {high}"
     )
-    lost = f"; {found.wanted.runs} runs were too few to follow it farther"
+    lost = f"; {found.wanted.runs} runs were too few to extend this range"
     return text if along.followed else f"{text}{lost}"
 
 

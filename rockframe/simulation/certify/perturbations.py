@@ -96,7 +96,7 @@ MOST_PER_PERIOD: Final = 1e4
 
 
 def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str, Plan]]:
-    """Give the plans of runs by finer means, each with these in words.
+    """Give the plans of runs of higher accuracy, each with what is finer in words.
 
     `step` is the mean step of the run itself [s].
     """
@@ -113,13 +113,13 @@ def finer_plans(system: Assembly, plan: Plan, step: float) -> Iterator[tuple[str
             motion = cut(plan.motion, parts)
         except RockframeError:  # more samples than a motion may have
             continue
-        yield f"every interval of the motion cut into {parts}", replace(plan, motion=motion)
+        yield f"every interval of the motion divided into {parts}", replace(plan, motion=motion)
 
 
 def tolerance_words(accuracy: Accuracy) -> str:
     """Say what is finer in a run of :func:`tightened` settings."""
     if accuracy.rtol is None:
-        return "steps by tolerance instead of fixed ones"
+        return "adaptive steps instead of fixed ones"
     if accuracy.rtol <= TIGHTEST:
         return "the same tolerance"
     return f"a tolerance {min(1.0 / TIGHTER, accuracy.rtol / TIGHTEST):.3g} times tighter"

@@ -24,7 +24,7 @@ SAME_FALL: Final = 0.1
 """Relative error of the energy at overturning up to which two runs took the same course."""
 OFF: Final = 0.05
 """Estimated relative error of a peak rotation beyond which a run warns."""
-_AGAIN: Final = "with half as many steps again"
+_AGAIN: Final = "with 1.5 times as many steps"
 _REMEDY: Final = f"repeat the run with accuracy='{AccuracyLevel.STANDARD}'"
 
 

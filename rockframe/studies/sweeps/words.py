@@ -68,7 +68,7 @@ def cases_sentence(runs: xr.Dataset, these: str) -> str:
     if found["not run"]:
         text += f"; {found['not run']} have not been run"
     if found["screened"]:
-        again = f"{found[REPEATED]} near a flip were run again by tolerance"
+        again = f"{found[REPEATED]} near a change of the verdict were run again with adaptive steps"
         text += f"; {again}, which changed {found[VERDICT_CHANGED]}"
     return f"{text}."
 

@@ -516,7 +516,7 @@ def test_a_vertical_component_that_a_file_has_no_place_for_is_told(typed):
     [
         ("run short.toml", "Not finished"),
         ("certify short.toml", "No certificate: the run was not finished"),
-        ("critical short.toml --runs 5", "Verdict: No run could be finished; looked at 5 scales"),
+        ("critical short.toml --runs 5", "Verdict: No run could be finished; 5 scales tried"),
         ("fragility short.toml record.AT2 --scales 1,2", "no fit, no trials"),
         ("ida short.toml record.AT2 --scales 1,2", "2 of 2 runs of the scan have no verdict"),
         ("map short.toml --amplitude '4,5 m/s^2' --frequency '1 Hz'", "2 of 2 without a verdict"),

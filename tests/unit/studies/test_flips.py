@@ -63,9 +63,7 @@ def test_it_says_how_far_apart_the_runs_were():
     assert found.flips() == []
     assert found.up_to == ROW[-1]
     assert found.largest_gap == pytest.approx(0.1)
-    assert flips_sentence(found, width=1e-4).endswith(
-        "looked at 41 scales up to 4, at most 0.1 apart."
-    )
+    assert flips_sentence(found, width=1e-4).endswith("41 scales tried up to 4, at most 0.1 apart.")
     fine = follow(look, [0.05 * k for k in range(81)], most=100, width=1e-4)
     assert fine.largest_gap < 2.099 - 2.001
     assert len(fine.flips()) == 2

@@ -86,7 +86,7 @@ def test_cases_near_a_flip_are_those_of_standard_and_all_others_those_of_fast(ru
     np.testing.assert_array_equal(screen.verdict_changed, changed)
     assert {screen[name].dtype for name in SCREENED} == {np.dtype(bool)}
     assert not set(SCREENED) & set(fast.data_vars)
-    words = f"{int(repeated.sum())} near a flip were run again by tolerance"
+    words = f"{int(repeated.sum())} near a change of the verdict were run again with adaptive steps"
     assert words in screen.attrs["verdict"]
     assert f"changed {int(changed.sum())}." in screen.attrs["verdict"]
     assert screen.attrs["accuracy"] == "screen"
