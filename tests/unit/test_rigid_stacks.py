@@ -57,6 +57,26 @@ def test_a_stack_alone_stands_on_rigid_ground():
     assert "by projection" in rf.System(stack).describe()
 
 
+@pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
+def test_a_corner_leaves_the_ground_while_the_bodies_above_are_apart_from_it():
+    """Nothing of them presses the lowest body, whose end lifts as its own force comes to zero."""
+    stack = rf.Stack(
+        rf.Block(width="0.6 m", height="0.34 m", mass="634 kg"),
+        rf.Block(width="0.89 m", height="0.33 m", mass="2526 kg"),
+        rf.Block(width="0.95 m", height="0.31 m", mass="2177 kg"),
+        interfaces=[RIGID, RIGID],
+    )
+    pulse = rf.GroundMotion.sine_pulse(amplitude="33.7 m/s^2", frequency="2.57 Hz", cycles=3)
+    run = rf.System(stack, RIGID).simulate(pulse, duration="0.46 s")
+    assert int(run.status) == Status.COMPLETED
+    # on level ground it lifts alone when the ground acceleration is b/h g
+    width, height = 0.95, 0.31
+    alone = (run.event_kind == EventKind.UPLIFT) & (run.event_body == 3) & (run.event_time > 0.4)
+    (time,) = run.event_time.values[alone.values]
+    omega = 2.0 * math.pi * 2.57
+    assert 33.7 * abs(math.sin(omega * time)) == pytest.approx(GRAVITY * width / height, rel=1e-6)
+
+
 def together(upper, lower) -> float:
     """Give the acceleration at which two centred blocks rock as one."""
     one, two = lower.si, upper.si

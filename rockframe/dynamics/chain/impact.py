@@ -284,6 +284,7 @@ def bearing_corners(
         near = Near(closed, reference, NEIGHBOURS)
         far = Near(closed, reference, count if count <= MOST_TRIED else FAR_NEIGHBOURS)
     taken, other, admissible, held = -1, -1, 0, 0
+    must_press = ~before | max(leaving, 0)  # to go on bearing, the leaving corner too
     lowest = second = math.inf
     # first sets that are admissible within rounding; in each round first the near ones
     for trial in range(2 if impulsive else 1 + ALL_WAYS):
@@ -297,7 +298,7 @@ def bearing_corners(
             bears = some | pulled
             if leaving <= 0 or bears != before:
                 found = try_set(system, way, mode, bears, closed, impulsive, least, state)
-                if found.fault < 0 and (impulsive or all_press(system, bears & ~before)):
+                if found.fault < 0 and (impulsive or all_press(system, bears & must_press)):
                     loss = found.loss if impulsive else float(size_of(bears ^ before))
                     admissible += 1
                     if loss < lowest:
