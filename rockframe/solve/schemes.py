@@ -79,16 +79,9 @@ Weights: TypeAlias = Vector | tuple[float, ...]
 
 
 @inlined
-def rest_step(
-    system: Evaluated, mode: int, at_end: Ground, state: Vector, new: Vector, last: Vector,
-    works: Vector,
-) -> bool:  # fmt: skip
-    """Make a step in which nothing moves: its end has a slope only for the guards. Gives True."""
-    for i in range(2 * system.coordinates()):
-        new[i] = state[i]
-    system.write_slope(mode, new, at_end, 0, last)
-    works[0] = works[1] = works[2] = 0.0
-    return True
+def stands_still(system: Counted, count: int) -> bool:
+    """Whether nothing moves, so that a step only needs the slope at its end, for the guards."""
+    return count == 0 and system.variables() == 0
 
 
 @inlined
@@ -210,8 +203,6 @@ def fixed_step(
     the weights of the velocities. Gives whether all rates and variables at its end are finite.
     """
     size = system.coordinates()
-    if count == 0 and system.variables() == 0:
-        return rest_step(system, mode, at_end, state, new, last, works)
     half, sixth = 0.5 * h, h / 6.0
     powers = size + system.variables()
     for i in range(size):  # coordinates that do not move make steps of length zero
@@ -221,10 +212,12 @@ def fixed_step(
         stage[j] = state[j] + own_half * first[i]
     for i in range(size, powers):
         stage[size + i] = state[size + i] + half * first[i]
-    system.write_slope(mode, stage, in_middle, 0, last)
-    lost, put_in = scheme.powers_in_middle(
-        system, mode, count, half, state, first, stage, last, in_middle
-    )
+    lost = put_in = 0.0
+    if not stands_still(system, count):
+        system.write_slope(mode, stage, in_middle, 0, last)
+        lost, put_in = scheme.powers_in_middle(
+            system, mode, count, half, state, first, stage, last, in_middle
+        )
     for i in range(size):
         own, own_sixth = (h, sixth) if i < count else (0.0, 0.0)
         j = size + i
@@ -359,19 +352,17 @@ class StepsByTolerance(NamedTuple):
         of the step is finite is seen from these errors.
         """
         size = system.coordinates()
-        if count == 0 and system.variables() == 0:
-            at_end = ground_in(1.0, span, ground)
-            return rest_step(system, mode, at_end, state, new, last, works)
         slope = size + system.variables() + POWERS
+        still = stands_still(system, count)
         begin_stages(system, state, first, stages)
-        for s in range(1, STAGES):
+        for s in range(STAGES - 1 if still else 1, STAGES):
             before = s * (s - 1) // 2
             weights = STAGE_WEIGHTS[before : before + s]
             stage_places(system, count, span.h, weights, state, stages, new)
             stage_rates(system, count, span.h, weights, state, stages, new)
             now = ground_in(NODES[s], span, ground)
             system.write_slope(mode, new, now, STAGES * size + s * slope, stages)
-        end_works(system, span.h, stages, last, works)
+        end_works(system, 0.0 if still else span.h, stages, last, works)
         errors_of_places(system, span.h, stages, works)
         errors_of_rates(system, span.h, stages, works)
         return True
