@@ -46,6 +46,11 @@ class RigidCorners(Chain):
         """Whether a body stands on a rigid base."""
         return self.number(k, at.LAW) == ON_RIGID
 
+    @inlined
+    def band(self) -> int:
+        """Give the half-width of the band of the matrix: those farther apart share no body."""
+        return 5
+
     @kernel
     def bearing(self, mode: int) -> int:
         """Give the set of corners on rigid bases that bear in a mode."""

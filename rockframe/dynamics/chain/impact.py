@@ -175,7 +175,9 @@ def attempt(
         else:
             count = bear(system, k, count, bears, holds, sense, impulsive, room, rows)
         room[i + at.CONSTRAINTS] = count
-    solve_motion(system, system.body_count, start, count, room, rows, system.matrix())
+    solve_motion(
+        system, system.body_count, start, count, system.band(), room, rows, system.matrix()
+    )
     loss = pressing = 0.0
     for which in range(count):
         first = which * CONSTRAINT

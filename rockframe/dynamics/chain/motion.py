@@ -214,102 +214,75 @@ def of_both(moving: int, k: int, direction: int, room: Vector, rows: Vector) -> 
 
 
 @inlined
-def product(one: int, other: int, rows: Vector) -> float:
-    """Give the scalar product of two triples of numbers."""
-    return (
-        rows[one] * rows[other]
-        + rows[one + 1] * rows[other + 1]
-        + rows[one + 2] * rows[other + 2]
-    )  # fmt: skip
+def through(system: Rows, k: int, one: int, other: int, rows: Vector) -> float:
+    """Give the product of two directions of one body over its mass and inertia."""
+    per_mass, per_inertia = system.number(k, at.PER_MASS), system.number(k, at.PER_INERTIA)
+    moved = rows[one] * rows[other] + rows[one + 1] * rows[other + 1]
+    return per_mass * moved + per_inertia * rows[one + 2] * rows[other + 2]
 
 
 @inlined
-def write_moves(system: Rows, moving: int, which: int, rows: Vector) -> None:
-    """Write the accelerations that a unit force of a constraint causes, of both its bodies."""
-    first = which * CONSTRAINT
-    k, holds, moves = int(rows[first + at.BODY]), first + at.HOLDS, first + at.MOVES
-    for body in range(k, k + 2):
-        per_mass = per_inertia = 0.0
-        if body < moving:
-            per_mass, per_inertia = (
-                system.number(body, at.PER_MASS),
-                system.number(body, at.PER_INERTIA),
-            )
-        rows[moves], rows[moves + 1] = per_mass * rows[holds], per_mass * rows[holds + 1]
-        rows[moves + 2] = per_inertia * rows[holds + 2]
-        moves, holds = moves + 3, holds + 3
-
-
-@inlined
-def answer(kept: int, force: int, rows: Vector) -> float:
+def answer(system: Rows, moving: int, kept: int, force: int, rows: Vector) -> float:
     """Give the response of constraint `kept` to a unit force of `force`: an entry of the matrix."""
-    keeps, moves = kept * CONSTRAINT + at.KEEPS, force * CONSTRAINT + at.MOVES
-    lower = rows[kept * CONSTRAINT + at.BODY] - rows[force * CONSTRAINT + at.BODY]
-    if lower == 0.0:
-        return product(keeps, moves, rows) + product(keeps + 3, moves + 3, rows)
-    if lower > 0.0:
-        return product(keeps, moves + 3, rows)
-    return product(keeps + 3, moves, rows)
+    a, b = kept * CONSTRAINT, force * CONSTRAINT
+    one, other = int(rows[a + at.BODY]), int(rows[b + at.BODY])
+    keeps, holds, found = a + at.KEEPS, b + at.HOLDS, 0.0
+    if one == other:
+        found = through(system, one, keeps, holds, rows)
+        if one + 1 < moving:
+            found += through(system, one + 1, keeps + 3, holds + 3, rows)
+    elif one == other + 1:
+        found = through(system, one, keeps, holds + 3, rows)
+    elif one + 1 == other:
+        found = through(system, other, keeps + 3, holds, rows)
+    return found
 
 
 @inlined
-def first_coupled(r: int, rows: Vector) -> int:
-    """Give the first of the constraints that share a body with number r, all just before it."""
-    low, body = r, rows[r * CONSTRAINT + at.BODY]
-    while low > 0 and abs(rows[(low - 1) * CONSTRAINT + at.BODY] - body) <= 1.0:
-        low -= 1
-    return low
+def push(system: Rows, moving: int, which: int, room: Vector, rows: Vector) -> None:
+    """Add the accelerations that a constraint's force causes."""
+    first = which * CONSTRAINT
+    k, force, holds = int(rows[first + at.BODY]), rows[first + at.FORCE], first + at.HOLDS
+    for body in range(k, min(k + 2, moving)):
+        i, per_mass = body * PLACES, force * system.number(body, at.PER_MASS)
+        room[i + at.X] += rows[holds] * per_mass
+        room[i + at.Y] += rows[holds + 1] * per_mass
+        room[i + at.ROTATION] += rows[holds + 2] * force * system.number(body, at.PER_INERTIA)
+        holds += 3
 
 
 @inlined
-def eliminate(system: Rows, r: int, rows: Vector, matrix: Vector) -> None:
+def eliminate(system: Rows, moving: int, r: int, band: int, rows: Vector, matrix: Vector) -> None:
     """Eliminate one more constraint behind those that have been eliminated.
 
     The matrix holds the factors below its diagonal, the inverses of the pivots on it.
     """
-    stride, low, first = (
-        MOST_CONSTRAINTS * system.body_count,
-        first_coupled(r, rows),
-        r * CONSTRAINT,
-    )
-    own, left = answer(r, r, rows), rows[first + at.LEFT]
+    stride, low, first = MOST_CONSTRAINTS * system.body_count, max(0, r - band), r * CONSTRAINT
+    own, left = answer(system, moving, r, r, rows), rows[first + at.LEFT]
     unsymmetric = rows[first + at.UNSYMMETRIC] != 0.0
-    if r > 0:
-        unsymmetric |= rows[first - CONSTRAINT + at.UNSYMMETRIC] != 0.0
-    rows[first + at.UNSYMMETRIC] = 1.0 if unsymmetric else 0.0
+    if r > 0 and rows[first - CONSTRAINT + at.UNSYMMETRIC] != 0.0:
+        unsymmetric, rows[first + at.UNSYMMETRIC] = True, 1.0
     for c in range(low, r):
-        above = answer(c, r, rows)
+        above = answer(system, moving, c, r, rows)
         for i in range(low, c):
             above -= matrix[c * stride + i] * matrix[i * stride + r]
         factor = above
         if unsymmetric:
-            factor = answer(r, c, rows)
+            factor = answer(system, moving, r, c, rows)
             for i in range(low, c):
                 factor -= matrix[r * stride + i] * matrix[i * stride + c]
         factor *= matrix[c * stride + c]
         matrix[c * stride + r], matrix[r * stride + c] = above, factor
         own -= factor * above
         left -= factor * rows[c * CONSTRAINT + at.LEFT]
-    matrix[r * stride + r], rows[first + at.LEFT], rows[first + at.COUPLED] = 1.0 / own, left, low
-
-
-@inlined
-def push(moving: int, which: int, room: Vector, rows: Vector) -> None:
-    """Add the accelerations that a constraint's force causes."""
-    first = which * CONSTRAINT
-    k, force, moves = int(rows[first + at.BODY]), rows[first + at.FORCE], first + at.MOVES
-    for body in range(k, min(k + 2, moving)):
-        i = body * PLACES
-        room[i + at.X] += force * rows[moves]
-        room[i + at.Y] += force * rows[moves + 1]
-        room[i + at.ROTATION] += force * rows[moves + 2]
-        moves += 3
+    matrix[r * stride + r], rows[first + at.LEFT] = 1.0 / own, left
 
 
 @kernel
 def solve_motion(
-    system: Rows, moving: int, start: int, count: int, room: Vector, rows: Vector, matrix: Vector
-) -> None:
+    system: Rows, moving: int, start: int, count: int, band: int, room: Vector, rows: Vector,
+    matrix: Vector,
+) -> None:  # fmt: skip
     """Write the forces of `count` constraints, sorted by body, and the accelerations of all bodies.
 
     Equation :eq:`eq-chain-solution`.
@@ -332,16 +305,12 @@ def solve_motion(
         first = r * CONSTRAINT
         kept = of_both(moving, int(rows[first + at.BODY]), first + at.KEEPS, room, rows)
         rows[first + at.LEFT] = rows[first + at.VALUE] - kept
-        write_moves(system, moving, r, rows)
-        eliminate(system, r, rows, matrix)
+        eliminate(system, moving, r, band, rows, matrix)
     stride = MOST_CONSTRAINTS * system.body_count
-    for r in range(count):
-        rows[r * CONSTRAINT + at.FORCE] = rows[r * CONSTRAINT + at.LEFT]
     for r in range(count - 1, -1, -1):
-        first = r * CONSTRAINT
-        force = rows[first + at.FORCE] * matrix[r * stride + r]
-        rows[first + at.FORCE] = force
-        for c in range(int(rows[first + at.COUPLED]), r):
-            rows[c * CONSTRAINT + at.FORCE] -= matrix[c * stride + r] * force
+        force = rows[r * CONSTRAINT + at.LEFT]
+        for c in range(min(count, r + band + 1) - 1, r, -1):  # the force found last comes last
+            force -= matrix[r * stride + c] * rows[c * CONSTRAINT + at.FORCE]
+        rows[r * CONSTRAINT + at.FORCE] = force * matrix[r * stride + r]
     for r in range(count):
-        push(moving, r, room, rows)
+        push(system, moving, r, room, rows)

@@ -119,6 +119,11 @@ class MovingBodies(Rows):
         return count
 
     @inlined
+    def band(self) -> int:
+        """Give the half-width of the band of the matrix: those farther apart share no body."""
+        return 1
+
+    @inlined
     def stand_still(self, room: Vector, out: Vector) -> None:
         """Set the accelerations of bodies in full contact with a rigid base to zero: none here."""
 
@@ -147,7 +152,7 @@ class MovingBodies(Rows):
         """Solve for the forces of constraints, and the accelerations of bodies and coordinates."""
         rows = self.constraints()
         forget_trial(self, room)
-        solve_motion(self, moving, 0, count, room, rows, self.matrix())
+        solve_motion(self, moving, 0, count, self.band(), room, rows, self.matrix())
         for which in range(count):  # the last constraint of a body is the one along its base
             first = which * CONSTRAINT
             room[int(rows[first + at.BODY]) * PLACES + at.THRUST] = rows[first + at.FORCE]

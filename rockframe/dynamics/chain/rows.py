@@ -112,10 +112,8 @@ FORCE: Final = 2  # Lagrange multiplier: its force, or its impulse in an event
 KEEPS: Final = 3  # that combination: weights of X, Y, ROTATION of its body, then of the one below
 HOLDS: Final = 9  # force and moment of a unit multiplier on its body, then on the one below
 LEFT: Final = 15  # right-hand side of its equation, reduced by elimination
-MOVES: Final = 16  # accelerations by a unit multiplier, of its body, then of the one below
-COUPLED: Final = 22  # first of the constraints before it that share a body with it
-UNSYMMETRIC: Final = 23  # whether its force, or that of one before it, acts elsewhere than it keeps
-CONSTRAINT: Final = 24  # numbers of a constraint
+UNSYMMETRIC: Final = 16  # whether its force, or that of one before it, acts elsewhere than it keeps
+CONSTRAINT: Final = 17  # numbers of a constraint
 # then slopes, guards and their rates, velocities, columns, the matrix of the constraints, and what
 # the forces were solved for
 
