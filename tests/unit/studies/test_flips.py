@@ -146,7 +146,7 @@ def test_runs_without_a_verdict_below_the_critical_scale_leave_it_uncertain():
 def test_no_lesser_scale_is_feared_where_the_least_overturns():
     look, _ = runs_of(lambda scale: 1.2)
     text = flips_sentence(follow(look, ROW, most=41, width=1e-3, resolution=0.01), width=1e-3)
-    assert text == "Overturns without the motion; looked at 41 scales up to 4, at most 0.1 apart."
+    assert text == "Overturns without the motion; 41 scales tried up to 4, at most 0.1 apart."
 
 
 def test_nothing_is_feared_far_from_overturning_nor_looked_into_for_ever():
