@@ -1,0 +1,49 @@
+"""Motions, and small analyses of them."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rockframe as rf
+from rockframe.results.schema import SCHEMA
+
+BLOCK = rf.Block(width="0.5 m", height="2 m", mass="400 kg")
+SYSTEM = rf.System(BLOCK)
+QUIET = {"progress": False}
+FAST = {"accuracy": "fast", "free_vibration": "4 s", **QUIET}
+
+
+def motions(sign=1.0):
+    return {name: one.scaled(sign) for name, one in made().items()}
+
+
+@cache
+def made():
+    return {
+        f"seed {k}": rf.GroundMotion.stochastic(
+            6.6, "5 km", seed=k, stress_drop="20 MPa", source="one corner"
+        )
+        for k in range(4)
+    }
+
+
+@pytest.fixture(scope="module")
+def analysis():
+    return rf.incremental_dynamic_analysis(
+        SYSTEM, motions(), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
+        intensity="PGA", free_vibration="4 s", **QUIET,
+    )  # fmt: skip
+
+
+def checked(dataset, tmp_path):
+    """Whether variables have the units of the schema, and files hold the dataset."""
+    for name, one in dataset.variables.items():
+        assert one.attrs.get("long_name"), name
+        if name in SCHEMA and SCHEMA[name].unit is not None:
+            assert "units" in one.attrs, name
+    dataset.to_netcdf(tmp_path / "found.nc")
+    with xr.open_dataset(tmp_path / "found.nc") as again:
+        xr.testing.assert_identical(again.load().drop_attrs(), dataset.drop_attrs())
+    return True

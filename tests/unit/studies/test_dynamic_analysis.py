@@ -1,0 +1,291 @@
+"""Incremental dynamic analyses: their brackets, capacities and fragilities."""
+
+import itertools
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray as xr
+from unit.studies.analysed import FAST, QUIET, SYSTEM, checked, motions
+
+import rockframe as rf
+from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning
+from rockframe.studies import lines as of_lines
+from rockframe.studies.lines import Bracket, bracket_arrays, brackets_of, narrowed
+from rockframe.studies.sweeps import execution
+
+# dynamic analysis ----------------------------------------------------------------------------
+
+
+def test_brackets_of_a_dynamic_analysis_are_those_of_single_runs(analysis, tmp_path):
+    assert checked(analysis, tmp_path)
+    assert analysis.limit_state.values.tolist() == ["uplift", "rotation 0.4", "overturning"]
+    assert analysis.capacity_scale.dims == ("limit_state", "motion")
+    several = 0
+    for name, motion in motions().items():
+        one = analysis.sel(motion=name)
+        uplift = float(one.capacity_scale.sel(limit_state="uplift"))
+        pga = motion.peak_acceleration.m_as("m/s^2")
+        assert uplift * pga == pytest.approx(9.80665 / 4.0, rel=1e-3)
+        flips = int(one.flip_count.sel(limit_state="overturning"))
+        several += flips > 1
+        for place in range(flips):
+            flip = one.isel(flip=place).sel(limit_state="overturning")
+            below, above = float(flip.scale_below), float(flip.scale_above)
+            assert 0.0 < above - below <= 1e-3 * above
+            fell = [
+                bool(
+                    SYSTEM.simulate(motion.scaled(s), free_vibration="4 s", outputs=None).overturned
+                )
+                for s in (below, above)
+            ]
+            assert fell == [not flip.exceeds_above, bool(flip.exceeds_above)]
+    assert several, "none of the motions shows more than one crossing"
+
+
+def test_a_dynamic_analysis_is_that_of_the_mirrored_motions(analysis):
+    mirrored = rf.incremental_dynamic_analysis(
+        SYSTEM, motions(-1.0), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
+        free_vibration="4 s", **QUIET,
+    )  # fmt: skip
+    for name in ("capacity_scale", "scale_below", "flip_count", "peak_rotation"):
+        xr.testing.assert_equal(
+            mirrored[name].drop_vars("motion"), analysis[name].drop_vars("motion")
+        )
+
+
+def test_a_dynamic_analysis_agrees_with_the_critical_scale(analysis):
+    for name, motion in motions().items():
+        least = analysis.capacity_scale.sel(motion=name, limit_state="overturning").item()
+        looked = rf.critical_scale(SYSTEM, motion, largest=6.0, free_vibration="4 s", runs=200)
+        assert looked.critical_scale.item() <= least * (1.0 + 1e-3)
+
+
+@pytest.mark.long
+def test_the_period_of_a_spectral_intensity_is_kept_and_told():
+    from matplotlib import pyplot
+
+    measure = "pseudo_spectral_acceleration"
+    asked = {"intensity": measure, "period": "1.7 s"}
+    suite = motions()
+    some = {"scale": [0.5, 1.5, 4.0], **FAST}
+    analysis = rf.incremental_dynamic_analysis(SYSTEM, suite, **asked, **some)
+    critical = rf.critical_scale(SYSTEM, suite["seed 0"], scales=20, runs=30, **asked, **QUIET)
+    found = rf.fragility(analysis, "SA", period="1.7 s")
+    pair = rf.fragility(analysis, ["PGA", "SA"], period="1.7 s")
+    spectrum = rf.overturning_spectrum(SYSTEM, suite, periods=(["1.7 s"]), **asked, **some)
+    for one in (analysis, critical, found, pair, spectrum):
+        assert one.attrs["intensity_period"] == 1.7
+    words = "pseudo spectral acceleration at 1.7 s"
+    assert f"median {words} {found.median_intensity[-1].item():.4g} m s^-2" in found.verdict
+    assert f"peak ground acceleration and {words}" in pair.verdict
+    axes = [
+        rf.plot.fragility(found).get_xlabel(),
+        rf.plot.dynamic_analysis(analysis)[0].get_ylabel(),
+        rf.plot.dynamic_analysis(analysis, ax=pyplot.subplots(1, 2)[1])[1].get_ylabel(),
+        rf.plot.overturning_spectrum(spectrum)[0].get_ylabel(),
+        rf.plot.fragility(pair)[0].get_ylabel(),
+    ]
+    assert axes == [f"{words} [m s$^{{-2}}$]"] * 5
+    plain = rf.incremental_dynamic_analysis(SYSTEM, suite, intensity="PGA", **some)
+    assert "intensity_period" not in plain.attrs
+    assert rf.plot.dynamic_analysis(plain)[0].get_ylabel().startswith("peak ground acceleration [")
+
+
+def test_a_scan_that_starts_too_high_says_that_capacities_lie_below(analysis):
+    suite = motions()
+    over = analysis.sel(limit_state="overturning").capacity_scale
+    least = float(np.sort(over)[1:3].mean())  # some motions overturn below it, some above
+    below = int(rf.sweep(SYSTEM, suite, scale=[least], **FAST).overturned.sum())
+    assert 0 < below < 4
+    scan = {"scale": [least, least + 1.0, least + 2.0], **FAST}
+    told = rf"{below} of 4 motions overturn at its least scale, {least:.4g}, already"
+    with pytest.warns(ModelWarning, match=f"starts too high.*{told}"):
+        found = rf.incremental_dynamic_analysis(SYSTEM, suite, **scan)
+    most = found.capacity_scale.max().item()
+    start = f"Of 4 motions 4 overturned, from at or below {least:.4g} to {most:.4g} times the"
+    assert found.verdict.startswith(start)
+    fitted = rf.fragility(found, trials="capacities")
+    text = f"{below} of 4 capacities are only known to lie at or below the least scale."
+    assert fitted.verdict.endswith(text)
+    with pytest.warns(ModelWarning, match="4 of 4 motions"):
+        found = rf.incremental_dynamic_analysis(SYSTEM, suite, scale=[7.0, 8.0], **FAST)
+    assert (found.capacity_resolution.sel(limit_state="overturning") == 1.0).all()
+    assert "4 overturned, at or below 7 times the motion" in found.verdict
+    fitted = rf.fragility(found, trials="capacities")
+    assert "no lognormal capacity fits" in fitted.verdict
+    assert np.isnan(fitted.median_intensity).all()
+    assert "only known" not in rf.fragility(analysis, trials="capacities").verdict
+
+
+def test_a_stored_analysis_goes_on_where_it_was(tmp_path, monkeypatch):
+    options = {"scale": [1.0, 2.0, 4.0], **FAST}
+    kept = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
+    plain = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+    folders = sorted(path.name for path in (tmp_path / "s").iterdir())
+    assert {"finer 01", "round 01", "round 02"} <= {*folders}
+    assert folders[-1] == "scan"
+    from rockframe.studies.sweeps import execution
+
+    def refuse(*given, **named):
+        pytest.fail("what is kept was run again")
+
+    monkeypatch.setattr(execution, "run_chunk", refuse)
+    again = rf.incremental_dynamic_analysis(SYSTEM, motions(), store=tmp_path / "s", **options)
+    for one in (kept, again):
+        xr.testing.assert_identical(one.drop_attrs(), plain.drop_attrs())
+
+
+@cache
+def uninterrupted(resolution):
+    return rf.incremental_dynamic_analysis(
+        SYSTEM, motions(), scale=[1.0, 2.0, 4.0], resolution=resolution, **FAST
+    ).drop_attrs()
+
+
+@pytest.mark.parametrize("after", [0, 1, 2])
+@pytest.mark.parametrize("kind", ["in a round", "between rounds", "with the last case"])
+def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, after, kind):
+    # at a resolution of one brackets are narrowed at once
+    some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}
+    options = {**some, "store": tmp_path / "s"}
+    run_study, rounds = of_lines.run_study, itertools.count()
+
+    def cut(study, bar, **means):
+        if next(rounds) <= after:
+            return run_study(study, bar, **means)
+        if kind == "between rounds":
+            raise KeyboardInterrupt
+
+        if kind == "with the last case":
+            return run_study(study, bar, **means)[0], False
+
+        def stop(*given, **named):
+            raise KeyboardInterrupt
+
+        with monkeypatch.context() as patch:
+            patch.setattr(execution, "run_chunk", stop)
+            return run_study(study, bar, **means)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(of_lines, "run_study", cut)
+        with pytest.warns(SolverWarning, match="interrupted; brackets are wider.*goes on"):
+            found = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+        rounds = itertools.count()
+        with pytest.warns(SolverWarning, match="interrupted; brackets"):
+            spectrum = rf.overturning_spectrum(SYSTEM, motions(), periods=["1.7 s"], **some)
+    assert found.verdict.endswith("; interrupted.")
+    assert spectrum.verdict.endswith("; interrupted.")
+    if after == 2:
+        assert found.capacity_resolution.max().item() > 0.02
+    else:
+        apart = (found.scale_above - found.scale_below).max().item()
+        rounds_made = after + (kind == "with the last case")
+        assert apart == pytest.approx(2.0 / 2**rounds_made)
+    whole = rf.incremental_dynamic_analysis(SYSTEM, motions(), **options)
+    xr.testing.assert_identical(whole.drop_attrs(), uninterrupted(some["resolution"]))
+    assert "interrupted" not in whole.verdict
+
+
+def test_a_verdict_of_one_motion_tells_one_scale(analysis):
+    one = analysis.isel(motion=[0])
+    scale = one.capacity_scale.sel(limit_state="overturning").item()
+    start = f"Of 1 motion 1 overturned, from {scale:.4g} times the motion on"
+    assert one.rockframe.verdict.startswith(start)
+
+
+def test_a_fragility_of_capacities(analysis):
+    found = rf.fragility(analysis, "PGA", trials="capacities")
+    capacity = analysis.capacity_scale.sel(limit_state="overturning")
+    pga = [one.peak_acceleration.m_as("m/s^2") for one in motions().values()]
+    logs = np.log(capacity.values * pga)
+    assert np.isfinite(logs).all()
+    last = found.sel(limit_state="overturning")
+    assert np.log(last.median_intensity.item()) == pytest.approx(logs.mean(), abs=1e-3)
+    assert last.dispersion.item() == pytest.approx(logs.std(), abs=1e-3)
+    assert found.sel(limit_state="uplift").median_intensity.item() == pytest.approx(
+        9.80665 / 4.0, rel=1e-3
+    )
+    with pytest.raises(ComponentError, match=r"was not .* limits must name; it has uplift, "):
+        rf.fragility(analysis, limits=[0.7])
+
+
+@pytest.mark.long
+def test_capacities_hang_neither_on_the_first_row_nor_on_its_step():
+    suite = motions()
+    found = {
+        step: rf.incremental_dynamic_analysis(
+            SYSTEM, suite, scale=np.arange(0.5, 4.1, step), resolution=finest, **FAST
+        ).sel(limit_state="overturning")
+        for step, finest in ((0.5, 0.02), (0.02, 1.0), (3.5, 0.02))
+    }
+    truth = rf.sweep(SYSTEM, suite, scale=np.arange(0.5, 4.0, 0.005), **FAST).overturned == 1.0
+    for one in found.values():
+        assert one.attrs["capacity"] == "least scale found to exceed"
+        for name in suite:
+            least = float(one.capacity_scale.sel(motion=name))
+            widest = float(one.capacity_resolution.sel(motion=name))
+            below = truth.sel(motion=name, scale=slice(0.0, least * (1.0 - 1e-3))).squeeze()
+            # no range that is wider than the resolution falls below a capacity
+            edges = np.flatnonzero(np.diff(np.r_[False, below.values, False].astype(int)))
+            ranges = below.scale.values[edges[1::2] - 1] / below.scale.values[edges[::2]] - 1.0
+            assert (ranges <= widest).all()
+    assert float(found[0.5].capacity_resolution.max()) <= 0.02
+    medians = [float(one.capacity_scale.median()) for one in found.values()]
+    assert medians == pytest.approx([medians[1]] * 3, rel=0.05)
+
+
+def test_what_was_not_exceeded_has_an_infinite_capacity_and_is_counted():
+    found = rf.incremental_dynamic_analysis(
+        SYSTEM, motions(), scale=[0.5, 1.0, 1.7], limits=["uplift"], **FAST
+    )
+    capacity = found.capacity_scale.sel(limit_state="overturning")
+    count = int(found.censored_count.sel(limit_state="overturning"))
+    assert 0 < count < capacity.size
+    assert int(np.isinf(capacity).sum()) == count
+    assert not capacity.isnull().any()
+    assert int(found.censored_count.sel(limit_state="uplift")) == 0
+    statistics = rf.ensemble_statistics(capacity, quantiles=[0.01, 0.99])
+    assert statistics.member_count == capacity.size
+    assert np.isinf(statistics.quantile_value[-1])
+    assert (found.capacity_resolution <= 0.02).all()
+
+
+def test_a_fragility_of_an_analysis_is_that_of_its_runs_unless_asked_for_capacities(analysis):
+    runs = rf.sweep(SYSTEM, motions(), scale=analysis.scale.values, free_vibration="4 s", **QUIET)
+    every = rf.fragility(runs, limits=["uplift", 0.4])
+    assert every.attrs["trials"] == "runs"
+    xr.testing.assert_identical(rf.fragility(analysis).drop_attrs(), every.drop_attrs())
+    with pytest.raises(SchemaError, match="incremental_dynamic_analysis"):
+        rf.fragility(runs, trials="capacities")
+    with pytest.raises(ComponentError, match="trials must be one of 'runs', 'capacities'"):
+        rf.fragility(runs, trials="flips")
+
+
+def test_brackets_split_where_a_third_verdict_lies_between():
+    truth = [(1.234, 2.0), (1.301, -1.0), (3.3, 0.0), (9.0, 0.0)]
+
+    def verdict(scale):
+        return next((after for at, after in reversed(truth) if scale >= at), -1.0)
+
+    scales = np.array([1.0, 1.5, 2.0, 3.0, 4.0])
+    shown = np.array([[[verdict(s) for s in scales]]])
+    assert [one.below for one in brackets_of(scales, shown)] == [3.0]
+    scales = np.array([1.0, 1.25, 4.0])
+    shown = np.array([[[verdict(s) for s in scales]]])
+    runs = []
+
+    def look(part, wanted):
+        runs.append(part)
+        return np.array([[verdict(s) for _, s in wanted]]), True
+
+    found, whole = narrowed(brackets_of(scales, shown), look, width=1e-6)
+    assert whole
+    assert [one.above for one in found] == pytest.approx([1.234, 1.301, 3.3], rel=1e-6)
+    assert [(one.before, one.after) for one in found] == [(-1.0, 2.0), (2.0, -1.0), (-1.0, 0.0)]
+    assert runs == [f"round {k + 1:02d}" for k in range(len(runs))]
+    below, above, before, _ = bracket_arrays([*found, Bracket(0, 1, 1.0, 2.0, 0.0, 1.0)], (1, 2))
+    assert below.shape == above.shape == (1, 2, 3)
+    assert np.isnan(before[0, 1]).tolist() == [False, True, True]
+    nan = np.array([[[0.0, np.nan, 1.0]]])
+    assert [(one.below, one.above) for one in brackets_of(scales, nan)] == [(1.0, 4.0)]

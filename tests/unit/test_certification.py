@@ -1,0 +1,405 @@
+"""What a certificate says, and of which runs it can be made."""
+
+import itertools
+import math
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from pages import read, said
+from unit.certified import (
+    BLOCK,
+    NAMES,
+    PADS,
+    PULSE,
+    SYSTEM,
+    certificate_of,
+    certified,
+    edge,
+    planned,
+)
+
+import rockframe as rf
+from rockframe.errors import ComponentError, ModelWarning, SolverError, SolverWarning, UnitsError
+from rockframe.results.outcome import verdict_of
+from rockframe.simulation.certify.certificate import (
+    NEAR,
+    RESOLUTION,
+    SAFETY,
+    Certificate,
+    settles,
+)
+from rockframe.simulation.certify.perturbations import CUTS, SHORTER, cut, shortened
+from rockframe.simulation.certify.run_summary import RunSummary
+from rockframe.simulation.certify.scan import NOT_TRIED, Scan, scan
+from rockframe.solve.accuracy import accuracy_of
+
+
+def combinations():
+    """Give certificates of all that may be found, in the runs of either sense."""
+    stands, falls = RunSummary(False, 0.1, (0.5,)), RunSummary(True, 0.2, (1.0, 1.0), 1.0, 1)
+    back, lost = RunSummary(False, 0.3, (0.5, 0.5)), RunSummary(None, 0.1)
+    same = dict.fromkeys((-0.1, 0.1), stands)
+    for course, base, moving in itertools.product(
+        ("stop", "continue"), (stands, falls, back), (False, True)
+    ):
+        plan = replace(planned(), stop_at_overturning=course == "stop")
+        other = stands if base.overturned else falls
+        near_it = replace(base, clearances=tuple(0.5 * one for one in base.clearances))
+        finer = [base, other, lost, near_it]
+        nudged = [
+            Scan(1e-3, None, None, followed=True, tried=same),
+            Scan(5e-4, 5e-4, other, followed=True, tried=same),
+            Scan(5e-4, None, None, followed=False, tried=same),
+        ]
+        along = [NOT_TRIED, Scan(0.5, None, None, followed=True, tried=same)]
+        for margin, flip in itertools.product(
+            (1e-4, 0.0049, 0.03, 0.3), (0.0001, 0.005, 0.012, 0.122, 0.4, None)
+        ):
+            size = 0.5 if flip is None else flip
+            if margin <= size:
+                sign = -1.0 if flip == 0.122 else 1.0
+                signed = None if flip is None else sign * flip
+                followed = flip is not None and size - margin <= RESOLUTION
+                ended = None if flip is None else other
+                along.append(Scan(margin, signed, ended, followed=followed, tried=same))
+        for one, parameter, scaled in itertools.product(finer, nudged, along):
+            for wanted in (rf.Certification(), rf.Certification(nudge=0.1, reach=0.5)):
+                yield Certificate(
+                    wanted, plan, replace(base, in_motion=moving), [("means", one)],
+                    [("parameter", parameter)], scaled,
+                )  # fmt: skip
+
+
+def test_the_sentence_says_what_the_numbers_say():
+    """Whatever was found: the flip that is known, the margin, and whether the verdict is sure."""
+    seen = set()
+    for found in combinations():
+        text, values, attributes = found.sentence, found.values(), found.attributes()
+        flip, margin = values["verdict_flip_scale"], values["verdict_margin"]
+        seen.add((found.converged, found.robust, math.isnan(flip), math.isnan(margin)))
+        assert attributes["certificate"] == text
+        scaled = f"scaled {'up' if flip > 1.0 else 'down'} by {100.0 * abs(flip - 1.0):.3g} %"
+        nearest = f"with another verdict is {flip:.6g}."
+        # the flip is said once, wherever it is known, and none where it is not
+        said = (scaled in text) + (nearest in text)
+        assert said == (0 if math.isnan(flip) else 1), text
+        assert ("another verdict is" in text) + ("scaled" in text) == said, text
+        doubt = text.startswith("Near the boundary: ")
+        assert doubt or (found.converged and found.robust), text
+        assert doubt != (" also with " in text)
+        sure = found.converged and found.robust and not margin <= max(NEAR, found.wanted.nudge)
+        assert doubt != sure, text
+        if not doubt and not math.isnan(margin):
+            assert f"tried from {1.0 - margin:.6g} to {1.0 + margin:.6g}" in text
+            assert found.along.followed != ("were too few to extend" in text)
+        if found.along.tried and margin <= max(NEAR, found.wanted.nudge):
+            assert found.along.followed or "to resolve the dependence" in text or scaled in text
+        stops = found.plan.stop_at_overturning
+        words = ("overturns", "stands") if stops else ("falls flat", "does not fall flat")
+        assert f"body {words[not found.base.overturned]}" in text
+        other = ("falls flat", "does not fall flat") if stops else (" overturns", " stands")
+        assert not any(one in text for one in other), text
+    assert {one[:3] for one in seen} == set(itertools.product((True, False), repeat=3))
+
+
+def test_a_reach_within_the_nudge_is_all_that_is_asked():
+    same = {scale: RunSummary(False, 0.1, (0.5,)) for scale in (-0.01, 0.01)}
+    along = Scan(0.01, None, None, followed=True, tried=same)
+    wanted = rf.Certification(nudge=0.1, reach=0.01)
+    found = Certificate(wanted, planned(), same[0.01], along=along)
+    assert found.robust
+    assert found.sentence.startswith("The body stands also with")
+
+
+def test_a_run_that_goes_on_is_judged_by_whether_it_falls_flat():
+    """Under a pulse that brings the block back from beyond the angle, up to 3.735 of it."""
+    system = rf.System(rf.Block(width="1 m", height="5 m", mass="10 t"))
+    pulse = rf.GroundMotion.sine_pulse("2.5 m/s^2", "1 Hz").scaled(3.70)
+    run = system.simulate(
+        pulse, free_vibration="10 s", overturning="continue", certify=True, outputs=None
+    )
+    assert bool(run.overturned)  # it passed the angle
+    assert verdict_of(run) is False
+    flip = float(run.verdict_flip_scale)
+    assert flip == pytest.approx(3.736 / 3.70, abs=1e-3)
+    assert float(run.verdict_margin) == pytest.approx(flip - 1.0, rel=0.01)
+    assert run.attrs["certificate"].startswith("Near the boundary: the body does not fall flat")
+    assert "scaled up by 0.9" in run.attrs["certificate"]
+
+
+def test_no_scale_within_reach():
+    found = certificate_of(lambda _, plan: plan.motion.si.peak > 1.6 * PULSE.si.peak)
+    assert found.margin == 0.5
+    assert math.isnan(found.flip)
+    assert "scales of the motion tried from 0.5 to 1.5." in found.sentence
+
+
+def test_a_run_that_was_cut_off_has_no_certificate():
+    limit = rf.Accuracy(rtol=1e-8, max_steps=60)
+    with pytest.warns(SolverWarning, match="Not finished: stopped at"):
+        run = certified(PULSE.scaled(3.0 * edge()), accuracy=limit)
+    assert run.attrs["certificate"] == "No certificate: the run was not finished."
+    assert run.attrs["certificate_runs"] == 0
+    assert not run.verdict_converged
+    assert not run.verdict_robust
+    assert all(math.isnan(run[name]) for name in NAMES[2:])
+
+
+def test_runs_beside_that_are_cut_off_are_no_support():
+    tighter = certificate_of(lambda _, plan: None if plan.accuracy.rtol < 1e-5 else False)
+    assert not tighter.converged
+    assert math.isnan(tighter.peak_error)
+    assert "a tolerance 100 times tighter the run cannot be finished" in tighter.sentence
+
+    softer = certificate_of(
+        lambda system, _: None if system.parts.pads.to_dict()["frequency_ratio"] < 19.99 else False
+    )
+    assert not softer.robust
+    assert math.isnan(softer.peak_sensitivity)
+    assert "-0.1 % the run cannot be finished" in softer.sentence
+
+    peak = 1.005 * PULSE.si.peak
+    larger = certificate_of(lambda _, plan: None if plan.motion.si.peak > peak else False)
+    assert larger.margin == pytest.approx(0.005, rel=2.0 * RESOLUTION)
+    assert larger.robust
+    assert "scaled up by 0.501 % the run cannot be finished" in larger.sentence
+
+
+def test_the_tightest_tolerance_is_not_tightened_beyond_rounding():
+    seen = []
+    certificate_of(lambda _, plan: seen.append(plan.accuracy.rtol) or False, rtol=1e-12)
+    assert min(seen) == 1e-13
+
+
+def test_fixed_steps_are_certified_by_a_tolerance():
+    run = certified(accuracy="fast")
+    exact = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy="standard", outputs=None)
+    off = abs(float(run.peak_rotation) - float(exact.peak_rotation))
+    assert float(run.peak_error_estimate) >= SAFETY * off * (1.0 - 1e-12)
+    assert "with adaptive steps instead of fixed ones" in run.attrs["certificate"]
+
+
+def test_the_sensitivity_is_that_of_nudged_parameters():
+    run = certified(certify=rf.Certification(nudge=0.02))
+    peaks = [float(run.peak_rotation)]
+    for part in (BLOCK, PADS):
+        for name in part.parameters():
+            for factor in (0.98, 1.02):
+                parts = [p for p in (BLOCK, PADS) if p is not part] + [
+                    part.with_scaled(name, factor)
+                ]
+                other = rf.System(*parts).simulate(PULSE, free_vibration="4 s", outputs=None)
+                peaks.append(float(other.peak_rotation))
+    expected = max(abs(peak - peaks[0]) for peak in peaks)
+    # or a little more, somewhere inside the nudge
+    assert float(run.peak_sensitivity) >= expected * (1.0 - 1e-12)
+    assert float(run.peak_sensitivity) == pytest.approx(expected, rel=0.05)
+
+
+def test_without_a_motion_the_start_is_scaled():
+    start = rf.InitialState(rotation=f"{0.9 * BLOCK.si.overturning_angle!r} rad")
+    run = certified(None, duration="20 s", initial=start)
+    assert not bool(run.overturned)
+    assert run.attrs["certificate"].startswith("The body stands")
+    assert "of the start" in run.attrs["certificate"]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_the_margin_of_a_start_is_that_of_its_energy(share):
+    """A rigid block overturns if it can lift its centre of mass above the corner."""
+    block, edge = rf.Block.from_size(radius="2 m", slenderness=4, mass="1 t"), 1.1
+    angle = block.si.overturning_angle
+    rate = math.sqrt(1.5 * 9.80665 / 2.0 * (1.0 - math.cos((1.0 - share) * angle)))
+    start = rf.InitialState(
+        rotation=f"{share * angle / edge!r} rad", angular_velocity=f"{rate / edge!r} rad/s"
+    )
+    run = certified(None, rf.System(block), duration="20 s", initial=start)
+    assert not bool(run.overturned)
+    assert float(run.verdict_margin) == pytest.approx(edge - 1.0, rel=2.0 * RESOLUTION)
+
+
+def test_a_start_is_not_scaled_beyond_a_right_angle():
+    low = rf.System(rf.Block(width="4 m", height="3 m", mass="1 t"))
+    run = certified(
+        None,
+        low,
+        certify=rf.Certification(reach=0.9),
+        duration="1 s",
+        initial=rf.InitialState(rotation="0.85 rad"),
+    )
+    assert not bool(run.overturned)
+    assert float(run.verdict_margin) == 0.9
+
+
+def test_at_rest_nothing_can_be_scaled():
+    run = certified(None, duration="1 s")
+    assert math.isnan(run.verdict_margin)
+    assert bool(run.verdict_robust)
+    assert run.attrs["certificate"] == (
+        "The body stands also with a tolerance 100 times tighter and steps 2.7 times shorter, "
+        "and with every parameter up to 0.1 % larger or smaller."
+    )
+
+
+def test_a_run_that_goes_on_is_compared_with_runs_that_go_on():
+    strong = PULSE.scaled(3.0 * edge())
+    run = certified(strong, overturning="continue")
+    assert bool(run.overturned)
+    assert float(run.peak_rotation) == pytest.approx(0.5 * math.pi)
+    assert float(run.peak_error_estimate) < 1e-9
+    assert float(run.peak_sensitivity) < 1e-9
+
+
+def test_sub_steps_that_just_do_for_the_run_are_certified():
+    pads = rf.TwoSpringSupport(frequency_ratio=324.57, damping_ratio=0.1)
+    system = rf.System(BLOCK, pads)
+    given = rf.Accuracy(substeps=4)
+    with pytest.raises(SolverError, match="too few"):
+        rf.System(BLOCK, pads.with_scaled("frequency_ratio", 1.001)).simulate(PULSE, accuracy=given)
+    run = certified(system=system, accuracy=given)
+    assert "larger or smaller" in run.attrs["certificate"]
+
+
+@pytest.mark.wide
+@pytest.mark.parametrize(
+    "parts",
+    [
+        (BLOCK,),
+        (BLOCK, rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1)),
+        (
+            BLOCK,
+            PADS,
+            rf.CushionCap(height="0.5 m", mass="10 t"),
+            rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1),
+        ),
+    ],
+)
+@pytest.mark.parametrize("coupling", ["coupled", "cascade"])
+def test_every_scene_can_be_certified(parts, coupling, tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        run = certified(system=rf.System(*parts, coupling=coupling))
+    assert all(math.isfinite(float(run[name])) for name in NAMES if name != "verdict_flip_scale")
+    run.to_netcdf(tmp_path / "run.nc")
+    with xr.open_dataset(tmp_path / "run.nc") as stored:
+        xr.testing.assert_identical(stored[list(NAMES)].drop_attrs(), run[list(NAMES)].drop_attrs())
+
+
+@pytest.mark.parametrize("given", [1, "yes", None, 0.01])
+def test_what_is_no_certification_is_refused(given):
+    with pytest.raises(ComponentError, match="must be True, False, 'proved' or a Certification"):
+        SYSTEM.simulate(PULSE, certify=given)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"nudge": 0.0}, ComponentError, "nudge must be above 0 and at most 0.1"),
+        ({"nudge": "1 m"}, UnitsError, "nudge needs a pure ratio"),
+        ({"reach": 1.0}, ComponentError, "reach must be from 0.01 to 0.9"),
+        ({"runs": 10}, ComponentError, "runs must be a whole number from 60 to 100000, got 10"),
+    ],
+)
+def test_certifications_that_are_refused(arguments, error, words):
+    with pytest.raises(error, match=words):
+        rf.Certification(**arguments)
+
+
+def test_a_part_with_a_scaled_parameter():
+    pads = PADS.with_scaled("damping_ratio", 2.0)
+    assert pads == rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.20)
+    wide = rf.CushionCap(height="0.5 m", mass="10 t").with_scaled("mass", 0.5)
+    assert wide == rf.CushionCap(height="0.5 m", mass="5 t")
+    soil = rf.WinklerSoil(stiffness="30 MPa", damping_ratio=0.1, separation="pressure")
+    assert soil.parameters() == ("stiffness", "damping_ratio")
+    assert soil.with_scaled("stiffness", 2.0) == rf.WinklerSoil(
+        stiffness="60 MPa", damping_ratio=0.1, separation="pressure"
+    )
+    with pytest.raises(ComponentError, match="no parameter is called 'colour'"):
+        PADS.with_scaled("colour", 2.0)
+
+
+MOTIONS = {
+    "record": rf.GroundMotion.from_arrays(([0.0, 1.0, -2.0, 0.5], "m/s^2"), "0.1 s"),
+    "pulse": PULSE,
+    "both": PULSE.with_vertical(PULSE.scaled(0.5)),
+}
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("parts", CUTS)
+def test_a_motion_cut_finer_is_the_same_function_of_time(name, parts):
+    motion = MOTIONS[name]
+    finer = cut(motion, parts)
+    time = np.linspace(0.0, motion.si.duration, 997)
+    size = motion.si.peak
+    assert finer.si.time_step == motion.si.time_step / parts
+    assert np.abs(finer.si.at(time) - motion.si.at(time)).max() < 1e-12 * size
+    if motion.si.vertical is not None:
+        upwards = finer.si.vertical.at(time) - motion.si.vertical.at(time)
+        assert np.abs(upwards).max() < 1e-12 * size
+    assert finer.si.horizontal.analytic == motion.si.horizontal.analytic
+
+
+@pytest.mark.parametrize("accuracy", ["fast", "standard", "reference", rf.Accuracy(substeps=3)])
+def test_shorter_steps_are_shorter(accuracy):
+    run = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=accuracy)
+    step = run.attrs["solver_end_time"] / run.attrs["solver_steps"]
+    settings = shortened(accuracy_of(accuracy), SYSTEM.assembly, step, PULSE.si.time_step)
+    finer = SYSTEM.simulate(PULSE, free_vibration="4 s", accuracy=settings)
+    assert finer.attrs["solver_steps"] > 2.0 * run.attrs["solver_steps"]
+
+
+def test_a_verdict_is_settled_only_if_all_that_it_hangs_on_is():
+    """Of a body that overturns: its rate at that angle, and the time that was left."""
+    falls = RunSummary(overturned=True, peak=0.2, clearances=(1.0, 0.5), time=4.0, direction=1)
+    for clearances, sure in (
+        ((1.1, 0.6), True),
+        ((1.4, 0.5), False),
+        ((1.0, 0.7), False),
+        ((0.6, 0.3), False),
+    ):
+        assert settles(falls, replace(falls, clearances=clearances)) is sure
+    assert not settles(falls, replace(falls, direction=-1))
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_of_flips_to_both_sides_the_nearest_is_told(sign):
+    """Both lie between the same changes of the first row."""
+    near, far = 0.12, 0.17
+
+    def look(change):
+        reached = sign * change > near or -sign * change > far
+        left = min(abs(near - sign * change), abs(far + sign * change))
+        return RunSummary(overturned=reached, peak=0.1, clearances=(left,))
+
+    row = [0.05, 0.1, 0.2]
+    found = scan(look, look(0.0), row, most=100, resolution=RESOLUTION)
+    assert found.flip == pytest.approx(sign * near, rel=RESOLUTION)
+    assert sign * found.flip > near
+    assert found.ended.overturned
+    assert found.margin <= near
+    assert found.margin == pytest.approx(near, rel=2.0 * RESOLUTION)
+
+
+def test_changes_at_the_reach_itself_were_tried():
+    base = RunSummary(overturned=False, peak=0.1, clearances=(0.9,))
+    found = scan(lambda _: base, base, [0.1, 0.2], most=100, resolution=0.5)
+    assert found.margin == 0.2
+    assert found.within(found.margin) == len(found.tried)
+    assert found.within(0.1) == sum(abs(change) < 0.11 for change in found.tried)
+
+
+def test_the_page_says_what_is_done():
+    page = "guide/tradeoff.md"
+    assert said(page, "at most `rf.Certification(runs=...)`, # unless given") == [200]
+    assert said(page, "steps # times shorter than they were on average") == [SHORTER]
+    assert said(page, "three with every interval of the motion divided into #, # and #") == list(
+        CUTS
+    )
+    assert "is three times the largest difference of their peaks" in read(page).replace("\n  ", " ")
+    assert SAFETY == 3.0
+    assert said(page, "down to `certificate_resolution`, # %") == [100.0 * RESOLUTION]
