@@ -3,7 +3,6 @@
 from functools import cache
 
 import numpy as np
-import pytest
 import xarray as xr
 
 import rockframe as rf
@@ -29,8 +28,9 @@ def made():
     }
 
 
-@pytest.fixture(scope="module")
-def analysis():
+@cache
+def whole_analysis():
+    """Give an analysis of all motions, made once in a process; tests do not change it."""
     return rf.incremental_dynamic_analysis(
         SYSTEM, motions(), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
         intensity="PGA", free_vibration="4 s", **QUIET,

@@ -1,14 +1,20 @@
-"""Dynamic analysis, maps, spectra, probabilities, ensembles: labels, brute force, files."""
+"""Maps, spectra, probabilities, ensembles, sequences: labels, brute force, files."""
 
 import numpy as np
 import pytest
 import xarray as xr
 from scipy import stats
-from unit.studies.analysed import BLOCK, FAST, QUIET, SYSTEM, checked, motions
+from unit.studies.analysed import BLOCK, FAST, QUIET, SYSTEM, checked, motions, whole_analysis
 
 import rockframe as rf
 from rockframe.errors import ComponentError, SchemaError, StudyError
 from rockframe.studies.probability import ranked
+
+
+@pytest.fixture
+def analysis():
+    return whole_analysis()
+
 
 # maps and spectra ----------------------------------------------------------------------------
 

@@ -6,13 +6,19 @@ from functools import cache
 import numpy as np
 import pytest
 import xarray as xr
-from unit.studies.analysed import FAST, QUIET, SYSTEM, checked, motions
+from unit.studies.analysed import FAST, QUIET, SYSTEM, checked, motions, whole_analysis
 
 import rockframe as rf
 from rockframe.errors import ComponentError, ModelWarning, SchemaError, SolverWarning
 from rockframe.studies import lines as of_lines
 from rockframe.studies.lines import Bracket, bracket_arrays, brackets_of, narrowed
 from rockframe.studies.sweeps import execution
+
+
+@pytest.fixture
+def analysis():
+    return whole_analysis()
+
 
 # dynamic analysis ----------------------------------------------------------------------------
 
