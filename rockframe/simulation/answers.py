@@ -157,7 +157,7 @@ class _Observed:
     def histories(self) -> dict[str, Generic]:
         """Give the histories of a run, without those at points and those that take events."""
         plan, run, setting, model = self.plan, self.run, self.system.setting, self.system.model
-        values = self.values
+        values = dict(self.values)
         # energies are computed apart; other requested values that are no columns follow from these
         if self.whole or set(plan.requested).difference(values, ENERGIES):
             values |= force_histories(values, self.moved, setting.load)

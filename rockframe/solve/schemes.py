@@ -362,6 +362,7 @@ class StepsByTolerance(NamedTuple):
             stage_rates(system, count, span.h, weights, state, stages, new)
             now = ground_in(NODES[s], span, ground)
             system.write_slope(mode, new, now, STAGES * size + s * slope, stages)
+        # at rest the stages between are those of an earlier step: none of them counts
         end_works(system, 0.0 if still else span.h, stages, last, works)
         errors_of_places(system, span.h, stages, works)
         errors_of_rates(system, span.h, stages, works)

@@ -254,11 +254,7 @@ class RigidCorners(Chain):
     @kernel
     def accelerate(self, mode: int, state: Vector, ground: Ground) -> Vector:
         """Give accelerations and powers, solved without the bodies at rest on the ground."""
-        moving, bearing = self.body_count, self.bearing(mode)
-        for k in range(self.body_count - 1, -1, -1):
-            if bearing >> 2 * k & BOTH != BOTH or self.part_mode(mode, k).slides:
-                break
-            moving = k
+        moving = self.moving_bodies(mode)
         if moving == self.body_count:
             return self.find_forces(mode, state, ground)
         if moving == 0 and self.variables() == 0:
@@ -269,13 +265,14 @@ class RigidCorners(Chain):
         return self.accelerate_first(moving, mode, state, ground)
 
     @inlined
-    def is_at_rest(self, mode: int) -> bool:
-        """Whether all bodies rest on rigid bases, and none slips."""
-        rests = True
-        for k in range(self.body_count):
-            rests &= self.bearing(mode) >> 2 * k & BOTH == BOTH
-            rests &= not self.part_mode(mode, k).slides
-        return rests
+    def moving_bodies(self, mode: int) -> int:
+        """Give how many bodies, from the top, may move: those below rest on the ground."""
+        moving, bearing = self.body_count, self.bearing(mode)
+        for k in range(self.body_count - 1, -1, -1):
+            if bearing >> 2 * k & BOTH != BOTH or self.part_mode(mode, k).slides:
+                break
+            moving = k
+        return moving
 
     @inlined
     def find_corner_forces(self, mode: int, state: Vector, ground: Ground) -> None:

@@ -46,16 +46,16 @@ class MovingBodies(Rows):
     @kernel
     def moving_in(self, mode: int) -> int:
         """Give how many coordinates move: none at rest, else all but a held lowest one."""
-        if self.is_at_rest(mode):
+        if self.moving_bodies(mode) == 0:
             return 0
         lowest = self.body_count - 1
         free = self.on_base(lowest).is_free(self.part_mode(mode, lowest))
         return DEGREES * self.body_count - (0 if free else 1)
 
     @inlined
-    def is_at_rest(self, mode: int) -> bool:
-        """Whether all bodies rest on rigid bases: none does here."""
-        return False
+    def moving_bodies(self, mode: int) -> int:
+        """Give how many bodies, from the top, may move: all, as none rests on a rigid base."""
+        return self.body_count
 
     @kernel
     def relaxation_in(self, mode: int) -> float:
