@@ -52,13 +52,16 @@ class Claims:
             raise StudyError(msg) from problem
 
     def _make(self, number: int, path: Path) -> bool:
+        # with what it says from its first moment on: of a job that is killed before, none is left
+        part = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
         try:
-            file = path.open("x", encoding="utf-8")
+            part.write_text(json.dumps(_this_job()), encoding="utf-8")
+            _link(part, path)
         except (FileExistsError, FileNotFoundError):  # another job was faster, or has tidied up
             return False
+        finally:
+            part.unlink(missing_ok=True)
         self._own[number] = path
-        with file:
-            json.dump(_this_job(), file)
         return True
 
     def let_go(self, number: int) -> None:
@@ -104,6 +107,17 @@ class Claims:
             since = now
         self._seen[claim] = changed, since
         return now - since > _SILENCE
+
+
+def _link(part: Path, path: Path) -> None:
+    """Give a file its name, unless another has it, also where files cannot have two names."""
+    try:
+        path.hardlink_to(part)
+    except FileExistsError:
+        raise
+    except (OSError, NotImplementedError):
+        with path.open("x", encoding="utf-8") as file:
+            file.write(part.read_text(encoding="utf-8"))
 
 
 def _heir(claim: Path) -> int:

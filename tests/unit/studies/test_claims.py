@@ -111,6 +111,37 @@ def test_what_is_let_go_may_be_taken_again(tmp_path):
     assert not one.take(4)
 
 
+def test_a_job_that_is_killed_as_it_claims_leaves_nothing_to_wait_for(tmp_path, monkeypatch):
+    class Killed(BaseException):
+        pass
+
+    def killed(*_):
+        raise Killed
+
+    one, other = Claims(tmp_path), Claims(tmp_path)
+    for place, name in ((module, "_this_job"), (module.Path, "hardlink_to")):
+        with monkeypatch.context() as patch:
+            patch.setattr(place, name, killed)
+            with pytest.raises(Killed):
+                one.take(5)
+        assert not [*(tmp_path / "claims").glob("000005-*")]
+    assert other.take(5)
+    (claimed,) = (tmp_path / "claims").iterdir()
+    assert json.loads(claimed.read_bytes()) == module._this_job()
+
+
+def test_claims_are_made_also_where_files_have_one_name(tmp_path, monkeypatch):
+    def refused(*_):
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(module.Path, "hardlink_to", refused)
+    one, other = Claims(tmp_path), Claims(tmp_path)
+    assert one.take(5)
+    assert not other.take(5)
+    (claimed,) = (tmp_path / "claims").iterdir()
+    assert json.loads(claimed.read_bytes()) == module._this_job()
+
+
 def claim(folder, content, number=7):
     (folder / "claims").mkdir(exist_ok=True)
     path = folder / "claims" / f"{number:06d}-000"
