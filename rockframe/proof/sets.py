@@ -11,7 +11,9 @@ from rockframe.proof.problem import Deviations
 from rockframe.proof.verdict import OVERTURNS, SAFE, UNDECIDED, Proof, Tolerances
 
 PRECISIONS: Final = (106, 212, 424)
-"""Bits of the balls: the next number is tried as long as nothing is decided."""
+"""Bits of the balls: the next number is tried where nothing is decided and more bits may help."""
+_SAME_TIME: Final = 1e-9
+"""Relative difference up to which two attempts end at the same time."""
 
 Attempt: TypeAlias = Callable[[Deviations], tuple[Proof, list[float]]]
 """A function that tries a proof for a set of inputs; also gives the influence of each input."""
@@ -27,9 +29,10 @@ def proved(attempt: Attempt, within: Tolerances) -> Proof:
     known, waiting = list[_Part](), list[_Part]()
     whole: _Part | None = None
     for bits in PRECISIONS if inputs.exact else PRECISIONS[:1]:
+        before = whole
         with working_precision(bits):
             whole = _Part(-1.0, 0, inputs, *attempt(inputs))
-        if whole.proof.decided:
+        if whole.proof.decided or (before and _ends_alike(before.proof, whole.proof)):
             break
     assert whole is not None  # noqa: S101
     (known if whole.proof.decided else waiting).append(whole)
@@ -48,6 +51,16 @@ def proved(attempt: Attempt, within: Tolerances) -> Proof:
         scale_tolerance=within.scale,
         angle_tolerance=within.angle,
     )
+
+
+def _ends_alike(before: Proof, after: Proof) -> bool:
+    """Whether an undecided proof ends where it did with half the bits, for the same reason.
+
+    Then the reason lies in the motion, such as a contact that no enclosure can follow, and not in
+    the width of the balls.
+    """
+    same_time = math.isclose(before.latest, after.latest, rel_tol=_SAME_TIME)
+    return before.reason == after.reason and same_time
 
 
 class _Part(NamedTuple):

@@ -10,6 +10,9 @@ pytest.importorskip("flint")
 
 import rockframe as rf
 from rockframe.errors import ComponentError
+from rockframe.proof.balls import bits
+from rockframe.proof.sets import PRECISIONS, proved
+from rockframe.proof.verdict import EXACT, Proof
 
 FAST = 1e-5  # of the scale, where runs with accuracy="fast" are right
 # H/B, R0, T, share of the motion upwards, eccentricity over B; safe at scale, overturns at scale
@@ -233,3 +236,25 @@ def test_the_page_tells_what_was_decided_of_sets():
                 assert found["contradicted by reference"] == []
                 last = found["mean share decided"]
         assert float(share) == last
+
+
+@pytest.mark.parametrize(
+    ("ends", "tried"),
+    [
+        ([("wide", 1.0), ("wide", 1.0), ("wide", 2.0)], 2),
+        ([("wide", 1.0), ("wide", 1.5), ("wide", 1.5)], 3),
+        ([("wide", 1.0), ("steep", 1.0), ("steep", 1.0)], 3),
+    ],
+    ids=["same end", "later end", "other reason"],
+)
+def test_more_bits_are_taken_as_long_as_they_lead_on(ends, tried):
+    attempts = []
+
+    def attempt(_):
+        reason, time = ends[len(attempts)]
+        attempts.append(bits())
+        return Proof("undecided", reason, time, time, 1e-20, 0, bits(), 1.0, "a law"), []
+
+    found = proved(attempt, EXACT)
+    assert attempts == [*PRECISIONS[:tried]]
+    assert (found.reason, found.bits) == (ends[tried - 1][0], PRECISIONS[tried - 1])
