@@ -51,6 +51,7 @@ def test_a_rectangular_pulse():
         assert found.critical_scale.item() == pytest.approx(threshold, rel=2e-9)
 
 
+@pytest.mark.long
 def test_half_a_sine():
     for ratio in (1, 4, 10):
         pulse = rf.GroundMotion.half_sine_pulse(UPLIFT, f"{math.pi / (ratio * P)!r} s")

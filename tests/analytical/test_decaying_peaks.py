@@ -61,6 +61,7 @@ def test_peaks_with_times():
     np.testing.assert_allclose(found.fitted_peak_time, times, atol=1e-6)
 
 
+@pytest.mark.long
 def test_intervals_of_peaks_with_noise():
     theta, restitution = 0.2, 0.8
     peaks = decayed(0.5 * theta, restitution, 7, theta, "small")

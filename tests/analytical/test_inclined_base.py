@@ -55,7 +55,13 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.long] * (name in ("uphill", "centre of mass beside")))
+        for name in SCENES
+    ],
+)
 def test_rigid_ground_against_true_axes(name):
     block, degrees, (motion, ground) = SCENES[name]
     system = rf.System(block, inclination=f"{degrees} deg")
