@@ -102,11 +102,12 @@ def scales(ends, bed):
 
 @pytest.mark.parametrize("by_pressure", SEPARATIONS)
 @pytest.mark.parametrize("damping", DAMPINGS)
-def test_resultants_are_exact(damping, by_pressure):
+@pytest.mark.parametrize("count", [1000, pytest.param(3000, marks=pytest.mark.long)])
+def test_resultants_are_exact(count, damping, by_pressure):
     bed = make_bed(damping, by_pressure)
     rng = np.random.default_rng(7)
     seen = set()
-    for ends in states(3000, seed=1):
+    for ends in states(count, seed=1):
         levers = rng.normal(size=2)
         force, moment, dissipated = resultants(ends, bed, *levers)
         exact = by_quadrature(ends, bed, *levers)

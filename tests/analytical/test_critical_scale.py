@@ -51,6 +51,7 @@ def test_a_rectangular_pulse():
         assert found.critical_scale.item() == pytest.approx(threshold, rel=2e-9)
 
 
+@pytest.mark.long
 def test_half_a_sine():
     for ratio in (1, 4, 10):
         pulse = rf.GroundMotion.half_sine_pulse(UPLIFT, f"{math.pi / (ratio * P)!r} s")
@@ -60,8 +61,12 @@ def test_half_a_sine():
         assert brackets(found, 0, threshold, within=1e-9)
 
 
-def test_one_sine_overturns_stands_again_and_overturns_without_impact():
-    for ratio, [(lower, upper)] in BANDS.items():
+@pytest.mark.parametrize(
+    "ratio",
+    [next(iter(BANDS)), *(pytest.param(one, marks=pytest.mark.long) for one in list(BANDS)[1:])],
+)
+def test_one_sine_overturns_stands_again_and_overturns_without_impact(ratio):
+    for lower, upper in BANDS[ratio]:
         threshold = one_sine_threshold(ratio)
         pulse = rf.GroundMotion.sine_pulse(UPLIFT, f"{ratio * P / (2.0 * math.pi)!r} Hz")
         options = {"restitution": 0.9, "largest": 1.2 * threshold, "bracket_width": 1e-8}

@@ -28,9 +28,15 @@ def times_of(peaks, theta):
     return np.concatenate([[0.0], np.cumsum(quarters[:-1] + quarters[1:])])
 
 
-@pytest.mark.parametrize("rotation", ["finite", "small"])
-@pytest.mark.parametrize("theta", [0.1, 0.3])
-@pytest.mark.parametrize("restitution", [0.7, 0.85])
+@pytest.mark.parametrize(
+    ("restitution", "theta", "rotation"),
+    [
+        pytest.param(*one, marks=[pytest.mark.long] * (number % 3 > 0))
+        for number, one in enumerate(
+            itertools.product((0.7, 0.85), (0.1, 0.3), ("finite", "small"))
+        )
+    ],
+)
 def test_restitution_of_exact_peaks(restitution, theta, rotation):
     system = rigid_block(theta, rotation=rotation)
     for share, signs in itertools.product((0.3, 0.9), (1.0, -1.0)):
@@ -55,6 +61,7 @@ def test_peaks_with_times():
     np.testing.assert_allclose(found.fitted_peak_time, times, atol=1e-6)
 
 
+@pytest.mark.long
 def test_intervals_of_peaks_with_noise():
     theta, restitution = 0.2, 0.8
     peaks = decayed(0.5 * theta, restitution, 7, theta, "small")

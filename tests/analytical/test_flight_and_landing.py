@@ -123,7 +123,7 @@ def reach(pads, alpha, e):
     return pads.h * math.cos(alpha) + e * math.sin(alpha)
 
 
-@pytest.mark.parametrize("restitution", [1.0, 0.6, 0.05])
+@pytest.mark.parametrize("restitution", [1.0, 0.6, pytest.param(0.05, marks=pytest.mark.long)])
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("start", THROWS)
 def test_landing_on_one_corner(start, rule, restitution):
@@ -331,7 +331,7 @@ def dropped(accuracy, restitution, **friction):
 
 
 @pytest.mark.filterwarnings("ignore:.*one of several motions:rockframe.errors.ModelWarning")
-@pytest.mark.parametrize("restitution", [0.1, 0.6])
+@pytest.mark.parametrize("restitution", [pytest.param(0.1, marks=pytest.mark.long), 0.6])
 @pytest.mark.parametrize("friction", [{}, {"friction": 0.5}], ids=["held", "friction"])
 def test_bodies_that_fall_together_land_together(restitution, friction):
     """Without a force between them one bears on any of the corners that touch; all take the blow.

@@ -55,7 +55,13 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.long] * (name in ("uphill", "centre of mass beside")))
+        for name in SCENES
+    ],
+)
 def test_rigid_ground_against_true_axes(name):
     block, degrees, (motion, ground) = SCENES[name]
     system = rf.System(block, inclination=f"{degrees} deg")
@@ -67,7 +73,10 @@ def test_rigid_ground_against_true_axes(name):
     assert apart < 1e-7 * THETA, apart / THETA
 
 
-@pytest.mark.parametrize("name", ["both components", "beside, the other way"])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param("both components", marks=pytest.mark.long), "beside, the other way"],
+)
 def test_pads_against_true_axes(name):
     block, degrees, (motion, ground) = SCENES[name]
     stiffness, damping = 6e6, 3e4

@@ -22,6 +22,7 @@ UPLIFT = GRAVITY * THETA
 LONG = f"{60.0 / P!r} s"
 
 
+@pytest.mark.long  # the plain command finds one of its gaps by critical_scale
 def test_the_gap_of_zhang_and_makris():
     """Blocks that overturn after an impact, stand, and overturn without one."""
     ratios = np.array(list(BANDS))

@@ -117,7 +117,14 @@ def test_impacts_with_enough_friction_are_housners(own):
     assert state[2] == 0.0
 
 
-@pytest.mark.parametrize("frictions", [(0.3, 0.3), (0.27, 0.27), (0.26, 0.2), (0.2, 0.15)])
+@pytest.mark.parametrize(
+    "frictions",
+    [
+        (0.27, 0.27),
+        (0.26, 0.2),
+        *(pytest.param(one, marks=pytest.mark.long) for one in ((0.3, 0.3), (0.2, 0.15))),
+    ],
+)
 def test_energy_balances_and_friction_bounds_the_shear(own, frictions):
     response, mirrored = (
         standing(own, SLENDER, *frictions).simulate(

@@ -136,7 +136,14 @@ def test_a_block_without_friction_keeps_its_place_in_space():
     assert float(run.peak_rotation) == 0.0
 
 
-@pytest.mark.parametrize("friction", [(0.3, 0.3), (0.27, 0.27), (0.26, 0.2), (0.2, 0.15)])
+@pytest.mark.parametrize(
+    "friction",
+    [
+        (0.27, 0.27),
+        (0.26, 0.2),
+        *(pytest.param(one, marks=pytest.mark.long) for one in ((0.3, 0.3), (0.2, 0.15))),
+    ],
+)
 def test_mirror_images_balance_and_cone(friction):
     run, mirrored = (
         standing(SLENDER, *friction).simulate(

@@ -271,7 +271,9 @@ def test_hardly_any_friction_is_next_to_none(friction):
     np.testing.assert_allclose(some, none, rtol=0.0, atol=friction)
 
 
-@pytest.mark.parametrize("friction", [1e5, 1e7, 1e9, 1e15])
+@pytest.mark.parametrize(
+    "friction", [1e5, 1e15, *(pytest.param(one, marks=pytest.mark.long) for one in (1e7, 1e9))]
+)
 def test_friction_as_great_as_one_likes_holds(friction):
     held, slippery = (two_bodies(**given).rotation for given in ({}, {"friction": friction}))
     np.testing.assert_allclose(slippery, held, rtol=0.0, atol=1e-12)
@@ -323,7 +325,12 @@ def test_a_corner_of_a_squat_body_keeps_nothing_of_its_speed_on_pads():
 
 @pytest.mark.parametrize(
     ("number", "ends"),
-    [(733, "0.76 s"), (379, "1.88 s"), (1318, "1.74 s"), (358, "2.05 s")],
+    [
+        pytest.param(733, "0.76 s", marks=pytest.mark.long),
+        pytest.param(379, "1.88 s", marks=pytest.mark.long),
+        (1318, "1.74 s"),
+        (358, "2.05 s"),
+    ],
 )
 def test_corners_that_rounding_sends_back_to_their_pads_leave(number, ends):
     """Each came down and left in turn, without end, as it touched its pad on its way up."""

@@ -421,6 +421,11 @@ def test_records_have_the_intensities_of_another_library(record):
     assert found.bracketed_duration.item() == pytest.approx(bracketed, **within)
 
 
+@pytest.mark.parametrize(
+    "record",
+    [RECORDS[1], *(pytest.param(name, marks=pytest.mark.long) for name in RECORDS[::2])],
+    indirect=True,
+)
 def test_records_have_the_spectra_of_another_library(record):
     """It sees peaks at samples only: give it the same straight lines, sampled eight times."""
     pytest.importorskip("eqsig")

@@ -348,6 +348,7 @@ def test_window_spends_its_energy_within_the_duration():
     assert at[95] - at[5] == pytest.approx(1.0, abs=0.01)
 
 
+@pytest.mark.long
 def test_significant_duration_is_that_of_the_model(many):
     found = [rf.intensity_measures(motion).significant_duration_5_95.item() for motion in many[:60]]
     assert np.mean(found) == pytest.approx(SMSIM.duration, rel=0.1)

@@ -45,7 +45,12 @@ def estimates(demand, size, limit, count, seeds=SEEDS):
 
 @pytest.mark.parametrize(
     ("demand", "size", "probability"),
-    [(one_side, 1, 1e-3), (one_side, 20, 1e-6), (two_sides, 20, 1e-3), (two_sides, 1, 1e-6)],
+    [
+        (one_side, 1, 1e-3),
+        pytest.param(one_side, 20, 1e-6, marks=pytest.mark.long),
+        (two_sides, 20, 1e-3),
+        pytest.param(two_sides, 1, 1e-6, marks=pytest.mark.long),
+    ],
 )
 def test_probabilities_and_their_variation_are_those_of_normal_numbers(demand, size, probability):
     limit = norm.isf(probability if demand is one_side else 0.5 * probability)

@@ -213,11 +213,11 @@ def test_a_wall_and_a_load_join_in():
     assert alone.peak_slip > 1e-3
 
 
-def test_a_stack_slides_with_ties():
-    joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=0.2)
+def stack_with_ties(friction, of_joint, **changed):
+    """Give two blocks with ties, of one to the other and to the ground."""
+    joint = rf.TwoSpringSupport(frequency_ratio=15, damping_ratio=0.2, friction=of_joint)
     upper = rf.Block(width="0.8 m", height="1.5 m", mass="500 kg")
-    lower = BLOCK.replace(height="1 m")
-    stack = rf.Stack(upper, lower, interfaces=[joint])
+    stack = rf.Stack(upper, BLOCK.replace(height="1 m"), interfaces=[joint.replace(**changed)])
     tie = rf.Restrainer(
         on=("-0.4 m", "1 m"), to=("-1 m", "1 m"), on_body=1, to_body=2, stiffness="30 kN/m",
         slack="2 mm",
@@ -225,18 +225,25 @@ def test_a_stack_slides_with_ties():
     to_ground = rf.Restrainer(
         on=("0.5 m", "0.9 m"), to=("1.5 m", "0.9 m"), on_body=2, stiffness="200 kN/m"
     )
-    found = run(PADS.replace(friction=0.3), tie, to_ground, block=stack)
+    return {"block": stack}, (PADS.replace(friction=friction, **changed), tie, to_ground)
+
+
+def test_a_stack_slides_with_ties():
+    block, parts = stack_with_ties(0.3, 0.2)
+    found = run(*parts, **block)
     assert (abs(found.body_slip).max("time") > 1e-4).all()
     assert found.energy_residual < 1e-8
-    # an impact with a restitution acts on bases that friction holds, and otherwise on held ones
-    full = {"restitution": 1.0}
+
+
+@pytest.mark.long
+def test_friction_without_end_holds_the_bases_of_a_stack():
+    """A restitution acts on bases that friction holds, and otherwise on held ones."""
     bare, held = (
-        run(
-            PADS.replace(friction=friction, **full), tie, to_ground, restraint="leading-corner",
-            block=rf.Stack(upper, lower, interfaces=[joint.replace(friction=friction, **full)]),
+        run(*parts, restraint="leading-corner", **block)
+        for block, parts in (
+            stack_with_ties(friction, friction, restitution=1.0) for friction in (None, 1e9)
         )
-        for friction in (None, 1e9)
-    )  # fmt: skip
+    )
     # up to a flight, from which a body that friction takes hold of comes to rest in a while
     apart = abs(held.rotation - bare.rotation).sel(time=slice(0.0, 1.1)).max()
     assert apart < 1e-12 * bare.peak_rotation

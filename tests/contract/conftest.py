@@ -12,7 +12,13 @@ def scene(request):
     return request.param
 
 
-@pytest.fixture(params=list(MOTIONS))
+# the others, with and without vertical motion changed about, in the long run
+FEW = ("pulse and vertical", "record")
+
+
+@pytest.fixture(
+    params=[name if name in FEW else pytest.param(name, marks=pytest.mark.long) for name in MOTIONS]
+)
 def motion_name(request):
     """Give the name of a motion; MOTIONS makes it."""
     return request.param

@@ -411,8 +411,11 @@ class TestWhatIsAskedFor:
 
     def test_one_energy_only(self, scene):
         first, *others = ENERGIES
-        asked = [(first, form) for form in (first, [first], (first,), {first})]
-        for name, outputs in [*asked, *((name, name) for name in others)]:
+        asked = [(name, name) for name in ENERGIES]
+        if scene == next(iter(SCENES)):  # what is asked for is read before there is a scene
+            asked += [(first, form) for form in ([first], (first,), {first})]
+            asked += [(others[0], [others[0]])]
+        for name, outputs in asked:
             response = SCENES[scene]().simulate(pulse(), duration="0.4 s", outputs=outputs)
             assert set(ENERGIES) & set(response.variables) == {name}
 

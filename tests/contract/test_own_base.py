@@ -35,6 +35,8 @@ SCENES = {
 }
 SETS = ("left_set", "right_set")
 every_scene = pytest.mark.parametrize("scene", SCENES)
+SECOND_LOOKS = {("coupled", "hardening"), ("cascade", "strength")}
+"""Scenes, in plain Python, with what makes pads elastic, in the long run only."""
 runs_in_every_scene = pytest.mark.parametrize(  # coupled and by cascade in plain Python
     "scene",
     ["alone", *(pytest.param(one, marks=pytest.mark.wide) for one in SCENES if one != "alone")],
@@ -287,8 +289,16 @@ class TestMechanics:
         assert one.left_set.values[-1] > 0.0
         assert one.left_set.values[-1] != one.right_set.values[-1]
 
-    @every_scene
-    @pytest.mark.parametrize("changed", [{"strength": 1e6}, {"hardening": 1.0}])
+    @pytest.mark.parametrize(
+        ("scene", "changed"),
+        [
+            pytest.param(
+                scene, changed, marks=[pytest.mark.long] * ((scene, *changed) in SECOND_LOOKS)
+            )
+            for scene in SCENES
+            for changed in ({"strength": 1e6}, {"hardening": 1.0})
+        ],
+    )
     def test_pads_that_cannot_yield_are_elastic(self, pads, scene, changed):
         pads = pads.replace(**changed)
         motion = noise()

@@ -45,7 +45,7 @@ def test_one_that_hardly_hardens_is_a_tie(example):
     rope = example.Rope(**POINTS, reach="1e6 m")
     with plainly():
         runs = [
-            rf.System(BLOCK, PADS, one).simulate(PULSE, duration="0.8 s", accuracy="reference")
+            rf.System(BLOCK, PADS, one).simulate(PULSE, duration="0.4 s", accuracy="reference")
             for one in (rope, rf.Restrainer(**POINTS))
         ]
     np.testing.assert_allclose(runs[0].rotation, runs[1].rotation, rtol=0, atol=1e-9)
@@ -76,10 +76,16 @@ def test_the_page_names_files_that_are_there():
 
 
 @pytest.mark.wide
-def test_links_of_several_laws_are_in_one_scene(example):
+@pytest.mark.parametrize(
+    "entries",
+    # in the long run the law is compiled in what is observed and in energies
+    [(), pytest.param((advance,), marks=pytest.mark.long)],
+    ids=["in plain Python", "compiled"],
+)
+def test_links_of_several_laws_are_in_one_scene(example, entries):
     rope, tie = example.Rope(**POINTS, reach="1 m", name="rope"), rf.Restrainer(**POINTS)
     load = rf.Load(at=("0 m", "3 m"), vertical="2 kN")
-    with plainly(advance):  # the law is compiled in what is observed and in energies
+    with plainly(*entries):
         found = rf.System(BLOCK, PADS, rope, tie, load).simulate(
             PULSE, free_vibration="1 s", outputs=("energy",)
         )

@@ -69,7 +69,7 @@ def test_a_slow_rotation_has_the_moment_in_closed_form(bed, monkeypatch, load):
     assert apart[1] < apart[0] / 8.0
 
 
-@pytest.mark.parametrize("damping_ratio", [0.0, 0.05])
+@pytest.mark.parametrize("damping_ratio", [pytest.param(0.0, marks=pytest.mark.long), 0.05])
 @plainly()
 def test_energies_balance_while_springs_yield_lift_and_land(bed, monkeypatch, damping_ratio):
     monkeypatch.setattr(bed, "SPRINGS", 6)

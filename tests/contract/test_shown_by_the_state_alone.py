@@ -49,7 +49,19 @@ SCENES = {
 }
 
 
-@pytest.fixture(scope="module", params=SCENES)
+# of parts that others of the scenes have, too
+SECOND_LOOKS = {
+    "pads", "coupled", "wall on rigid ground", "wall on slippery ground", "tie on rigid ground",
+    "stack of both", "stack with a wall",
+}  # fmt: skip
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(name, marks=[pytest.mark.long] * (name in SECOND_LOOKS)) for name in SCENES
+    ],
+)
 def run(request):
     """Give a model, and a run of it."""
     parts = [part for part in SCENES[request.param] if not isinstance(part, dict)]

@@ -124,6 +124,7 @@ def histories_missing(runs):
     return int(empty.sum())
 
 
+@pytest.mark.long  # nor is tqdm there where all runs in the caller, in test_imports.py
 def test_a_sweep_needs_neither_tqdm_nor_dask():
     code = """
 import sys

@@ -78,14 +78,24 @@ ALLOWED = {"standard": 1e-5, "reference": 1e-8}
 
 
 @pytest.mark.parametrize("level", list(ALLOWED))
-@pytest.mark.parametrize("name", list(SCENES))
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.long] * (name == "cascade")) for name in SCENES],
+)
 def test_more_samples_of_the_same_lines_change_nothing(name, level):
     plain = run(name, level)
     for parts in (2, 8, 64):
         assert difference(plain, run(name, level, parts)) < ALLOWED[level], parts
 
 
-@pytest.mark.parametrize("name", list(SCENES))
+@pytest.mark.parametrize(
+    "name",
+    # those of two bodies take longest
+    [
+        pytest.param(name, marks=[pytest.mark.long] * (name in ("coupled", "cascade")))
+        for name in SCENES
+    ],
+)
 def test_steps_fifty_times_shorter_change_nothing(name):
     plain = run(name, "reference")
     mean = 4.0 / plain.attrs["solver_steps"]

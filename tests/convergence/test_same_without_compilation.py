@@ -47,9 +47,17 @@ STACKS = {
     for name, base in {"pads": PADS, "rigid joints": rf.RigidGround(friction=0.3)}.items()
     for accuracy in ("fast", "standard")
 }
+SECOND_LOOKS = {
+    "fast, rigid joints", "standard, pads", "pads, leading corner", "coupled", "cascade",
+    "fast on pads",
+}  # fmt: skip
+"""Of whose equations another scene compiles most."""
 
 
-@pytest.mark.parametrize("name", STACKS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.long] * (name in SECOND_LOOKS)) for name in STACKS],
+)
 def test_stacks_are_the_same_whose_steps_call_their_equations(name):
     stack, base, accuracy = STACKS[name]
     system = rf.System(stack, base)
@@ -61,7 +69,10 @@ def test_stacks_are_the_same_whose_steps_call_their_equations(name):
     assert compiled.sizes["event"] > 1
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.long] * (name in SECOND_LOOKS)) for name in SCENES],
+)
 def test_compiled_and_plain_are_the_same(name):
     motion, parts, options = SCENES[name]
     accuracy = options.get("accuracy", "standard")

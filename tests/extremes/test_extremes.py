@@ -15,10 +15,17 @@ MORE = int(os.environ.get("ROCKFRAME_EXTREMES", "1"))
 COUNT = 6 * MORE
 
 
-@pytest.mark.parametrize("accuracy", ["standard", "reference"])
+@pytest.mark.parametrize(
+    ("accuracy", "count"),
+    [
+        ("standard", COUNT),
+        ("reference", COUNT // 2),
+        pytest.param("reference", COUNT, marks=pytest.mark.long),
+    ],
+)
 @pytest.mark.parametrize("subject", SUBJECTS)
-def test_the_extremes_of_a_subject_keep_to_the_bounds(subject, accuracy):
-    for number, scene in enumerate(scenes(subject, COUNT)):
+def test_the_extremes_of_a_subject_keep_to_the_bounds(subject, accuracy, count):
+    for number, scene in enumerate(scenes(subject, count)):
         failures = judge(scene, accuracy).failures
         assert not failures, f"scene {number}: {'; '.join(failures)}\n{scene}"
 

@@ -22,7 +22,8 @@ SCENES = {
 
 @pytest.mark.filterwarnings("ignore:restitution 1 exceeds")
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.long] * (name == "pads")) for name in SCENES]
+    "name",
+    [pytest.param(name, marks=[pytest.mark.long] * (name != "rigid ground")) for name in SCENES],
 )
 def test_without_losses_ten_thousand_cycles_keep_their_energy(name):
     parts, options, share = SCENES[name]

@@ -201,7 +201,7 @@ BOMBS = {
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[pytest.mark.long] * ("nested" in name or "many " in name))
+        pytest.param(name, marks=[pytest.mark.long] * ("nested" in name or "many" in name))
         for name in BOMBS
     ],
 )

@@ -31,12 +31,19 @@ def scene(name, rule, separation):
     return rf.System(block, *parts, restraint=rule, coupling=coupling)
 
 
-@pytest.mark.parametrize("accuracy", BOUNDS)
+SCENES = list(
+    product(("soil", "cap and soil", "coupled", "cascade"), RULES, ("displacement", "pressure"))
+)
+
+
 @pytest.mark.parametrize(
-    ("name", "rule", "separation"),
-    list(
-        product(("soil", "cap and soil", "coupled", "cascade"), RULES, ("displacement", "pressure"))
-    ),
+    ("name", "rule", "separation", "accuracy"),
+    [
+        # every scene at one of the accuracies, and at the other in the long run
+        pytest.param(*one, accuracy, marks=[pytest.mark.long] * ((number + place) % 2))
+        for number, one in enumerate(SCENES)
+        for place, accuracy in enumerate(BOUNDS)
+    ],
 )
 def test_energies_balance(name, rule, separation, accuracy):
     system = scene(name, rule, separation)

@@ -50,7 +50,9 @@ def whole_of(name):
 
 
 @pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("at", [0.01, 1.37, 3.0, 5.55])
+@pytest.mark.parametrize(
+    "at", [0.01, 1.37, *(pytest.param(at, marks=pytest.mark.long) for at in (3.0, 5.55))]
+)
 def test_a_record_split_in_two_gives_the_same_response(name, at):
     system, whole = SCENES[name], whole_of(name)
     assert not bool(whole.overturned)

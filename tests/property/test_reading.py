@@ -228,7 +228,14 @@ def test_netcdf_files_of_any_make(folder, sizes, variables, attributes):
     event(check(path, path.read_bytes()))
 
 
-@pytest.mark.parametrize("key", [key for key in SAMPLES if key != "cwa pair"])
+@pytest.mark.parametrize(
+    "key",
+    # every third of the formats, and all in the long run
+    [
+        pytest.param(key, marks=[pytest.mark.long] * (place % 3 > 0))
+        for place, key in enumerate(key for key in SAMPLES if key != "cwa pair")
+    ],
+)
 def test_no_number_of_a_header_makes_it_allocate(folder, key):
     # the numbers of the header in turn become as large as their field allows
     sample = SAMPLES[key]

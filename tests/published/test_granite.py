@@ -28,6 +28,7 @@ def test_probability_of_blocks_that_all_fall_below_one_angle():
         assert fit.shares(median, spread) @ falls == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.long
 def test_a_known_block_is_found_by_which_motions_overturn_it():
     generator = np.random.default_rng(4)
     motions = [

@@ -41,7 +41,10 @@ def study(**options) -> xr.Dataset:
     return grid.assign_coords(columns).set_index(case=AXES).unstack("case")
 
 
-@pytest.fixture(scope="module", params=["contact-state", "leading-corner", "centre"])
+@pytest.fixture(
+    scope="module",
+    params=["contact-state", pytest.param("leading-corner", marks=pytest.mark.long), "centre"],
+)
 def restraint(request):
     return request.param
 

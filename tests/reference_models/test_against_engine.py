@@ -31,7 +31,7 @@ def test_full_contact():
     assert found < ALLOWED_WITH_CHANGES_MET
 
 
-@pytest.mark.parametrize("damping_ratio", [0.0, 0.10])
+@pytest.mark.parametrize("damping_ratio", [pytest.param(0.0, marks=pytest.mark.long), 0.10])
 def test_uplift(damping_ratio):
     """Each step as it falls: what is left is the steps in which contact changes."""
     case = Case("half sine", 0.35, damping_ratio, seconds=SECONDS)
@@ -48,7 +48,7 @@ def test_uplift_with_changes_met(restraint):
     assert found < ALLOWED_WITH_CHANGES_MET
 
 
-@pytest.mark.parametrize("meet_changes", [False, True])
+@pytest.mark.parametrize("meet_changes", [pytest.param(False, marks=pytest.mark.long), True])
 def test_record(meet_changes):
     case = Case("El Centro", 1.0, 0.10, seconds=4.0)
     allowed = ALLOWED_WITH_CHANGES_MET if meet_changes else ALLOWED

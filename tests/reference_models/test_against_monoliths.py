@@ -84,10 +84,19 @@ def monolith_on_pads(block, beta, xi, *, rule="contact-state", rotation="finite"
     )
 
 
-@pytest.mark.parametrize("rule", RULES)
+PULSES = (
+    (5, 4, 20, 0.10), (10, 2, 10, 0.05), (1, 2, 40, 0.20), (10, 6, 40, 0.40), (5, 2, 10, 0.40)
+)  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    ("radius", "slenderness", "beta", "xi"),
-    [(5, 4, 20, 0.10), (10, 2, 10, 0.05), (1, 2, 40, 0.20), (10, 6, 40, 0.40), (5, 2, 10, 0.40)],
+    ("radius", "slenderness", "beta", "xi", "rule"),
+    [
+        # each rule in two of them, or in one, and each of them once
+        pytest.param(*pulse, rule, marks=[pytest.mark.long] * ((number + place) % 3 > 0))
+        for number, pulse in enumerate(PULSES)
+        for place, rule in enumerate(RULES)
+    ],
 )
 def test_pulse_on_pads(radius, slenderness, beta, xi, rule):
     block = rf.Block.from_size(radius=f"{radius} m", slenderness=slenderness, mass="1 t")
@@ -123,7 +132,9 @@ def test_random_motion_with_vertical_component(rotation):
     ("name", "window", "scale", "radius", "slenderness"),
     [
         ("ElCentro1940_Peknold.AT2", ("0 s", "10 s"), 1.0, 3, 5),
-        ("PEERSMD_CHICHI_TCU128-N.AT2", ("36 s", "44 s"), 2.0, 4, 6),
+        pytest.param(
+            "PEERSMD_CHICHI_TCU128-N.AT2", ("36 s", "44 s"), 2.0, 4, 6, marks=pytest.mark.long
+        ),
     ],
 )
 def test_records_on_pads(name, window, scale, radius, slenderness):

@@ -37,7 +37,9 @@ def records():
     return pyslammer.sample_ground_motions()
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [NAMES[0], *(pytest.param(name, marks=pytest.mark.long) for name in NAMES[1:])]
+)
 def test_slip_down_a_slope(name, records):
     one = records[name]
     samples, step = np.asarray(one.accel), float(one.dt)

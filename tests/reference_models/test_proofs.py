@@ -107,7 +107,9 @@ def member(name, kind, by):
 
 @pytest.mark.parametrize("tolerance", [1e-9, pytest.param(1e-6, marks=pytest.mark.long)])
 @pytest.mark.parametrize("kind", SETS)
-@pytest.mark.parametrize("name", ["symmetric", "skew, with vertical motion"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("symmetric", marks=pytest.mark.long), "skew, with vertical motion"]
+)
 def test_a_run_with_another_number_is_inside_a_set_of_them(name, kind, tolerance):
     boxes, course = enclosures(name, **{kind: tolerance})
     assert course.impacts > 2

@@ -191,8 +191,13 @@ def euler_lagrange(pair: Pair, pattern: Pattern):
 
 @pytest.mark.parametrize(
     "pattern",
-    [("right", "left"), ("left", "left"), ("right", "both"), ("both", "left"), ("left", "none"),
-     ("none", "right"), ("none", "both"), ("none", "none")],
+    [
+        ("right", "left"), ("right", "both"), ("both", "left"), ("none", "right"),
+        *(
+            pytest.param(one, marks=pytest.mark.long)
+            for one in (("left", "left"), ("left", "none"), ("none", "both"), ("none", "none"))
+        ),
+    ],
 )  # fmt: skip
 def test_accelerations_satisfy_lagranges_equations(pattern):
     rng = np.random.default_rng(8)
@@ -360,7 +365,9 @@ def test_random_scenes_uplift_and_overturn():
     assert 0.2 < sum(fallen for _, fallen in ends) / len(ends) < 0.8
 
 
-@pytest.mark.parametrize("number", [0, 2, 11, 13])
+@pytest.mark.parametrize(
+    "number", [2, 11, *(pytest.param(one, marks=pytest.mark.long) for one in (0, 13))]
+)
 def test_the_package_moves_alike(number):
     found = compared(draw(np.random.default_rng([11, number])))
     assert found.same_verdict

@@ -15,7 +15,10 @@ ON_SPRINGS = (2, 6, 8, 199, 283)
 
 @pytest.mark.skipif(not have_records(), reason="no recorded motions")
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
-@pytest.mark.parametrize("number", range(6))
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(number, marks=[pytest.mark.long] * (number in (0, 2))) for number in range(6)],
+)
 def test_random_scenes(number):
     one = compared(draw([7, number]))
     assert max(one.rotation, one.slip) < AGREES
@@ -23,7 +26,10 @@ def test_random_scenes(number):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.ModelWarning")
-@pytest.mark.parametrize("number", ON_SPRINGS)
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(one, marks=[pytest.mark.long] * (one in (6, 199))) for one in ON_SPRINGS],
+)
 def test_random_scenes_of_which_one_base_gives_way(number):
     one = compared(draw_giving([8, number]))
     assert max(one.rotation, one.slip) < AGREES

@@ -31,12 +31,17 @@ TIED_ON_BASES = (
 )  # fmt: skip
 
 
+def few(numbers, *kept):
+    """Leave all others, which take longer, to the long run."""
+    return [pytest.param(one, marks=[pytest.mark.long] * (one not in kept)) for one in numbers]
+
+
 @pytest.mark.parametrize("number", TIED)
 def test_random_scenes_with_ties(number):
     check(compare(draw_tied(np.random.default_rng([40, number]))))
 
 
-@pytest.mark.parametrize("number", TIED_ON_BASES)
+@pytest.mark.parametrize("number", few(TIED_ON_BASES, 1, 3))
 def test_random_scenes_with_ties_on_pads_and_beds(number):
     check(compare(draw_tied_on_base(np.random.default_rng([41, number]))))
 
@@ -46,7 +51,7 @@ def test_random_scenes_before_elastic_walls(number):
     check(compare(draw_walled(np.random.default_rng([50, number]))))
 
 
-@pytest.mark.parametrize("number", [1, 9])
+@pytest.mark.parametrize("number", few((1, 9), 1))
 def test_random_scenes_before_elastic_walls_on_pads_and_beds(number):
     check(compare(draw_walled_on_base(np.random.default_rng([51, number]))))
 
@@ -62,7 +67,7 @@ def test_random_scenes(number):
     check(compare(draw(np.random.default_rng([30, number]))))
 
 
-@pytest.mark.parametrize("number", ON_BASES)
+@pytest.mark.parametrize("number", few(ON_BASES, 2, 10, 18, 20))
 def test_random_scenes_on_pads_and_beds(number):
     check(compare(draw_on_base(np.random.default_rng([31, number]))))
 

@@ -103,8 +103,14 @@ SEPARATIONS = [("displacement", rule) for rule in RULES] + [
 ]
 
 
-@pytest.mark.parametrize("rotation", ["finite", "small"])
-@pytest.mark.parametrize(("separation", "rule"), SEPARATIONS)
+@pytest.mark.parametrize(
+    ("separation", "rule", "rotation"),
+    [
+        pytest.param(*one, rotation, marks=[pytest.mark.long] * ((number + place) % 2))
+        for number, one in enumerate(SEPARATIONS)
+        for place, rotation in enumerate(("finite", "small"))
+    ],
+)
 def test_random_motion_on_soil(separation, rule, rotation):
     x, y = noise(101, (3.5, 5.0))
     ours = on_soil(rule, rotation, separation, motion_of(x, y), 0.0, free_vibration="1 s")

@@ -121,7 +121,13 @@ HAPPENS = {
 """How often, at least, what each scene is for; none means never."""
 
 
-@pytest.mark.parametrize("name", SCENES)
+SECOND_LOOKS = ("pulse", "across", "with vertical motion, contact-state")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.long] * (name in SECOND_LOOKS)) for name in SCENES],
+)
 def test_histories_and_sets(example_pads, name):
     scene = SCENES[name]
     pads = example_pads(
@@ -169,7 +175,7 @@ def test_a_landing_makes_pads_yield():
     assert found >= 1
 
 
-@pytest.mark.parametrize("rule", ["centre", "contact-state"])
+@pytest.mark.parametrize("rule", [pytest.param("centre", marks=pytest.mark.long), "contact-state"])
 def test_pads_that_are_strong_enough_are_elastic(rule):
     """The monolith against the one of elastic pads."""
     scene = Scene(radius=3.0, slenderness=3.0, xi=0.05, rough=(9.0, 3.0, 26))

@@ -119,6 +119,10 @@ ANALYSES = {
 }  # fmt: skip
 
 
+SEEN = ("overturning_map", "probability_of_overturning", "earthquake_sequences")
+"""Analyses of whose arguments of runs each is changed in every round of tests."""
+
+
 def arguments_of(name):
     return set(inspect.signature(getattr(rf, name)).parameters)
 
@@ -175,7 +179,12 @@ def begun(tmp_path_factory):
 
 @pytest.mark.parametrize(
     ("analysis", "name"),
-    [(one, name) for one, (_, changes) in ANALYSES.items() for name in changes],
+    [
+        # what all analyses hand on to runs is read in one place
+        pytest.param(one, name, marks=[pytest.mark.long] * (name in RUN and one not in SEEN))
+        for one, (_, changes) in ANALYSES.items()
+        for name in changes
+    ],
 )
 def test_a_store_never_serves_other_arguments(analysis, name, begun, tmp_path):
     base, changes = ANALYSES[analysis]
