@@ -115,6 +115,7 @@ def test_swapping_the_registry_mid_session_does_no_harm(restored_registry):
     assert first.drop_attrs().identical(second.drop_attrs())
 
 
+@pytest.mark.wide
 def test_a_registry_of_another_library_does_no_harm():
     code = """
 import rockframe as rf

@@ -264,6 +264,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.wide
 def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
     (tmp_path / "slow.py").write_text(RUN)
     environment = {"PYTHONPATH": ":".join(sys.path), "ROCKFRAME_CACHE_DIR": str(tmp_path / "code")}

@@ -114,7 +114,9 @@ class TestReadingOrder:
         assert COLUMNS not in found
         assert found.count(ROWS) >= 0.3 * len(found)
 
-    @pytest.mark.parametrize("every", [1, 2, 5, 10, 20])
+    @pytest.mark.parametrize(
+        "every", [5, *(pytest.param(step, marks=pytest.mark.long) for step in (1, 2, 10, 20))]
+    )
     @pytest.mark.parametrize("name", SEVERAL)
     def test_no_components_are_taken_for_one_record(self, name, every):
         held = components(name)

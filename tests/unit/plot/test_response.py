@@ -77,9 +77,9 @@ LONGEST = (
 @pytest.mark.parametrize(
     ("words", "lines"),
     [
-        ("short", ["short"]),
+        pytest.param("short", ["short"], marks=pytest.mark.long),
         (LONGEST[:90], [LONGEST[:90]]),
-        (LONGEST[:120], [LONGEST[:77], LONGEST[78:120]]),
+        pytest.param(LONGEST[:120], [LONGEST[:77], LONGEST[78:120]], marks=pytest.mark.long),
         (LONGEST, [LONGEST[:77], LONGEST[78:134], LONGEST[135:]]),
         ("two\nlines", ["two", "lines"]),
         (" ".join(["word"] * 30), [" ".join(["word"] * 19), " ".join(["word"] * 11)]),

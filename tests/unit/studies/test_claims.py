@@ -211,6 +211,7 @@ def test_a_process_that_has_ended_is_dead_at_once(tmp_path):
     assert not one.take(9)
 
 
+@pytest.mark.wide
 def test_damaged_claims_delay_a_study_and_change_nothing(whole, tmp_path, monkeypatch):
     folder = tmp_path / "study"
     folder.mkdir()
