@@ -193,7 +193,9 @@ def test_the_nearest_scale_is_found(edge):
     assert found.flip == pytest.approx(edge, abs=2.0 * RESOLUTION * abs(edge - 1.0))
 
 
-@pytest.mark.parametrize("edge", [1e-3, 1e-6, 1e-10])
+@pytest.mark.parametrize(
+    "edge", [*(pytest.param(one, marks=pytest.mark.long) for one in (1e-3, 1e-6)), 1e-10]
+)
 def test_a_margin_has_no_floor(edge):
     found = certificate_of(lambda _, plan: plan.motion.si.peak / PULSE.si.peak > 1.0 + edge)
     assert edge * (1.0 - 2.0 * RESOLUTION) <= found.margin <= edge

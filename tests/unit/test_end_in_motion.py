@@ -190,7 +190,7 @@ def test_where_no_soil_carries_a_stack_its_energy_is_that_on_the_way(monkeypatch
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-@pytest.mark.parametrize("amplitude", ["1 m/s^2", "3 m/s^2"])
+@pytest.mark.parametrize("amplitude", ["1 m/s^2", pytest.param("3 m/s^2", marks=pytest.mark.long)])
 def test_a_run_of_such_a_stack_is_kept(amplitude):
     pulse = rf.GroundMotion.sine_pulse(amplitude, "1 Hz")
     found = pedestal("2 m").simulate(pulse, outputs=None)

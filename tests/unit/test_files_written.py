@@ -15,6 +15,7 @@ import rockframe as rf
 from rockframe.command.files.templates import TEMPLATES
 from rockframe.command.main import main
 from rockframe.errors import FileError
+from rockframe.reports import page
 from rockframe.writing import FileKind, write_file
 
 pytestmark = pytest.mark.unit
@@ -25,9 +26,10 @@ STUDY = 'scene = "scene.toml"\nmotions = ["record.AT2"]\n[axes]\nscale = [0.5, 1
 def written(tmp_path_factory):
     """Give all files that commands read, and one of each kind that they write."""
     folder = tmp_path_factory.mktemp("written")
-    here = Path.cwd()
-    os.chdir(folder)
-    try:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        # as the fixture no_pictures, which serves single tests alone
+        patch.setattr(page, "_drawn", lambda figure, kind: b"<svg/>")
         scene = TEMPLATES["block"].split("[run]", maxsplit=1)[0]
         Path("scene.toml").write_text(scene + '[run]\naccuracy = "fast"\n')
         rf.GroundMotion.sine_pulse("-4 m/s^2", "1 Hz").to_at2("record.AT2")
@@ -47,8 +49,6 @@ def written(tmp_path_factory):
         moving.save("run.gif", dpi=20)
         moving.save("moving.html")
         rf.GroundMotion.read("record.AT2").to_dataset().to_netcdf("motion.nc")
-    finally:
-        os.chdir(here)
     return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*.*")}
 
 

@@ -146,7 +146,15 @@ assert rf.System.from_dataset(response).parts.block == after
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("unit", ["m", "mm", "km", "dm", "Mm", "nautical_mile"])
+@pytest.mark.parametrize(
+    "unit",
+    [
+        "mm",
+        "km",
+        "nautical_mile",
+        *(pytest.param(one, marks=pytest.mark.long) for one in ("m", "dm", "Mm")),
+    ],
+)
 def test_columns_of_floats_are_converted_as_each_of_them(unit):
     rng = np.random.default_rng(2)
     numbers = [

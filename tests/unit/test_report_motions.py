@@ -122,6 +122,7 @@ def test_a_target_is_given_in_three_ways(runs, suite, tmp_path):
         rf.report(run, path, motions=[record(9)])
 
 
+@pytest.mark.long
 def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypatch):
     runs = rf.sweep(BLOCK, motions=suite, accuracy="fast", store=tmp_path / "kept")
     runs.to_netcdf(tmp_path / "runs.nc")

@@ -492,7 +492,7 @@ def test_pads_too_soft_to_bear_a_body_beside_links_that_hold_nothing_are_refused
             rf.System(standing, firm if standing is stack else soft, slack)
 
 
-@pytest.mark.parametrize("number", [802, 1929])
+@pytest.mark.parametrize("number", [pytest.param(802, marks=pytest.mark.long), 1929])
 def test_links_that_begin_to_answer_within_a_step_are_found_on_the_way(number):
     system, *_ = drawn(number)
     chain = system.setting.standing.chain

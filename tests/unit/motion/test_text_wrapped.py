@@ -105,7 +105,9 @@ class TestReadingOrder:
         samples = GroundMotion.example("loma-prieta").si.horizontal.samples
         assert reading_order(table(samples, columns)) == ROWS
 
-    @pytest.mark.parametrize("name", FILES)
+    @pytest.mark.parametrize(
+        "name", [*FILES[::2], *(pytest.param(one, marks=pytest.mark.long) for one in FILES[1::2])]
+    )
     def test_no_recorded_motion_is_taken_for_columns(self, name):
         found = [
             reading_order(table(samples, columns))

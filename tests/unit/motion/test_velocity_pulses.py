@@ -154,7 +154,9 @@ def test_what_is_not_met_is_said():
     assert "not pulse-like (" in str(none)
 
 
-@pytest.mark.parametrize("angle", [20.0, 90.0, 155.0])
+@pytest.mark.parametrize(
+    "angle", [20.0, *(pytest.param(one, marks=pytest.mark.long) for one in (90.0, 155.0))]
+)
 def test_the_direction_of_a_pulse_is_found(angle):
     time = np.arange(4001) * STEP
     pulse, turned = wavelet(time, 2.5, 9.0), math.radians(angle)

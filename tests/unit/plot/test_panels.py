@@ -334,7 +334,7 @@ def test_all_figures_take_their_colours_from_the_palette():
     assert {colour for _, colour in written} == known
 
 
-@pytest.mark.parametrize("size", [(8.0, 6.0), (4.0, 5.0)])
+@pytest.mark.parametrize("size", [pytest.param((8.0, 6.0), marks=pytest.mark.long), (4.0, 5.0)])
 def test_legends_stand_off_the_curves(runs, size):
     figure = plt.figure(figsize=size, layout="constrained")
     rf.plot.response(runs["whole"], units={"force": "kN"}, events=True, ax=figure,

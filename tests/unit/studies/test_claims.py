@@ -261,7 +261,7 @@ def test_workers_are_those_of_the_executor():
     assert workers_of(Unknown()) > 50
 
 
-@pytest.mark.parametrize("workers", [1, 3])
+@pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.long), 3])
 def test_no_more_chunks_are_handed_out_than_workers_need(workers):
     going = []
 

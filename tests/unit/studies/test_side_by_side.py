@@ -76,8 +76,8 @@ def assert_same_bits(lanes, alone):
     [
         ((), {}),
         ((PADS,), {}),
-        ((PADS,), {"restraint": "leading-corner"}),
-        ((PADS,), {"rotation": "small"}),
+        pytest.param((PADS,), {"restraint": "leading-corner"}, marks=pytest.mark.wide),
+        pytest.param((PADS,), {"rotation": "small"}, marks=pytest.mark.wide),
         # whose lanes nothing else compiles
         pytest.param((SOIL,), {}, marks=pytest.mark.long),
         pytest.param((PADS, CAP, SOIL), {}, marks=pytest.mark.long),
