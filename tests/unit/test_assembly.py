@@ -25,10 +25,17 @@ def faults(*parts, **options):
 MODELS = {name: name.split(" by ")[0].split(" with ")[0] for name in SCENES}
 
 
+MANY_PARTS = {"coupled": pytest.mark.wide, "cascade": pytest.mark.long}
+"""Scenes of the same parts, of which there are many orders."""
+
+
 # parts -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=MANY_PARTS.get(name, [])) for name in SCENES],
+)
 def test_parts_come_in_any_order(name):
     motion = pulse()
     options = OPTIONS.get(name, {})

@@ -55,8 +55,15 @@ def test_the_run_itself_is_the_same():
     xr.testing.assert_identical(certified()[list(plain)].drop_attrs(), plain.drop_attrs())
 
 
-@pytest.mark.parametrize("off", [0.03, 0.2])
-@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize(
+    ("side", "off"),
+    [
+        (-1.0, 0.03),
+        (1.0, 0.2),
+        pytest.param(-1.0, 0.2, marks=pytest.mark.long),
+        pytest.param(1.0, 0.03, marks=pytest.mark.long),
+    ],
+)
 def test_the_margin_is_the_distance_to_the_boundary(off, side):
     """Up to the resolution: the bisection of an interval of a geometric row."""
     scale = edge() / (1.0 + side * off)
@@ -166,7 +173,15 @@ def test_the_runs_beside_are_counted():
     assert found.runs == len(made) - 1  # the first is the run itself
 
 
-@pytest.mark.parametrize("edge", [0.6, 0.97, 1.004, 1.2])
+@pytest.mark.parametrize(
+    "edge",
+    [
+        0.6,
+        pytest.param(0.97, marks=pytest.mark.long),
+        1.004,
+        pytest.param(1.2, marks=pytest.mark.long),
+    ],
+)
 def test_the_nearest_scale_is_found(edge):
     peak = edge * PULSE.si.peak
 
@@ -178,7 +193,9 @@ def test_the_nearest_scale_is_found(edge):
     assert found.flip == pytest.approx(edge, abs=2.0 * RESOLUTION * abs(edge - 1.0))
 
 
-@pytest.mark.parametrize("edge", [1e-3, 1e-6, 1e-10])
+@pytest.mark.parametrize(
+    "edge", [*(pytest.param(one, marks=pytest.mark.long) for one in (1e-3, 1e-6)), 1e-10]
+)
 def test_a_margin_has_no_floor(edge):
     found = certificate_of(lambda _, plan: plan.motion.si.peak / PULSE.si.peak > 1.0 + edge)
     assert edge * (1.0 - 2.0 * RESOLUTION) <= found.margin <= edge
@@ -201,8 +218,8 @@ def test_a_peak_that_comes_near_to_overturning_is_looked_into():
     assert found.margin <= middle - half
 
 
-def test_a_course_that_cannot_be_followed_ends_the_margin():
-    """Runs that all stand, each on a course of its own beyond a certain scale."""
+def certified_on_courses_of_their_own(**options):
+    """Certify runs that all stand, each on a course of its own beyond a certain scale."""
     rng = np.random.default_rng(0)
 
     def run(_, plan):
@@ -210,16 +227,22 @@ def test_a_course_that_cannot_be_followed_ends_the_margin():
         course = (1.0, rng.uniform(0.0, 1.0) if off > 0.1 else 0.5)
         return RunSummary(False, 0.1, (0.5,), math.nan, 0, 0.001, course)
 
-    plan = planned()
-    found = certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(), run)
+    plan, asked = planned(), rf.Certification(**options)
+    return certify(SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), asked, run)
+
+
+def test_a_course_that_cannot_be_followed_ends_the_margin():
+    found = certified_on_courses_of_their_own()
     assert 0.09 < found.margin < 0.12
     assert math.isnan(found.flip)
     assert found.robust
     assert "200 runs were too few to extend this range" in found.sentence
     assert found.runs <= 200
-    more = certify(
-        SYSTEM.assembly, plan, run(SYSTEM.assembly, plan), rf.Certification(runs=400), run
-    )
+
+
+@pytest.mark.long
+def test_more_runs_follow_a_course_no_less_far():
+    found, more = certified_on_courses_of_their_own(), certified_on_courses_of_their_own(runs=400)
     assert 200 < more.runs <= 400
     assert more.margin >= found.margin
 
@@ -270,8 +293,12 @@ def test_of_two_changes_the_nearer_counts(lower, upper):
     ("edge", "words"),
     [
         (1.008, "Near the boundary: .* scaled up by 0.8 %"),
-        (0.992, "Near the boundary: .* scaled down by 0.8 %"),
-        (1.02, "The body stands also .* No other verdict .* another verdict is 1.020"),
+        pytest.param(0.992, "Near the boundary: .* scaled down by 0.8 %", marks=pytest.mark.long),
+        pytest.param(
+            1.02,
+            "The body stands also .* No other verdict .* another verdict is 1.020",
+            marks=pytest.mark.long,
+        ),
         (0.98, "The body stands also .* No other verdict .* another verdict is 0.979"),
     ],
 )

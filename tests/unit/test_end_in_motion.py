@@ -149,8 +149,17 @@ def pedestal(height, width="1 m", stiffness="5 MPa"):
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-@pytest.mark.parametrize("height", ["1 m", "2 m", "3 m"])
-@pytest.mark.parametrize("stiffness", ["1 MPa", "5 MPa"])
+@pytest.mark.parametrize(
+    ("height", "stiffness"),
+    [
+        ("3 m", "1 MPa"),
+        ("1 m", "5 MPa"),
+        *(
+            pytest.param(*one, marks=pytest.mark.long)
+            for one in (("1 m", "1 MPa"), ("2 m", "1 MPa"), ("2 m", "5 MPa"), ("3 m", "5 MPa"))
+        ),
+    ],
+)
 def test_a_stack_that_cannot_be_held_far_has_its_energy(height, stiffness):
     setting = pedestal(height, stiffness=stiffness).assembly.setting
     rigid = 4e3 * 9.80665 * math.hypot(0.5, 1.0) * (1.0 - math.cos(setting.overturning_angle))
@@ -181,7 +190,7 @@ def test_where_no_soil_carries_a_stack_its_energy_is_that_on_the_way(monkeypatch
 
 
 @pytest.mark.filterwarnings("ignore::rockframe.errors.RockframeWarning")
-@pytest.mark.parametrize("amplitude", ["1 m/s^2", "3 m/s^2"])
+@pytest.mark.parametrize("amplitude", ["1 m/s^2", pytest.param("3 m/s^2", marks=pytest.mark.long)])
 def test_a_run_of_such_a_stack_is_kept(amplitude):
     pulse = rf.GroundMotion.sine_pulse(amplitude, "1 Hz")
     found = pedestal("2 m").simulate(pulse, outputs=None)

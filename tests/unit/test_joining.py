@@ -280,6 +280,7 @@ def test_bodies_and_restrainers_that_a_run_has_not_are_gaps(tmp_path):
     xr.testing.assert_identical(xr.load_dataset(tmp_path / "joined.nc"), joined)
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_sweeps_of_which_one_has_gaps_are_that_of_all(tmp_path):
     def drums(count):

@@ -1,6 +1,5 @@
 """A bed of single springs, each of which touches or not: far more modes than a run meets."""
 
-import itertools
 from contextlib import contextmanager
 from dataclasses import replace
 from time import thread_time
@@ -152,7 +151,15 @@ def springs(count):
 
 
 @pytest.mark.parametrize(
-    ("count", "coupling"), [*itertools.product((6, 8, 10), ("coupled", "cascade"))]
+    ("count", "coupling"),
+    [
+        (6, "cascade"),
+        (10, "coupled"),
+        pytest.param(6, "coupled", marks=pytest.mark.long),
+        pytest.param(8, "coupled", marks=pytest.mark.long),
+        pytest.param(8, "cascade", marks=pytest.mark.long),
+        pytest.param(10, "cascade", marks=pytest.mark.long),
+    ],
 )
 def test_a_scene_is_built_whatever_the_number_of_modes(count, coupling):
     with springs(count) as soil, plainly():

@@ -115,6 +115,7 @@ def test_swapping_the_registry_mid_session_does_no_harm(restored_registry):
     assert first.drop_attrs().identical(second.drop_attrs())
 
 
+@pytest.mark.wide
 def test_a_registry_of_another_library_does_no_harm():
     code = """
 import rockframe as rf
@@ -145,7 +146,15 @@ assert rf.System.from_dataset(response).parts.block == after
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("unit", ["m", "mm", "km", "dm", "Mm", "nautical_mile"])
+@pytest.mark.parametrize(
+    "unit",
+    [
+        "mm",
+        "km",
+        "nautical_mile",
+        *(pytest.param(one, marks=pytest.mark.long) for one in ("m", "dm", "Mm")),
+    ],
+)
 def test_columns_of_floats_are_converted_as_each_of_them(unit):
     rng = np.random.default_rng(2)
     numbers = [

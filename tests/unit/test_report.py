@@ -129,9 +129,21 @@ def test_a_run_by_a_record_has_its_certificate_though_it_overturned(tmp_path):
         assert rf.System.from_dataset(changed).motion is None
 
 
-@pytest.mark.parametrize("given", [{"overturning": "continue"}, {"free_vibration": "9 s"}])
+LONGER, BEYOND = {"free_vibration": "9 s"}, {"overturning": "continue"}
+
+
 @pytest.mark.parametrize(
-    "parts", ["rigid", "sliding", "pads", pytest.param("stack", marks=pytest.mark.long)]
+    ("parts", "given"),
+    [
+        ("rigid", LONGER),
+        ("pads", BEYOND),
+        pytest.param("sliding", LONGER, marks=pytest.mark.wide),
+        pytest.param("rigid", BEYOND, marks=pytest.mark.long),
+        pytest.param("sliding", BEYOND, marks=pytest.mark.long),
+        pytest.param("pads", LONGER, marks=pytest.mark.long),
+        pytest.param("stack", LONGER, marks=pytest.mark.long),
+        pytest.param("stack", BEYOND, marks=pytest.mark.long),
+    ],
 )
 def test_runs_that_overturned_under_a_record_are_certified(parts, given, tmp_path):
     scenes = {
@@ -204,6 +216,7 @@ def test_what_slid_is_said_first_of_runs_and_sweeps(name, tmp_path):
     assert '<div class="verdict doubt"><strong>No case overturned, some slid</strong>' in text
 
 
+@pytest.mark.wide
 def test_what_overturned_after_it_slid_and_what_would_slide(tmp_path):
     slim = rf.Block(width="0.5 m", height="2 m", mass="1 t")
     pulse = rf.GroundMotion.sine_pulse("9 m/s^2", "0.5 Hz")
@@ -356,6 +369,7 @@ def test_a_sweep_has_all_its_cases_and_the_worst_in_full(tmp_path):
     assert "2 sine pulse" not in words
 
 
+@pytest.mark.wide
 def test_a_sweep_shows_forces_and_slips_of_each_case_in_the_units_of_the_reader(tmp_path):
     rough = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1, friction=0.25)
     tie = {"on": ("-0.3 m", "2 m"), "to": ("-1.3 m", "2 m"), "slack": "5 mm"}

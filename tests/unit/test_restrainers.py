@@ -218,24 +218,26 @@ def test_a_tie_breaks_at_an_elongation_as_at_the_force_there():
 
 
 @plainly()
-def test_a_stack_on_rigid_bases_is_tied():
+@pytest.mark.parametrize(
+    "base", [rf.RigidGround(), pytest.param(PADS, marks=pytest.mark.long)], ids=["ground", "pads"]
+)
+def test_a_stack_on_rigid_bases_is_tied(base):
     plinth = rf.Block(width="1.4 m", height="1 m", mass="5 t")
     stack = rf.Stack(BLOCK, plinth, interfaces=[rf.RigidGround()])
     anchor = rf.Restrainer(
         on=("-0.5 m", "1 m"), to=("-0.6 m", "0.5 m"), stiffness="1 MN/m", to_body=2,
         slack="1 mm", strength="20 kN", brittle=False, name="anchor",
     )  # fmt: skip
-    for base in (rf.RigidGround(), PADS):
-        system = rf.System(stack, base, anchor, TIE)
-        found = system.simulate(PULSE, duration="1.4 s", outputs=("energy",))
-        assert float(found.peak_restrainer_force.min()) > 0.0
-        assert imbalance(found) < 1e-8
-        assert system.setting.overturning_energy > 0.0
-        free, tied = (
-            rf.System(stack, base, *some).moment_rotation(([0.002], "rad"))
-            for some in ((), (anchor, TIE))
-        )
-        assert float(tied.restoring_moment[0]) > float(free.restoring_moment[0])
+    system = rf.System(stack, base, anchor, TIE)
+    found = system.simulate(PULSE, duration="1.4 s", outputs=("energy",))
+    assert float(found.peak_restrainer_force.min()) > 0.0
+    assert imbalance(found) < 1e-8
+    assert system.setting.overturning_energy > 0.0
+    free, tied = (
+        rf.System(stack, base, *some).moment_rotation(([0.002], "rad"))
+        for some in ((), (anchor, TIE))
+    )
+    assert float(tied.restoring_moment[0]) > float(free.restoring_moment[0])
 
 
 def test_a_corner_tie_adds_its_closed_form():
@@ -490,7 +492,7 @@ def test_pads_too_soft_to_bear_a_body_beside_links_that_hold_nothing_are_refused
             rf.System(standing, firm if standing is stack else soft, slack)
 
 
-@pytest.mark.parametrize("number", [802, 1929])
+@pytest.mark.parametrize("number", [pytest.param(802, marks=pytest.mark.long), 1929])
 def test_links_that_begin_to_answer_within_a_step_are_found_on_the_way(number):
     system, *_ = drawn(number)
     chain = system.setting.standing.chain
@@ -523,6 +525,7 @@ def test_a_bar_that_is_as_good_as_rigid_carries_what_balance_leaves_to_it(times)
         assert share == pytest.approx(1.0, rel=2e-3)
 
 
+@pytest.mark.long
 def test_bodies_that_stiff_ties_join_move_as_those_that_softer_ones_nearly_join():
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)
     stack = rf.Stack(

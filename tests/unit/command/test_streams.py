@@ -28,6 +28,7 @@ class Terminal(io.StringIO):
         return True
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_scene_and_a_result_go_through_pipes(piped, folder):
     scene = Path("scene.toml").read_bytes()
     code, result, told = piped(scene, "run", "-", "-o", "-")
@@ -128,7 +129,16 @@ ANALYSES = {
 }
 
 
-@pytest.mark.parametrize("name", ANALYSES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        "study",
+        "critical",
+        "fragility",
+        pytest.param("ida", marks=pytest.mark.wide),
+        pytest.param("map", marks=pytest.mark.long),
+    ],
+)
 def test_progress_is_shown_on_a_terminal_alone(name, typed, monkeypatch):
     Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
     monkeypatch.setattr(streams, "_DELAY", 0.0)
@@ -166,17 +176,16 @@ def test_a_terminal_is_spared_what_it_cannot_show(typed, monkeypatch):
     assert (code, "the standard output is a terminal" in err) == (2, True)
 
 
-def test_nothing_is_lost_where_nobody_reads_on(folder, uncompiled):
-    for command in ("run scene.toml -o out.nc", "run scene.toml -o out.nc --json"):
-        Path("out.nc").unlink(missing_ok=True)
-        with subprocess.Popen(
-            [sys.executable, "-m", "rockframe", *command.split()],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=uncompiled,
-        ) as going:  # fmt: skip
-            going.stdout.close()
-            assert going.stderr.read() == b""
-        assert going.returncode == 0
-        assert Path("out.nc").is_file()
+@pytest.mark.parametrize("form", [[], pytest.param(["--json"], marks=pytest.mark.long)])
+def test_nothing_is_lost_where_nobody_reads_on(form, folder, uncompiled):
+    with subprocess.Popen(
+        [sys.executable, "-m", "rockframe", "run", "scene.toml", "-o", "out.nc", *form],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=uncompiled,
+    ) as going:  # fmt: skip
+        going.stdout.close()
+        assert going.stderr.read() == b""
+    assert going.returncode == 0
+    assert Path("out.nc").is_file()
 
 
 def test_every_command_takes_json(typed):

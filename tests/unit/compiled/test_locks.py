@@ -74,6 +74,7 @@ def test_a_file_that_stands_for_a_lock_delays_nobody_where_there_are_locks(modul
     assert seconds_until_compiled(module) < AT_ONCE
 
 
+@pytest.mark.wide
 def test_two_processes_do_not_compile_at_once(module):
     with keep(module, 1.0), store.compiling(module, lambda: True):
         assert module.with_suffix(".nbc").exists()

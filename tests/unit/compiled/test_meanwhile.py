@@ -264,6 +264,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.wide
 def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
     (tmp_path / "slow.py").write_text(RUN)
     environment = {"PYTHONPATH": ":".join(sys.path), "ROCKFRAME_CACHE_DIR": str(tmp_path / "code")}
@@ -278,8 +279,15 @@ def test_a_call_becomes_machine_code_when_another_process_has_made_it(tmp_path):
     assert len(set(values)) == 1
 
 
-@pytest.mark.parametrize("accuracy", ["fast", "standard"])
-@pytest.mark.parametrize("stands_on", [(), (PADS,)])
+@pytest.mark.parametrize(
+    ("stands_on", "accuracy"),
+    [
+        ((), "standard"),
+        ((PADS,), "fast"),
+        pytest.param((), "fast", marks=pytest.mark.long),
+        pytest.param((PADS,), "standard", marks=pytest.mark.long),
+    ],
+)
 def test_a_run_that_comes_back_now_and_then_is_the_same_run(monkeypatch, accuracy, stands_on):
     rng = np.random.default_rng(1)
     motion = rf.GroundMotion.from_arrays((5.0 * rng.normal(size=300), "m/s^2"), "0.02 s")

@@ -128,6 +128,7 @@ def test_the_next_process_compiles_nothing_unless_a_source_has_changed(own, fold
     assert before.keys() < set(written(folder))
 
 
+@pytest.mark.long
 def test_processes_that_start_at_once_do_not_harm_each_other(own, folder):
     for process in [start() for _ in range(2)]:
         assert lines_of(process)[-1] == "[4.0, -9.0]"

@@ -39,7 +39,14 @@ class LinearDecay:
         return values[2] + number * values[1], values[0] + number * values[1]
 
 
-@pytest.mark.parametrize(("of_rotation", "of_time"), [(0.01, 0.01), (0.01, 0.001), (0.001, 0.01)])
+@pytest.mark.parametrize(
+    ("of_rotation", "of_time"),
+    [
+        pytest.param(0.01, 0.01, marks=pytest.mark.long),
+        (0.01, 0.001),
+        pytest.param(0.001, 0.01, marks=pytest.mark.long),
+    ],
+)
 def test_intervals_from_few_peaks_with_times_hold_the_true_value_as_often_as_they_say(
     of_rotation, of_time
 ):

@@ -236,6 +236,7 @@ class TestWithObspy:
         )
         assert len(GroundMotion.read(write(pieces, "r.mseed"), unit="mgal")) == 5000
 
+    @pytest.mark.wide
     def test_nothing_of_what_obspy_says_comes_to_the_terminal(self, write):
         # a length of 10^9 samples, and data that end early: errors in callbacks of the library
         code = (

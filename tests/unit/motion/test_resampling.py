@@ -142,7 +142,9 @@ def test_band_limited_samples_keep_the_old_ones(times):
     assert fine.si.horizontal.samples[::times].tolist() == NOISE.tolist()
 
 
-@pytest.mark.parametrize("step", [0.005, 0.001, 0.003, 0.0071])
+@pytest.mark.parametrize(
+    "step", [0.005, 0.0071, *(pytest.param(s, marks=pytest.mark.long) for s in (0.001, 0.003))]
+)
 @pytest.mark.parametrize("frequency", [1.0, 20.0, 40.0])
 def test_band_limited_samples_are_those_of_the_tone(step, frequency):
     """Up to 0.8 of the Nyquist frequency, where straight lines are far off."""

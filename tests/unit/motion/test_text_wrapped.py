@@ -105,7 +105,9 @@ class TestReadingOrder:
         samples = GroundMotion.example("loma-prieta").si.horizontal.samples
         assert reading_order(table(samples, columns)) == ROWS
 
-    @pytest.mark.parametrize("name", FILES)
+    @pytest.mark.parametrize(
+        "name", [*FILES[::2], *(pytest.param(one, marks=pytest.mark.long) for one in FILES[1::2])]
+    )
     def test_no_recorded_motion_is_taken_for_columns(self, name):
         found = [
             reading_order(table(samples, columns))
@@ -114,7 +116,9 @@ class TestReadingOrder:
         assert COLUMNS not in found
         assert found.count(ROWS) >= 0.3 * len(found)
 
-    @pytest.mark.parametrize("every", [1, 2, 5, 10, 20])
+    @pytest.mark.parametrize(
+        "every", [5, *(pytest.param(step, marks=pytest.mark.long) for step in (1, 2, 10, 20))]
+    )
     @pytest.mark.parametrize("name", SEVERAL)
     def test_no_components_are_taken_for_one_record(self, name, every):
         held = components(name)

@@ -56,6 +56,10 @@ DRAWN = {
     "animation": lambda run: rf.plot.animation(run, title=NAME),
     "own axes": lambda run: rf.plot.phase(run, ax=pyplot.figure().subplots(), title=NAME),
 }
+SOME_DRAWN = [
+    pytest.param(name, marks=[pytest.mark.long] * (name in ("motion", "animation")))
+    for name in DRAWN
+]
 
 
 def drawn(name, run):
@@ -68,7 +72,7 @@ def drawn(name, run):
     return list(_fonts._texts([figure])), [one.message for one in issued]
 
 
-@pytest.mark.parametrize("name", DRAWN)
+@pytest.mark.parametrize("name", SOME_DRAWN)
 def test_letters_that_no_font_has_are_told_once(name, run, monkeypatch):
     fonts = [one for one in font_manager.fontManager.ttflist if one.name == "DejaVu Sans"]
     monkeypatch.setattr(font_manager.fontManager, "ttflist", fonts)
@@ -78,7 +82,7 @@ def test_letters_that_no_font_has_are_told_once(name, run, monkeypatch):
     assert "install a font with these letters, such as Noto Sans CJK" in str(issued[0])
 
 
-@pytest.mark.parametrize("name", DRAWN)
+@pytest.mark.parametrize("name", SOME_DRAWN)
 def test_letters_are_written_in_a_font_that_has_them(name, run, installed):
     texts, issued = drawn(name, run)
     assert issued == []

@@ -276,6 +276,7 @@ def test_a_dynamic_analysis_has_the_measure_upwards_and_fractiles_of_the_motions
     assert named == ["0", "1", "2"]
 
 
+@pytest.mark.long
 def test_one_panel_of_a_dynamic_analysis_fits_into_a_column():
     system = rf.System(rf.Block(width="0.5 m", height="2 m", mass="400 kg"))
     motions = {f"{a}": rf.GroundMotion.sine_pulse(f"{a} m/s^2", "1 Hz") for a in (2.6, 3.0)}
@@ -333,7 +334,7 @@ def test_all_figures_take_their_colours_from_the_palette():
     assert {colour for _, colour in written} == known
 
 
-@pytest.mark.parametrize("size", [(8.0, 6.0), (4.0, 5.0)])
+@pytest.mark.parametrize("size", [pytest.param((8.0, 6.0), marks=pytest.mark.long), (4.0, 5.0)])
 def test_legends_stand_off_the_curves(runs, size):
     figure = plt.figure(figsize=size, layout="constrained")
     rf.plot.response(runs["whole"], units={"force": "kN"}, events=True, ax=figure,
@@ -354,6 +355,7 @@ def test_legends_stand_off_the_curves(runs, size):
                 assert not held or not any(box.contains(*place) for place in places)
 
 
+@pytest.mark.wide
 def test_any_history_of_a_run_has_a_panel():
     block = rf.Block(width="0.8 m", height="4 m", mass="2 t")
     slide = rf.System(block, rf.RigidGround(friction=0.18))

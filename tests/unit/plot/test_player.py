@@ -61,7 +61,9 @@ def points_of(data, numbers, name):
     return places + np.array([drawn["left"], drawn["bottom"]]), step
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize(
+    "scene", [pytest.param(name, marks=[pytest.mark.long] * (name == "stack")) for name in SCENES]
+)
 def test_the_numbers_of_a_page_are_where_the_parts_are(scene):
     run = run_of(scene, points={"top": ("0 m", "4 m")} if scene == "pads" else None)
     data, numbers = read(rf.plot.player(run).to_html())

@@ -77,9 +77,9 @@ LONGEST = (
 @pytest.mark.parametrize(
     ("words", "lines"),
     [
-        ("short", ["short"]),
+        pytest.param("short", ["short"], marks=pytest.mark.long),
         (LONGEST[:90], [LONGEST[:90]]),
-        (LONGEST[:120], [LONGEST[:77], LONGEST[78:120]]),
+        pytest.param(LONGEST[:120], [LONGEST[:77], LONGEST[78:120]], marks=pytest.mark.long),
         (LONGEST, [LONGEST[:77], LONGEST[78:134], LONGEST[135:]]),
         ("two\nlines", ["two", "lines"]),
         (" ".join(["word"] * 30), [" ".join(["word"] * 19), " ".join(["word"] * 11)]),
@@ -108,7 +108,7 @@ def test_the_verdict_of_a_run_that_was_not_finished_fits():
     assert figure.get_suptitle().replace("\n", " ") == run.attrs["verdict"]
 
 
-@pytest.mark.parametrize("coupling", ["coupled", "cascade"])
+@pytest.mark.parametrize("coupling", ["coupled", pytest.param("cascade", marks=pytest.mark.long)])
 def test_of_two_settlements_the_label_names_the_one(coupling):
     block = rf.Block(width="2 m", height="8 m", mass="50 t")
     pads = rf.TwoSpringSupport(frequency_ratio=20, damping_ratio=0.1)

@@ -107,6 +107,7 @@ def test_bodies_told_by_their_inertia_keep_their_shape_factor_at_other_sizes(nam
     np.testing.assert_allclose(least.capacity_scale, again.capacity_scale, rtol=2e-3)
 
 
+@pytest.mark.long
 def test_an_overturning_spectrum_is_a_dynamic_analysis_of_each_block():
     scales, suite = [0.5, 1.0, 2.0, 4.0, 8.0], dict([*motions().items()][:2])
     found = rf.overturning_spectrum(SYSTEM, suite, periods=(["2 s", "4 s"]), scale=scales, **FAST)

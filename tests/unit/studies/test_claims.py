@@ -211,6 +211,7 @@ def test_a_process_that_has_ended_is_dead_at_once(tmp_path):
     assert not one.take(9)
 
 
+@pytest.mark.wide
 def test_damaged_claims_delay_a_study_and_change_nothing(whole, tmp_path, monkeypatch):
     folder = tmp_path / "study"
     folder.mkdir()
@@ -260,7 +261,7 @@ def test_workers_are_those_of_the_executor():
     assert workers_of(Unknown()) > 50
 
 
-@pytest.mark.parametrize("workers", [1, 3])
+@pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.long), 3])
 def test_no_more_chunks_are_handed_out_than_workers_need(workers):
     going = []
 

@@ -173,6 +173,7 @@ def test_runs_that_were_cut_off_are_neither():
     assert told.followed_scale.item() <= told.scale.where(undecided).min().item()
 
 
+@pytest.mark.long
 def test_the_critical_scale_as_an_intensity(found):
     critical = found["soil, a pulse"].critical_scale.item()
     options = CASES["soil, a pulse"][2]

@@ -49,6 +49,7 @@ def test_brackets_of_a_dynamic_analysis_are_those_of_single_runs(analysis, tmp_p
     assert several, "none of the motions shows more than one crossing"
 
 
+@pytest.mark.long
 def test_a_dynamic_analysis_is_that_of_the_mirrored_motions(analysis):
     mirrored = rf.incremental_dynamic_analysis(
         SYSTEM, motions(-1.0), scale=np.arange(0.5, 6.1, 0.5), limits=["uplift", 0.4],
@@ -60,6 +61,7 @@ def test_a_dynamic_analysis_is_that_of_the_mirrored_motions(analysis):
         )
 
 
+@pytest.mark.wide
 def test_a_dynamic_analysis_agrees_with_the_critical_scale(analysis):
     for name, motion in motions().items():
         least = analysis.capacity_scale.sel(motion=name, limit_state="overturning").item()
@@ -149,8 +151,20 @@ def uninterrupted(resolution):
     ).drop_attrs()
 
 
-@pytest.mark.parametrize("after", [0, 1, 2])
-@pytest.mark.parametrize("kind", ["in a round", "between rounds", "with the last case"])
+@pytest.mark.parametrize(
+    ("kind", "after"),
+    [
+        ("between rounds", 0),
+        ("in a round", 1),
+        ("with the last case", 2),
+        pytest.param("in a round", 0, marks=pytest.mark.long),
+        pytest.param("with the last case", 0, marks=pytest.mark.long),
+        pytest.param("between rounds", 1, marks=pytest.mark.long),
+        pytest.param("with the last case", 1, marks=pytest.mark.long),
+        pytest.param("in a round", 2, marks=pytest.mark.long),
+        pytest.param("between rounds", 2, marks=pytest.mark.long),
+    ],
+)
 def test_an_interrupted_analysis_says_so_and_goes_on(tmp_path, monkeypatch, after, kind):
     # at a resolution of one brackets are narrowed at once
     some = {"scale": [1.0, 2.0, 4.0], "resolution": 1.0 if after != 2 else 0.02, **FAST}

@@ -56,7 +56,7 @@ def test_each_structure_has_the_capacities_that_it_has_alone(wide):
     assert case.simulate(outputs=None).peak_rotation.item() == peak.item()
 
 
-@pytest.mark.parametrize("trials", ["runs", "capacities"])
+@pytest.mark.parametrize("trials", ["runs", pytest.param("capacities", marks=pytest.mark.long)])
 def test_each_structure_has_a_fragility_of_its_own(wide, trials):
     found = rf.fragility(wide, "PGA", trials=trials)
     assert found.median_intensity.dims == ("width", "restitution", "limit_state")

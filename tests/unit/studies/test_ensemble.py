@@ -67,6 +67,7 @@ def test_a_sample_tells_its_motions_and_what_was_left_out():
     assert "7 without a verdict are left out" in found.verdict
 
 
+@pytest.mark.long
 def test_a_dynamic_analysis_counts_runs_without_a_verdict():
     analysis = rf.incremental_dynamic_analysis(SYSTEM, motions(3), scale=[1.0, 4.0, 9.0], **HOW)
     assert "no verdict" not in analysis.verdict

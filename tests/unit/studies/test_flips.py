@@ -97,7 +97,7 @@ def test_without_runs_to_spare_it_says_how_far_it_looked():
     )
 
 
-@pytest.mark.parametrize("resolution", [0.05, 0.02, 0.005])
+@pytest.mark.parametrize("resolution", [0.05, 0.02, pytest.param(0.005, marks=pytest.mark.long)])
 def test_no_range_wider_than_the_resolution_hides_up_to_where_it_was_followed(resolution):
     """Whatever peaks tell: here nothing."""
     start = 1.3

@@ -51,7 +51,9 @@ def swept(motions=tuple(MOTIONS), scales=SCALES, heights=HEIGHTS, **run):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("chunk", [1, 4, 7, 1000])
+@pytest.mark.parametrize(
+    "chunk", [7, *(pytest.param(size, marks=pytest.mark.long) for size in (1, 4, 1000))]
+)
 def test_a_study_is_extended_by_motions_and_values(tmp_path, ran, chunk):
     whole = swept()
     swept(("10", "weak"), [0.5, 1.0], HEIGHTS[::-1], store=tmp_path / "first")

@@ -144,6 +144,7 @@ def test_settlement_drift_and_acceleration_from_the_sweep_to_the_report(tmp_path
         assert name.split(" 0.")[0].split(" 6 ")[0] in page, limit
 
 
+@pytest.mark.wide
 def test_a_dynamic_analysis_narrows_limit_states_at_points():
     system, top = rf.System(BLOCK), {"top": ("0 m", "2 m")}
     drift = ("peak_point_horizontal_displacement", "4 cm", "top")
@@ -219,6 +220,7 @@ def test_responses_that_were_put_into_another_unit_are_read_in_it():
         rf.fragility(wrong, "PGA", limits=[("peak_rotation", "5 deg")])
 
 
+@pytest.mark.long
 def test_capacities_go_by_scales_in_another_unit():
     """Those of a dynamic analysis are multiples of the motion, whatever its scales are in."""
     motions = {f"seed {k}": rf.GroundMotion.stochastic(6.8, "8 km", seed=k) for k in range(4)}

@@ -52,7 +52,14 @@ ANALYSES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ANALYSES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        "incremental_dynamic_analysis",
+        pytest.param("overturning_map", marks=pytest.mark.long),
+        pytest.param("overturning_spectrum", marks=pytest.mark.long),
+    ],
+)
 def test_one_bar_counts_all_rounds(name, bars, monkeypatch):
     ran = []
     whole = execution._Bar.expect

@@ -72,7 +72,7 @@ def stacked() -> rf.System:
     return rf.System(rf.Stack(statue, plinth, interfaces=[rf.RigidGround()]), wire)
 
 
-@pytest.mark.parametrize("scene", [frame, stacked])
+@pytest.mark.parametrize("scene", [frame, pytest.param(stacked, marks=pytest.mark.long)])
 def test_what_is_broken_at_the_end_are_the_breaks_of_a_run(scene):
     motion = rf.GroundMotion.type_a_pulse("1.2 m/s", "1.6 s") if scene is frame else PULSE
     scales = [0.3, 1.3333]  # PULSE is then one of 4 m/s^2
@@ -120,6 +120,7 @@ def test_a_function_tells_the_names_of_restrainers_where_all_are_alike():
     assert rf.sweep(unlike, PULSE, number=[7, 8], **kept).restrainer.values == ["1"]
 
 
+@pytest.mark.wide
 def test_a_case_whose_restrainers_are_not_those_of_the_labels_says_so():
     def scene(number: int) -> rf.System:  # of so many it is not looked at all beforehand
         names = ("east", "west") if number == 5 else ("west", "east")
@@ -132,7 +133,9 @@ def test_a_case_whose_restrainers_are_not_those_of_the_labels_says_so():
     assert np.flatnonzero(runs.message != "none").tolist() == [5]
 
 
-@pytest.mark.parametrize("outputs", [None, [], ["energy"]])
+@pytest.mark.parametrize(
+    "outputs", [None, *(pytest.param(one, marks=pytest.mark.long) for one in ([], ["energy"]))]
+)
 def test_unlike_numbers_of_bodies_stand_side_by_side(tmp_path, outputs):
     asked = {"drums": [3, 2, 4], "scale": [0.5, 1.0], "outputs": outputs, **FOUR}
     runs = rf.sweep(column, PULSE, chunk=1, store=tmp_path / "kept", **asked)

@@ -76,8 +76,8 @@ def assert_same_bits(lanes, alone):
     [
         ((), {}),
         ((PADS,), {}),
-        ((PADS,), {"restraint": "leading-corner"}),
-        ((PADS,), {"rotation": "small"}),
+        pytest.param((PADS,), {"restraint": "leading-corner"}, marks=pytest.mark.wide),
+        pytest.param((PADS,), {"rotation": "small"}, marks=pytest.mark.wide),
         # whose lanes nothing else compiles
         pytest.param((SOIL,), {}, marks=pytest.mark.long),
         pytest.param((PADS, CAP, SOIL), {}, marks=pytest.mark.long),
@@ -159,7 +159,9 @@ def test_still_ground_and_inclined_bases(monkeypatch):
     assert_same_bits(lanes, alone)
 
 
-@pytest.mark.parametrize("chunk", [1, 7, 1000])
+@pytest.mark.parametrize(
+    "chunk", [7, *(pytest.param(size, marks=pytest.mark.long) for size in (1, 1000))]
+)
 def test_neighbours_chunks_and_executors_change_nothing(monkeypatch, chunk):
     monkeypatch.setattr(study, "FEWEST_IN_LANES", 1)
     monkeypatch.setattr(study, "COMPILING_SHARE", math.inf)
@@ -240,6 +242,7 @@ def test_a_critical_scale_of_a_law_that_cannot_be_compiled(fallbacks):
         np.testing.assert_allclose(found[name], elastic[name], rtol=1e-9)
 
 
+@pytest.mark.long
 def test_chunks_of_a_law_that_cannot_be_compiled_are_small(monkeypatch, fallbacks):
     rf.register(TabulatedPads)
     asked = []

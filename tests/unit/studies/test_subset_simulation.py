@@ -146,7 +146,7 @@ def test_a_limit_state_at_a_point():
         "points": {"top": ("0 m", "2 m")},
         "limit": ("peak_point_horizontal_acceleration", "3 m/s^2", "top"),
     }
-    found = simulated(cases=400, **top)
+    found = simulated(cases=200, **top)
     fell = found.overturned.values == 1
     reached = found.peak_point_horizontal_acceleration.sel(point="top").values >= 3.0
     np.testing.assert_array_equal(found.demand >= 1.0, fell | reached)
@@ -156,6 +156,7 @@ def test_a_limit_state_at_a_point():
 # ties --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_blocks_at_rest_stay_together():
     """Most of the samples do not move: the share of the first level is that of those that do."""
     weak = rf.GroundMotion.sine_pulse("1.9 m/s^2", "1.2 Hz")
@@ -234,6 +235,7 @@ def test_cases_that_cannot_be_assembled_are_counted():
 # stores and interrupts ---------------------------------------------------------------------------
 
 
+@pytest.mark.wide
 def test_an_interrupted_simulation_says_so_and_goes_on(tmp_path, monkeypatch):
     whole = simulated(cases=200)
     run = lines.run_study

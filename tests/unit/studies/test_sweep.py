@@ -87,7 +87,15 @@ POOLS = {
 }
 
 
-@pytest.mark.parametrize("who", POOLS)
+@pytest.mark.parametrize(
+    "who",
+    [
+        "own threads",
+        pytest.param("one thread", marks=pytest.mark.long),
+        "eight threads",
+        pytest.param("two processes", marks=pytest.mark.wide),
+    ],
+)
 @pytest.mark.filterwarnings("ignore::rockframe.errors.SolverWarning")
 def test_what_a_case_gives_depends_on_nothing_else(plain, who):
     with POOLS[who]() as pool:
@@ -203,6 +211,7 @@ def test_whatever_a_function_raises_is_its_case_s_alone():
     assert runs.status.values[:, 0].tolist() == [RunStatus.REFUSED, 0, RunStatus.REFUSED]
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(not COMPILED, reason="plain Python holds the interpreter")
 def test_machine_code_leaves_the_interpreter_to_other_threads():
     record = rf.GroundMotion.from_arrays(
@@ -245,6 +254,7 @@ def test_an_interrupt_gives_back_what_is_done():
     np.testing.assert_array_equal(runs.peak_rotation[:12], whole.peak_rotation[:12])
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_the_keyboard_itself_interrupts_own_threads(request):
     calls = itertools.count()
@@ -300,14 +310,7 @@ def test_a_bar_counts_the_cases(capsys):
     rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], progress=None, **FAST)
     rf.sweep(SYSTEM, PULSE, scale=[0.5, 1.0], progress=False, **FAST)
     assert capsys.readouterr().err == ""
-
-    def scene(height):
-        time.sleep(0.4)
-        return on_pads(20, height)
-
-    rf.sweep(
-        scene, PULSE, height=["3 m", "3.1 m", "3.2 m", "3.3 m"], chunk=1, progress=True, **FAST
-    )
+    rf.sweep(SYSTEM, PULSE, scale=[0.5, 0.6, 0.8, 1.0], chunk=1, progress=True, **FAST)
     shown = capsys.readouterr().err
     assert "sweep: 100%" in shown
     assert "4/4" in shown

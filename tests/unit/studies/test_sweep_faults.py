@@ -39,6 +39,7 @@ def is_part_of(part, whole):
     return int(done.sum())
 
 
+@pytest.mark.long
 def test_killed_at_any_moment_it_goes_on_to_the_same_end(whole, tmp_path):
     folder, lost = tmp_path / "study", 0
     rng = random.Random(5)
@@ -66,6 +67,7 @@ def dying(height):
     return rf.System(BLOCK.replace(height=height))
 
 
+@pytest.mark.wide
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="signals as of Unix")
 def test_a_worker_that_is_killed_is_told_of_and_loses_chunks_in_flight_only(tmp_path, monkeypatch):
     monkeypatch.setenv(MARK, str(tmp_path / "mark"))

@@ -38,6 +38,7 @@ def test_what_is_kept_is_what_is_given(whole):
     assert not list(folder.glob(".*"))
 
 
+@pytest.mark.wide
 def test_many_chunks_stand_in_folders_of_their_own(tmp_path, monkeypatch):
     folder, plain = tmp_path / "study", the_sweep()
     monkeypatch.setattr(store, "FILES_OF_A_FOLDER", 4)

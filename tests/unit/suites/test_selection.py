@@ -119,7 +119,9 @@ def misfit(residuals, chosen, deviations, weight) -> float:
     return float(np.sqrt(np.mean(held.mean(axis=0) ** 2 + weight * (spread - deviations) ** 2)))
 
 
-@pytest.mark.parametrize("count", [1, 2, 4, 6])
+@pytest.mark.parametrize(
+    "count", [2, 4, *(pytest.param(n, marks=pytest.mark.long) for n in (1, 6))]
+)
 @pytest.mark.parametrize(
     ("deviation", "weight"), [(None, None), (0.3, None), (0.5, 0.5), (None, 2.0)]
 )
