@@ -27,7 +27,7 @@ np.savez(sys.argv[1], **found)
 """
 
 
-@pytest.mark.long
+@pytest.mark.wide
 @pytest.mark.skipif(
     os.environ.get("ROCKFRAME_COMPILE") == "0", reason="this run does without compilation"
 )
