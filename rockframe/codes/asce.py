@@ -111,11 +111,11 @@ def asce_7_22(
     if floor_motions is not None:
         runs = peaks_of(system, read_motions(floor_motions, _OWNER), free_vibration)
         lines["Motion on the floor"] = tuple(
-            CheckedLine(label, peak, Unit.RADIAN,
-                        "overturned" if overturned else "peak rotation", "run")
-            for label, (peak, overturned) in runs.items()
+            CheckedLine(label, peak.rotation, Unit.RADIAN,
+                        "overturned" if peak.overturned else "peak rotation", "run")
+            for label, peak in runs.items()
         )  # fmt: skip
-        fallen = [label for label, (_, overturned) in runs.items() if overturned]
+        fallen = [label for label, peak in runs.items() if peak.overturned]
         verdicts.append(
             CheckedVerdict("motion", not fallen,
                            f"{len(fallen)} of {len(runs)} overturned", "not part of the code")

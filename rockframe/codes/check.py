@@ -1,7 +1,7 @@
 """Common parts of the checks: the scenes that they accept, the motions, and the runs."""
 
 from collections.abc import Mapping
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from rockframe.errors import ComponentError, shown
 from rockframe.measures.common import check_some
@@ -60,14 +60,28 @@ def read_motions(value: object, owner: str) -> dict[str, GroundMotion]:
     return {str(label): motion for label, motion in motions.items()}
 
 
+class Peak(NamedTuple):
+    """The largest motion of a block under one ground motion."""
+
+    rotation: float  # [rad]
+    overturned: bool
+    displacement: float  # of a point, horizontally to either side [m]
+
+
 def peaks_of(
-    system: System, motions: Mapping[str, GroundMotion], free_vibration: QuantityLike
-) -> dict[str, tuple[float, bool]]:
-    """Give the peak rotation [rad] under each motion, and whether the block overturned."""
-    found: dict[str, tuple[float, bool]] = {}
+    system: System,
+    motions: Mapping[str, GroundMotion],
+    free_vibration: QuantityLike,
+    point: tuple[float, float] = (0.0, 0.0),
+) -> dict[str, Peak]:
+    """Give the largest motion of the block, and of a point of it [m], under each motion."""
+    x, y = point
+    points = {"point": (f"{x!r} m", f"{y!r} m")}
+    found: dict[str, Peak] = {}
     for label, motion in motions.items():
-        run = system.simulate(motion, outputs=None, free_vibration=free_vibration)
-        found[label] = float(run.peak_rotation), bool(run.overturned)
+        run = system.simulate(motion, outputs=None, free_vibration=free_vibration, points=points)
+        moved = float(run.peak_point_horizontal_displacement[0])
+        found[label] = Peak(float(run.peak_rotation), bool(run.overturned), moved)
     return found
 
 

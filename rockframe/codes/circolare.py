@@ -185,6 +185,13 @@ class _Mechanism(NamedTuple):
     beside: tuple[float, ...]  # horizontal distances of the weights from the edge [m]
     above: tuple[float, ...]  # their heights above it [m]
     gravity: float
+    edge: float  # place of the edge, to the right of the middle of the base [m]
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """Place of the common centre of mass, from the middle of the base [m]."""
+        beside, above = self.centre
+        return self.edge - math.copysign(beside, self.edge), above
 
     @property
     def centre(self) -> tuple[float, float]:
@@ -215,12 +222,13 @@ def _mechanism(system: System, setting: RigidGroundSetting | TiedSetting) -> _Me
         tuple(0.5 * block.width - side * x for x, _ in places),
         tuple(y for _, y in places),
         setting.gravity,
+        0.5 * side * block.width,
     )
 
 
 def _capacity(mechanism: _Mechanism, factor: float) -> tuple[CheckedLine, ...]:
     """Give activation, capacity curve, and displacements and periods of the limit states."""
-    weights, beside, above, gravity = mechanism
+    weights, beside, above, gravity, _ = mechanism
     # virtual work of the weights in a virtual rotation of 1
     vertical = math.fsum(map(operator.mul, weights, beside))
     horizontal = math.fsum(map(operator.mul, weights, above))
@@ -287,13 +295,11 @@ def _dynamic(
     free_vibration: QuantityLike,
 ) -> tuple[CheckedLine, ...]:
     """Give the largest displacement of the equivalent oscillator under each motion."""
-    (beside, above), oscillator = mechanism.centre, mechanism.oscillator
-    radius, theta = math.hypot(beside, above), math.atan2(beside, above)
+    beside = mechanism.centre[0]
     lines: list[CheckedLine] = []
-    for label, (peak, overturned) in peaks_of(system, motions, free_vibration).items():
-        moved = radius * (math.sin(theta) - math.sin(theta - min(peak, theta)))
-        words = "overturned" if overturned else f"peak rotation {peak:.4g} rad"
-        moved = oscillator * (beside if overturned else moved)
+    for label, peak in peaks_of(system, motions, free_vibration, mechanism.place).items():
+        words = "overturned" if peak.overturned else f"peak rotation {peak.rotation:.4g} rad"
+        moved = mechanism.oscillator * (beside if peak.overturned else peak.displacement)
         lines.append(CheckedLine(f"d, {label}", moved, Unit.METRE, words, "run"))
     mean = float(np.mean([one.value for one in lines]))
     words = "of the largest displacements; overturned ones count d_0"
@@ -304,15 +310,18 @@ def _dynamic_verdicts(
     found: tuple[CheckedLine, ...], last: float, limit: float, state: str
 ) -> list[CheckedVerdict]:
     fallen = [one.symbol.removeprefix("d, ") for one in found[:-1] if one.words == "overturned"]
+    # without a wall, one that is eccentric may stand beyond d_0 on the side of its longer arm
+    beyond = [one for one in found[:-1] if one.words != "overturned" and one.value > last]
     mean, clause = found[-1].value, "C8.7.1.2.1.9"
     return [
         CheckedVerdict(
-            "dynamic, no run beyond d_0", not fallen,
+            "dynamic, no run beyond d_0", not (fallen or beyond),
             f"{len(fallen)} of {len(found) - 1} overturned"
-            + (f": {', '.join(fallen)}" if fallen else f", d_0 = {last:.4g} m"), clause,
+            + (f": {', '.join(fallen)}" if fallen else f", d_0 = {last:.4g} m")
+            + (f"; {len(beyond)} beyond d_0 to the other side" if beyond else ""), clause,
         ),
         CheckedVerdict(
-            f"dynamic, {state}", not fallen and mean <= limit,
+            f"dynamic, {state}", not (fallen or beyond) and mean <= limit,
             f"mean of the largest displacements {mean:.4g} m, capacity {limit:.4g} m", clause,
         ),
     ]  # fmt: skip

@@ -91,8 +91,8 @@ def fit_free_decay(
         If an array has no unit, or a wrong one.
     ComponentError
         If data are not finite, times do not increase, a rotation is beyond overturning, the
-        block does not rock, there are no more data than unknowns, a parameter is unknown, or
-        the base is inclined.
+        block does not rock, there are no more data than unknowns, a parameter is unknown, the
+        base is inclined, or the block stands before a rigid wall.
 
     Warns
     -----
@@ -122,6 +122,7 @@ def fit_free_decay(
     """
     _check_system(system)
     _check_level(system)
+    _check_swings(system)
     if (measured is None) == (peaks is None):
         value = "neither" if peaks is None else "both"
         msg = f"{_OWNER}: give measured (a history) or peaks, got {value}"
@@ -168,6 +169,17 @@ def _check_level(system: System) -> None:
     msg = (
         f"{_OWNER}: the base is inclined by {angle_words(system.options.inclination)}; free decay "
         "is fitted on a level base only, about which the swings to both sides are told apart"
+    )
+    raise ComponentError(msg)
+
+
+def _check_swings(system: System) -> None:
+    """Refuse a block before a rigid wall, whose peaks no passage through zero separates."""
+    if system.parts.wall is None or system.parts.wall.elastic:
+        return
+    msg = (
+        f"{_OWNER}: the block is before a rigid RearWall and rocks to one side only; expected a "
+        "block that swings to both sides, without a wall, or before one with a stiffness"
     )
     raise ComponentError(msg)
 

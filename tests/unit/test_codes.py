@@ -106,6 +106,22 @@ def test_the_motion_beside_the_kinematics():
     assert gentle.value("d_demand") == pytest.approx(float(displacement.max()), rel=1e-9)
 
 
+def test_a_motion_to_the_stronger_side_counts_in_full():
+    """It was counted as d_0 of the weaker side at most, within which the wall was said to be."""
+    eccentric = WALL.replace(eccentricity="0.15 m")
+    system = rf.System(eccentric, rf.RigidGround(restitution=0.05))
+    pulse = rf.GroundMotion.type_a_pulse("1.5 m/s", "1.5 s")
+    run = system.simulate(pulse, free_vibration="20 s", points={"centre": ("0.15 m", "3 m")})
+    assert not bool(run.overturned)
+    check = rf.codes.circolare_2019(system, pulse)
+    moved = float(abs(run.point_horizontal_displacement).max())
+    assert moved > 2.5 * check.value("d_0")
+    assert check.value("mean of d") == pytest.approx(moved, rel=1e-3)
+    assert not check.passed["dynamic, no run beyond d_0"]
+    assert not check.passed["dynamic, SLV"]
+    assert "0 of 1 overturned, d_0 = 0.1 m; 1 beyond d_0 to the other side" in str(check)
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [

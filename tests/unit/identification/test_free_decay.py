@@ -221,3 +221,12 @@ def test_peaks_of_an_eccentric_block_tell_of_both_sides(first, rotation):
     assert found.trial_count <= 4
     with pytest.raises(ComponentError, match="without their signs do not tell the sides"):
         rf.fit_free_decay(rf.System(block), peaks=(np.abs(peaks), "rad"))
+
+
+@pytest.mark.parametrize("data", [{"peaks": ([9.0, 4.0, 2.1], "deg")}, {"measured": "history"}])
+def test_a_block_before_a_rigid_wall_is_refused(data, run):
+    """Its peaks are all on one side, where the model's were not told apart."""
+    wall = rf.RearWall(side="left", restitution="newton", wall_restitution=0.6)
+    given = data if "peaks" in data else {"measured": run.rotation}
+    with pytest.raises(ComponentError, match="before a rigid RearWall and rocks to one side only"):
+        rf.fit_free_decay(rf.System(BLOCK, wall), parameters="wall_restitution", **given)
