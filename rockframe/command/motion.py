@@ -11,6 +11,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
 from rockframe.plot import motion as draw
+from rockframe.plot._fonts import warning_once
 from rockframe.results.table import table
 
 _ABOUT: Final = (
@@ -28,6 +29,7 @@ _MOST_SHOWN: Final = 10
 """Largest number of motions that are printed in full; of more only a table is printed."""
 
 
+@warning_once
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Print the contents of files."""
     outputs = Outputs(arguments, arguments.files, answer, csv=_TABLE)

@@ -19,6 +19,7 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
+from rockframe.plot._fonts import warning_once
 from rockframe.proposals import hinted
 from rockframe.reports import page, sections, studies
 from rockframe.reports.certifying import certified
@@ -34,6 +35,7 @@ _OWNER: Final = "report"
 
 
 @hinted()
+@warning_once
 def report(
     response: xr.Dataset,
     path: "str | PathLike[str]",
