@@ -31,6 +31,8 @@ def test_a_run_from_the_template_to_the_report(typed, folder):
     code, told, _ = typed("describe", "scene.toml")
     assert code == 0
     assert "Model: rigid ground" in told
+    assert '[block]  width = "0.8 m", height = "3.2 m", mass = "5500.0 kg"' in told
+    assert "cycles: 1: 129 samples at 0.00390625 s, 0.5 s long, peak 5 m/s^2 (0.51 g)" in told
     code, told, _ = typed("run", "scene.toml", "-o", "out.nc")
     assert code == 0
     assert "Verdict: Did not overturn" in told
