@@ -12,7 +12,7 @@ from rockframe.errors import RockframeError, RockframeWarning, SchemaError, Stud
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
-from rockframe.reports.cases import case_tables, from_worst, labels_at, labels_of
+from rockframe.reports.cases import capacity_table, case_tables, from_worst, labels_at, labels_of
 from rockframe.reports.project import Project
 from rockframe.reports.values import table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, overturned_by
@@ -35,6 +35,9 @@ def verdict_sections(
     figure = _figure(dataset, units)
     if figure:
         yield page.section("Figure", [figure])
+    capacities = [*capacity_table(dataset, units)]
+    if capacities:
+        yield page.section("Capacities", capacities)
     if _is_sweep(dataset):
         yield page.section("Cases", case_tables(dataset, units))
     scalars = table_of(dataset, units=units)
@@ -63,7 +66,8 @@ def worst_case(
             found = case(dataset, motions=motions or None, **labels)
             run = found.simulate(outputs=())
     except RockframeError as problem:  # such as without its motions
-        return f"Not simulated again; {problem}.", None
+        words = str(problem).replace("as motions=", "as motions= or, in a shell, by --motions")
+        return f"Not simulated again; {words}.", None
     shown_as = labels_of(dataset, place, units)
     named = ", ".join(f"{name.replace('_', ' ')} {words}" for name, words in shown_as.items())
     system = found.system if found.motion is None else under(found.system, found.motion)

@@ -133,6 +133,7 @@ def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypat
     assert "Ground motions" not in bare
     assert "The worst case in full" not in bare
     assert re.search("The worst case Not simulated again; .* must be given, as motions=", bare)
+    assert "as motions= or, in a shell, by --motions." in bare
     whole = text_of(rf.report(read, path, motions=suite))
     assert "Compared at 40 periods" in whole
     assert "The worst case in full" in whole
