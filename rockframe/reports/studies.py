@@ -1,5 +1,6 @@
 """The sections of a report on many runs, or on an analysis of them."""
 
+import json
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -18,6 +19,7 @@ from rockframe.reports.values import table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
+from rockframe.studies.sweeps.axes import Changes
 from rockframe.studies.sweeps.case import system_of_case
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.units.shown import ReaderUnits, raised
@@ -72,6 +74,15 @@ def worst_case(
     named = ", ".join(f"{name.replace('_', ' ')} {words}" for name, words in shown_as.items())
     system = found.system if found.motion is None else under(found.system, found.motion)
     return f"Simulated again: {named}." if named else "Simulated again.", (run, system)
+
+
+def varied_in_words(dataset: xr.Dataset) -> str:
+    """Write which values of the scene differ among the cases; an empty text if none do."""
+    axes: list[dict[str, str]] = json.loads(str(dataset.attrs.get("axes_json", "[]")))
+    names = [one["name"].replace("_", " ") for one in axes if one["changes"] != Changes.MOTION]
+    if not names:
+        return ""
+    return f"Values of the scene from which the cases differ in: {', '.join(names)}."
 
 
 def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:
