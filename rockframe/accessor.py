@@ -182,7 +182,7 @@ class RockframeAccessor:
         if len(data.sizes) > 0:
             lines.append("over " + ", ".join(f"{dim} ({n})" for dim, n in data.sizes.items()))
         for name in _SHOWN:
-            if name in data and data[name].ndim == 0:
+            if name in data and data[name].ndim == 0 and not math.isnan(data[name].item()):
                 unit = unit_behind(data[name].attrs)
                 lines.append(f"{name}: {data[name].item():.4g}{unit}")
         return "\n".join(lines)
@@ -199,8 +199,7 @@ class RockframeAccessor:
         rows = {"result": kind} if self.verdict and kind else {}
         for line in lines[bool(kind) + bool(self.verdict) :]:
             name, _, words = line.partition(" " if line.startswith("over ") else ": ")
-            if not words.startswith("nan"):
-                rows[name.replace("_", " ")] = words
+            rows[name.replace("_", " ")] = words
         for name in ("peak_rotation", "uplift_angle", "overturning_angle"):
             if name in value and value[name].ndim == 0:
                 rows[name.replace("_", " ")] = f"{math.degrees(value[name].item()):.4g}°"

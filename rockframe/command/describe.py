@@ -4,18 +4,26 @@ import argparse
 
 from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import read_scene
+from rockframe.command.files.written import tables_of
+from rockframe.command.motion import in_words
+from rockframe.system.words import describe
 
 
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Describe the scene of a file."""
     found = read_scene(arguments.scene)
-    described = found.system.describe()
-    motion = "none" if found.motion is None else str(found.motion)
+    assembly = found.system.assembly
+    tables = [(head, ", ".join(keys)) for head, keys in tables_of(assembly.parts.structural())]
+    described = describe(assembly.setting, assembly.parts, tables)
+    motion = "none"
+    if found.motion is not None:
+        vertical = "" if found.motion.si.vertical is None else ", with vertical"
+        motion = f"{found.motion.name}: {in_words(found.motion)}{vertical}"
     answer.text(
         f"{described}\nMotion:\n  {motion}",
-        model=found.system.setting.model,
-        parts=[type(part).__name__ for part in found.system.parts.structural()],
+        model=assembly.setting.model,
+        parts=[type(part).__name__ for part in assembly.parts.structural()],
         motion=motion,
-        description=str(described),
+        description=described,
     )
     return 0

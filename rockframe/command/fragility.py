@@ -28,6 +28,11 @@ from rockframe.results.variables.variable import words_of_flags
 from rockframe.studies import fragility, open_study, sweep
 
 _RESULT: Final = analysis_kind("a fragility", "exceedance_probability", "fragility_status")
+_GIVEN: Final = "must be given, as motions="
+_IN_STORE: Final = (
+    "is not in this result; name the store of the study, which keeps its records, instead of the "
+    "result, or run it again with --store"
+)
 _USUAL: Final = [0.25 * k for k in range(1, 17)]
 """Scales of the motions, if neither the file nor the command line has any."""
 
@@ -48,7 +53,13 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
             runs = analysed(sweep, found, found.motions, values, arguments)
         except StudyError as problem:
             raise found.at_lines(problem) from problem
-    dataset = fragility(runs, **typed_intensity(arguments, fragility))
+    try:
+        dataset = fragility(runs, **typed_intensity(arguments, fragility))
+    except StudyError as problem:
+        if not known or _GIVEN not in str(problem):
+            raise
+        words = str(problem).removeprefix(f"{fragility.__name__}: ").replace(_GIVEN, _IN_STORE)
+        raise FileError(arguments.scene, words) from problem
     dataset = with_project(dataset, str(runs.attrs.get(ATTRIBUTE, "")))
     answer.says("Verdict", dataset.attrs["verdict"])
     if "median_intensity" in dataset and dataset["median_intensity"].dims == ("limit_state",):

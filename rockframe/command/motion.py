@@ -11,6 +11,7 @@ from rockframe.constants import STANDARD_GRAVITY
 from rockframe.measures import intensity_measures
 from rockframe.motion import GroundMotion
 from rockframe.plot import motion as draw
+from rockframe.plot._fonts import warning_once
 from rockframe.results.table import table
 
 _ABOUT: Final = (
@@ -28,6 +29,7 @@ _MOST_SHOWN: Final = 10
 """Largest number of motions that are printed in full; of more only a table is printed."""
 
 
+@warning_once
 def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     """Print the contents of files."""
     outputs = Outputs(arguments, arguments.files, answer, csv=_TABLE)
@@ -61,13 +63,17 @@ def _numbered(picture: str | None, count: int) -> list[Path]:
     return [path.with_stem(f"{path.stem}-{number}") for number in range(1, count + 1)]
 
 
-def _motion_lines(name: str, motion: GroundMotion) -> list[str]:
+def in_words(motion: GroundMotion) -> str:
+    """Write the number of samples, the time step, the length and the peak of a motion."""
     peak = motion.peak_acceleration.to("m/s^2").magnitude
-    lines = [
-        name,
-        f"  {len(motion)} samples at {motion.si.time_step:g} s, {motion.si.duration:g} s long, "
-        f"peak {peak:.4g} m/s^2 ({peak / STANDARD_GRAVITY:.3g} g)",
-    ]
+    return (
+        f"{len(motion)} samples at {motion.si.time_step:g} s, {motion.si.duration:g} s long, "
+        f"peak {peak:.4g} m/s^2 ({peak / STANDARD_GRAVITY:.3g} g)"
+    )
+
+
+def _motion_lines(name: str, motion: GroundMotion) -> list[str]:
+    lines = [name, f"  {in_words(motion)}"]
     metadata = motion.metadata
     lines += [f"  {words}: {metadata[key]}" for key, words in _ABOUT if metadata.get(key)]
     return lines

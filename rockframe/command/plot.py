@@ -12,13 +12,15 @@ from rockframe.command.answer import Answer
 from rockframe.command.shared import Outputs, check_format, read_result
 from rockframe.command.streams import STREAM
 from rockframe.command.typed_calls import values_by_name
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, FileError
 from rockframe.plot._checks import drawn_by
 from rockframe.reports.page import close, figure_of
 from rockframe.version import __version__
 from rockframe.writing import FileKind
 
 _MARK: Final = "figure by rockframe "
+_MOST_AXES: Final = 2
+"""Largest number of axes of a study that a figure shows."""
 _SIGNED: Final = {
     # ending: the entry of its metadata for the name of the program
     ".png": "Software",
@@ -42,6 +44,13 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
             msg = "--panels: only a run over time has panels to choose from"
             raise ComponentError(msg)
         named["panels"] = tuple(arguments.panels)
+    if name == plot.sweep.__name__ and "status" in dataset and dataset["status"].ndim > _MOST_AXES:
+        axes = ", ".join(str(dim) for dim in dataset["status"].dims)
+        words = (
+            f"found a study with more than {_MOST_AXES} axes ({axes}), which "
+            "no figure shows; 'rockframe report' lists its cases in a table"
+        )
+        raise FileError(arguments.dataset, words)
     save(getattr(plot, name)(dataset, **named), arguments.output, outputs, arguments.format)
     return 0
 

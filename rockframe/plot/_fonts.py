@@ -1,8 +1,9 @@
 """Fonts for letters that those of a figure lack, such as the letters of Chinese names."""
 
-from collections.abc import Iterable
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Callable, Iterable
+from contextvars import ContextVar
+from functools import lru_cache, wraps
+from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
 from rockframe.errors import RockframeWarning, warn
 
@@ -14,6 +15,27 @@ _LAST_RESORT: Final = "Last Resort"
 """Fonts that have a box in the place of every letter."""
 _LISTED: Final = 12
 """Letters that a warning lists."""
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
+_gathered: ContextVar[dict[str, None] | None] = ContextVar("letters without a font", default=None)
+"""Letters that no font has, of several figures that are drawn together."""
+
+
+def warning_once(drawing: Callable[_P, _T]) -> Callable[_P, _T]:
+    """Let a function that draws several figures warn once of the letters that no font has."""
+
+    @wraps(drawing)
+    def drawn(*args: _P.args, **kwargs: _P.kwargs) -> _T:
+        lost = dict[str, None]()
+        token = _gathered.set(lost)
+        try:
+            found = drawing(*args, **kwargs)
+        finally:
+            _gathered.reset(token)
+        _warn(lost, "the figures")
+        return found
+
+    return drawn
 
 
 def make_legible(artists: "Iterable[Axes | Figure | SubFigure]") -> None:
@@ -37,14 +59,24 @@ def make_legible(artists: "Iterable[Axes | Figure | SubFigure]") -> None:
         without = [one for one in words if one in missing and one not in found]
         text.set_text("".join("?" if one in without else one for one in words))
         lost |= dict.fromkeys(without)
-    if lost:
-        more = "" if len(lost) <= _LISTED else f" and {len(lost) - _LISTED} more"
-        msg = (
-            f"no installed font has {' '.join([*lost][:_LISTED])}{more}, written as '?' in the "
-            "figure; install a font with these letters, such as Noto Sans CJK for Chinese, "
-            "Japanese and Korean"
-        )
-        warn(msg, RockframeWarning)
+    several = _gathered.get()
+    if several is None:
+        _warn(lost, "the figure")
+    else:
+        several |= lost
+
+
+def _warn(lost: Iterable[str], where: str) -> None:
+    """Warn of letters that no font has."""
+    letters = [*lost]
+    if not letters:
+        return
+    more = "" if len(letters) <= _LISTED else f" and {len(letters) - _LISTED} more"
+    msg = (
+        f"no installed font has {' '.join(letters[:_LISTED])}{more}, written as '?' in {where}; "
+        "install a font with these letters, such as Noto Sans CJK for Chinese, Japanese and Korean"
+    )
+    warn(msg, RockframeWarning)
 
 
 def _texts(artists: "Iterable[Axes | Figure | SubFigure]") -> list[Any]:

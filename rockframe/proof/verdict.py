@@ -60,6 +60,10 @@ class Proof:
         Shares of the set for which either verdict is proved [1].
     analytic : bool
         Whether the motion is given by polynomials between its samples, not by straight lines.
+    gravity : float
+        Acceleration of gravity of the scene [m s^-2].
+    start : str
+        The state from which the block is followed, in words.
     """
 
     verdict: str
@@ -78,6 +82,8 @@ class Proof:
     safe_share: float = 0.0
     overturning_share: float = 0.0
     analytic: bool = False
+    gravity: float = math.nan
+    start: str = ""
 
     @property
     def decided(self) -> bool:
@@ -135,7 +141,10 @@ class Proof:
         between = f"this record{scaled}, joined by straight lines,"
         if self.analytic:
             between = f"this motion{scaled}, the polynomials that runs take,"
-        of = f"for the numbers of this block and {between} and for {self.law}"
+        weight = "" if math.isnan(self.gravity) else f"gravity {self.gravity!r} m s^-2"
+        scene = [words for words in (weight, self.start) if words]
+        listed = ", ".join(["the numbers of this block", *scene])
+        of = f"for {listed} and {between} and for {self.law}"
         within = {
             f"restitution within {self.restitution_tolerance:g}": self.restitution_tolerance,
             f"scale within {self.scale_tolerance:g}": self.scale_tolerance,

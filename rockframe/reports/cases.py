@@ -53,6 +53,8 @@ COLUMNS: Final = (*_MOTION, *_FORCES)
 
 Of histories, such as reactions, the largest absolute value at the samples is shown.
 """
+_CAPACITY: Final = ("capacity_scale", "capacity_resolution", "flip_count")
+"""Variables of a dynamic analysis along its limit states and motions."""
 _MOST_COLUMNS: Final = 8
 """Largest number of columns besides the labels of a case, on a sheet of A4."""
 _OVER_CASES: Final = (("mean", np.mean), ("largest", np.max))
@@ -159,6 +161,29 @@ def _columns(dataset: xr.Dataset, names: Sequence[str], units: ReaderUnits) -> I
                 yield _Column(column_head(f"{words}{whose}", unit, units), unit, flat)
 
 
+def capacity_table(dataset: xr.Dataset, units: ReaderUnits) -> Iterator[str]:
+    """Give a row for each capacity of a dynamic analysis, or for the least if there are many."""
+    name = _CAPACITY[0]
+    if name not in dataset:
+        return
+    capacity = dataset[name]
+    order = np.arange(capacity.size)
+    if capacity.size > MOST_ROWS:
+        order = np.argsort(capacity.to_numpy().ravel(), kind="stable")[:MOST_ROWS]
+        yield page.paragraph(f"The {order.size} least of {capacity.size} capacities.", kind="soft")
+    names = [one for one in _CAPACITY if one in dataset]
+    flat = {one: dataset[one].broadcast_like(capacity).transpose(*capacity.dims) for one in names}
+    rows = list[list[str]]()
+    for place in order.tolist():
+        at = dict(zip(capacity.dims, np.unravel_index(place, capacity.shape), strict=True))
+        numbers = [value_of(flat[one].isel(at), units) for one in names]
+        rows.append([*labels_of(dataset, place, units, name).values(), *numbers])
+    heads = [str(one).replace("_", " ") for one in (*capacity.dims, *names)]
+    yield page.columns(rows, heads)
+    meanings = [f"{one.replace('_', ' ')}: {dataset[one].attrs['long_name']}" for one in names]
+    yield page.paragraph(f"{'; '.join(meanings)}.", kind="soft")
+
+
 def from_worst(dataset: xr.Dataset) -> np.ndarray:
     """Order cases with a result: by time of overturning, then by decreasing peak rotation."""
     share = dataset["peak_relative_rotation"].to_numpy().ravel()
@@ -168,18 +193,20 @@ def from_worst(dataset: xr.Dataset) -> np.ndarray:
     return order[np.isfinite(share[order])]
 
 
-def labels_at(dataset: xr.Dataset, place: int) -> dict[str, Any]:
-    """Give the labels of a case by its place."""
-    status = dataset["status"]
+def labels_at(dataset: xr.Dataset, place: int, of: str = "status") -> dict[str, Any]:
+    """Give the labels of a value of a variable by its place; usually those of a case."""
+    status = dataset[of]
     places = np.unravel_index(place, status.shape)
     return {str(dim): status[dim].to_numpy()[k].item() if dim in status.coords else int(k)
             for dim, k in zip(status.dims, places, strict=True)}  # fmt: skip
 
 
-def labels_of(dataset: xr.Dataset, place: int, units: ReaderUnits) -> dict[str, str]:
-    """Write the labels of a case, numbers with their units."""
+def labels_of(
+    dataset: xr.Dataset, place: int, units: ReaderUnits, of: str = "status"
+) -> dict[str, str]:
+    """Write the labels of a value, usually those of a case, numbers with their units."""
     found: dict[str, str] = {}
-    for name, value in labels_at(dataset, place).items():
+    for name, value in labels_at(dataset, place, of).items():
         unit = units.of(str(dataset[name].attrs.get("units", Unit.ONE)) if name in dataset else "1")
         words = "" if unit.words == Unit.ONE else f" {raised(unit.words)}"
         shown = value / unit.size if isinstance(value, float) else value

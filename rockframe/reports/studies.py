@@ -1,5 +1,6 @@
 """The sections of a report on many runs, or on an analysis of them."""
 
+import json
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -12,12 +13,13 @@ from rockframe.errors import RockframeError, RockframeWarning, SchemaError, Stud
 from rockframe.motion import GroundMotion
 from rockframe.plot._checks import drawn_by
 from rockframe.reports import page
-from rockframe.reports.cases import case_tables, from_worst, labels_at, labels_of
+from rockframe.reports.cases import capacity_table, case_tables, from_worst, labels_at, labels_of
 from rockframe.reports.project import Project
 from rockframe.reports.values import table_of, value_of
 from rockframe.results.outcome import LEAST_SLIP, overturned_by
 from rockframe.simulation.system import System
 from rockframe.studies import case
+from rockframe.studies.sweeps.axes import Changes
 from rockframe.studies.sweeps.case import system_of_case
 from rockframe.studies.sweeps.words import cases_verdict, slips_of_cases
 from rockframe.units.shown import ReaderUnits, raised
@@ -35,6 +37,9 @@ def verdict_sections(
     figure = _figure(dataset, units)
     if figure:
         yield page.section("Figure", [figure])
+    capacities = [*capacity_table(dataset, units)]
+    if capacities:
+        yield page.section("Capacities", capacities)
     if _is_sweep(dataset):
         yield page.section("Cases", case_tables(dataset, units))
     scalars = table_of(dataset, units=units)
@@ -63,11 +68,21 @@ def worst_case(
             found = case(dataset, motions=motions or None, **labels)
             run = found.simulate(outputs=())
     except RockframeError as problem:  # such as without its motions
-        return f"Not simulated again; {problem}.", None
+        words = str(problem).replace("as motions=", "as motions= or, in a shell, by --motions")
+        return f"Not simulated again; {words}.", None
     shown_as = labels_of(dataset, place, units)
     named = ", ".join(f"{name.replace('_', ' ')} {words}" for name, words in shown_as.items())
     system = found.system if found.motion is None else under(found.system, found.motion)
     return f"Simulated again: {named}." if named else "Simulated again.", (run, system)
+
+
+def varied_in_words(dataset: xr.Dataset) -> str:
+    """Write which values of the scene differ among the cases; an empty text if none do."""
+    axes: list[dict[str, str]] = json.loads(str(dataset.attrs.get("axes_json", "[]")))
+    names = [one["name"].replace("_", " ") for one in axes if one["changes"] != Changes.MOTION]
+    if not names:
+        return ""
+    return f"Values of the scene from which the cases differ in: {', '.join(names)}."
 
 
 def run_of_case(dataset: xr.Dataset, motions: Any) -> xr.Dataset:

@@ -19,6 +19,7 @@ from rockframe.errors import (
     warn,
 )
 from rockframe.motion import GroundMotion
+from rockframe.plot._fonts import warning_once
 from rockframe.proposals import hinted
 from rockframe.reports import page, sections, studies
 from rockframe.reports.certifying import certified
@@ -34,6 +35,7 @@ _OWNER: Final = "report"
 
 
 @hinted()
+@warning_once
 def report(
     response: xr.Dataset,
     path: "str | PathLike[str]",
@@ -229,7 +231,10 @@ def _of_study(
     body = [page.section("The worst case", [page.paragraph(words)])] if words else []
     system = _system_of(dataset, None)
     if system is not None:
-        body.append(page.section("Scene", sections.scene_section(dataset, system, units)))
+        differs = studies.varied_in_words(dataset)
+        intro = [page.paragraph(differs)] if differs else []
+        scene = [*intro, *sections.scene_section(dataset, system, units)]
+        body.append(page.section("Scene", scene))
     limits = sections.limits_section(system, about.assumptions)
     return [*body, page.section("Limits of validity", limits)]
 

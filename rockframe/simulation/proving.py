@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
-from typing import Final
+from typing import Any, Final
 
 from rockframe.arguments import whole_number
 from rockframe.components import InitialState
@@ -15,7 +15,7 @@ from rockframe.errors import ComponentError, shown
 from rockframe.motion import GroundMotion
 from rockframe.proof.verdict import EXACT, Proof, Tolerances
 from rockframe.proposals import hinted
-from rockframe.simulation.plan import Plan, plan_run, start_of
+from rockframe.simulation.plan import Beginning, Plan, plan_run, start_of
 from rockframe.simulation.system import System
 from rockframe.system.assembly import Assembly
 from rockframe.units import ANGLE, POSITIVE, Condition, QuantityLike, RatioLike, to_ratio, to_si
@@ -269,17 +269,36 @@ def proof_of(
     else:
         mode, state, _ = model.initial(start)
     law, slope, limits = model.system, system.options.slope, system.setting.overturning_angles
+    told: dict[str, Any] = {
+        "analytic": motion.si.analytic,
+        "gravity": system.options.gravity,
+        "start": _start_in_words(plan.initial),
+    }
     if isinstance(law, Alone):
         from rockframe.proof.pads.verdict import prove_pads
 
         found = prove_pads(law, mode, state, motion.si, slope, limits, scale=scale, within=within)
-        return replace(found, analytic=motion.si.analytic)
+        return replace(found, **told)
     assert isinstance(law, BlockOnRigidGround)  # noqa: S101
     from rockframe.proof.course import prove_block
 
     begin = float(state[0]), float(state[1])
     found = prove_block(law, motion.si, slope, limits, begin, scale=scale, within=within)
-    return replace(found, analytic=motion.si.analytic)
+    return replace(found, **told)
+
+
+def _start_in_words(initial: Beginning) -> str:
+    """Write the state at the start of a run, with all digits of its numbers."""
+    if isinstance(initial, Ending):
+        return "the state in which the run before it ended"
+    given = {name: value for name, value in vars(initial.given).items() if value is not None}
+    if not given:
+        return "a start at rest"
+    units = {name: one.unit for name, one in InitialState.declared().items()}
+    listed = " and ".join(
+        f"{name.replace('_', ' ')} {value!r} {units[name]}" for name, value in given.items()
+    )
+    return f"a start with {listed}"
 
 
 def _faults(system: Assembly) -> list[str]:

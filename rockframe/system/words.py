@@ -7,6 +7,8 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rockframe.system.parts import Parts
     from rockframe.system.setting import Setting
 
@@ -77,12 +79,17 @@ def vibration_words(symbol: str, frequency: float, damping_ratio: float) -> str:
 _WIDTH = 100
 
 
-def describe(setting: "Setting", parts: "Parts") -> str:
-    """Describe the model, its equations, its numbers and its limits."""
+def describe(
+    setting: "Setting", parts: "Parts", written: "Sequence[tuple[str, str]] | None" = None
+) -> str:
+    """Describe the model, its equations, its numbers and its limits.
+
+    `written` has names and words for the parts, in place of their notation in Python.
+    """
     words, theta = setting.words(), angle_words(setting.overturning_angle)
     angles = _of_both_sides(setting) if setting.leans else [(_THETA, theta)]
     sections = {
-        "Parts": [("", repr(part)) for part in parts],
+        "Parts": [("", repr(part)) for part in parts] if written is None else [*written],
         "Contact states and their equations": words.equations,
         "Horizontal restraint": [("", words.restraint)],
         "Numbers": [

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
-from rockframe.errors import ComponentError, nearest, shown
+from rockframe.errors import ComponentError, UnitsError, nearest, shown
 from rockframe.units import kinds
 from rockframe.units.kinds import Measure
 from rockframe.units.reading import to_si
@@ -75,7 +75,12 @@ def shown_unit(value: object, measure: Measure, *, owner: str, name: str) -> Sho
         msg = f"{owner}: {name} must be a unit, such as {str(measure.unit)!r}, got {shown(value)}"
         raise ComponentError(msg)
     read = _READ.get((value, measure), value)
-    size = to_si(f"1 {read}", measure, owner=owner, name=name)
+    try:
+        size = to_si(f"1 {read}", measure, owner=owner, name=name)
+    except UnitsError as problem:  # its words are on a value, and end with an example of one
+        words = str(problem).partition("; write for example ")[0]
+        like = "" if "such as" in words else f"; write for example {str(measure.unit)!r}"
+        raise UnitsError(words.replace(f"'1 {read}'", repr(value), 1) + like) from problem
     return Shown(_spelled(value), size)
 
 

@@ -145,3 +145,14 @@ def test_the_sentence_says_what_is_between_the_samples(base):
     assert "this record times 0.3, joined" in str(rf.prove(standing, pulse(1.0), scale=0.3))
     closed = rf.GroundMotion.sine_pulse("1 m/s^2", "1 Hz")
     assert "this motion, the polynomials that runs take" in str(rf.prove(standing, closed))
+
+
+@pytest.mark.parametrize("base", [rf.RigidGround(), PADS])
+def test_the_sentence_names_gravity_and_the_start(base):
+    block = rf.Block(width="1 m", height="5 m", mass="10 t")
+    standing = rf.System(block, base, gravity="9.81 m/s^2")
+    words = "for the numbers of this block, gravity 9.81 m s^-2, "
+    assert f"{words}a start at rest and this record" in str(rf.prove(standing, pulse(1.0)))
+    leaning = rf.InitialState(rotation="0.01 rad", angular_velocity="0.002 rad/s")
+    proof = str(rf.prove(standing, pulse(1.0), initial=leaning))
+    assert f"{words}a start with rotation 0.01 rad and angular velocity 0.002 rad s^-1" in proof

@@ -439,6 +439,23 @@ def test_every_analysis_has_a_report(tmp_path):
         assert "s^-" not in words.split("Scene")[0]  # powers stand above the line
 
 
+def test_a_dynamic_analysis_has_its_capacities(tmp_path, monkeypatch):
+    found = rf.incremental_dynamic_analysis(
+        rf.System(BLOCK), SUITE, scale=[0.5, 1.0, 2.0], intensity="PGA"
+    )
+    capacities = found.capacity_scale.sel(limit_state="overturning")
+    words = words_of(rf.report(found, tmp_path / "all.html"))
+    for name, one in zip(capacities.motion.to_numpy(), capacities.to_numpy(), strict=True):
+        written = f"{one:.4g}" if np.isfinite(one) else "infinite"
+        assert f"overturning {name} {written}" in words.split("Capacities")[1]
+    assert "capacity scale: least scale of the motion that was found to exceed" in words
+    monkeypatch.setattr(cases, "MOST_ROWS", 1)
+    words = words_of(rf.report(found, tmp_path / "least.html"))
+    least = str(capacities.motion[int(np.argmin(capacities.to_numpy()))].item())
+    assert "The 1 least of 2 capacities." in words
+    assert f"flip count overturning {least} " in words
+
+
 def test_the_motion_that_a_result_does_not_hold_can_be_handed_in(tmp_path):
     record = rf.GroundMotion.from_arrays(([0.0, 3.0, -3.0, 0.0] * 40, "m/s^2"), "0.01 s")
     run = rf.System(BLOCK).simulate(record, outputs=None)

@@ -124,7 +124,8 @@ def test_a_target_is_given_in_three_ways(runs, suite, tmp_path):
 
 @pytest.mark.long
 def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypatch):
-    runs = rf.sweep(BLOCK, motions=suite, accuracy="fast", store=tmp_path / "kept")
+    gravity = ["9.8 m/s^2"]
+    runs = rf.sweep(BLOCK, motions=suite, gravity=gravity, accuracy="fast", store=tmp_path / "kept")
     runs.to_netcdf(tmp_path / "runs.nc")
     forgotten = {}
     monkeypatch.setattr("rockframe.studies.sweeps.case._studies", forgotten)
@@ -135,6 +136,8 @@ def test_records_of_a_study_from_a_file_are_handed_in(suite, tmp_path, monkeypat
     assert "Ground motions" not in bare
     assert "The worst case in full" not in bare
     assert re.search("The worst case Not simulated again; .* must be given, as motions=", bare)
+    assert "Scene Values of the scene from which the cases differ in: gravity." in bare
+    assert "as motions= or, in a shell, by --motions." in bare
     whole = text_of(rf.report(read, path, motions=suite))
     assert "Compared at 40 periods" in whole
     assert "The worst case in full" in whole

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import rockframe as rf
-from rockframe.errors import ComponentError
+from rockframe.errors import ComponentError, UnitsError
 from rockframe.units import Unit
+from rockframe.units.shown import reader_units
 
 pytestmark = [pytest.mark.unit, pytest.mark.usefixtures("no_pictures")]
 
@@ -110,3 +111,13 @@ def test_titles_of_figures_follow_the_units(tmp_path):
         figure = drawn.figure
         assert f"peak rotation {turned} °" in " ".join(figure.get_suptitle().split())
     assert f"peak rotation {turned} °" in rf.plot.player(run, units=UNITS).to_html()
+
+
+@pytest.mark.parametrize("unit", ["gal", "kN", "quux"])
+def test_a_wrong_unit_is_told_as_it_was_typed(unit):
+    with pytest.raises(UnitsError) as caught:
+        reader_units({"acceleration": unit}, owner="report")
+    words = str(caught.value)
+    assert f"got '{unit}'" in words
+    assert "m s^-2" in words
+    assert "9.81" not in words  # which is a value, and no unit

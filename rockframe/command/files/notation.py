@@ -14,11 +14,15 @@ _GIVEN: Final = re.compile(rf"\b(?P<name>[a-z]\w*) ?= ?(?P<value>{_TEXT}|\[[^\]]
 _OPERATION: Final = re.compile(r"simulate\(motion\.(?P<name>\w+)\((?P<value>[\d.]+)\)\)")
 _OBJECTS: Final = {"InitialState": "initial", "Accuracy": "accuracy"}
 """Keys of the run whose values are tables, by the class of the objects."""
+_ONE_FILE_EACH: Final = "no file of a study varies it: write a scene for each of its values"
 _SYSTEM: Final = {"System": "system"}
 
 
 def in_toml(words: str) -> str:
     """Rewrite arguments, points, parts and operations in a message as a file has them."""
+    from rockframe.studies.sweeps.scenes import BY_FUNCTION  # only where there is a message
+
+    words = words.replace(BY_FUNCTION, _ONE_FILE_EACH)
     words = _OPERATION.sub(
         r"operations = [{ \g<name> = { factor = \g<value> } }] in [motion]", words
     )

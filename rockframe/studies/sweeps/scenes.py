@@ -40,6 +40,8 @@ STARTS: Final = {
     if one.measure is not None
 }
 """Axes by their names: which parameter of an initial state each changes, and its kind."""
+BY_FUNCTION: Final = "instead of the system give a function of the axis that returns a System"
+"""Advice for axes that no parameter of a scene's own parts has."""
 
 
 Values: TypeAlias = Mapping[Axis, Any]
@@ -203,7 +205,7 @@ class SystemScene:
             if any(parameter in one.varied() for one in _made_of(part)):
                 return (
                     f"axis {name!r} is a parameter of a part of the {type(part).__name__}; "
-                    "instead of the system give a function of the axis that returns a System"
+                    + BY_FUNCTION
                 )
         question = suggestion(parameter, [*known, *OF_A_SWEEP])
         return f"axis {name!r} names no parameter{question} There are {listed}"

@@ -31,6 +31,8 @@ def test_a_run_from_the_template_to_the_report(typed, folder):
     code, told, _ = typed("describe", "scene.toml")
     assert code == 0
     assert "Model: rigid ground" in told
+    assert '[block]  width = "0.8 m", height = "3.2 m", mass = "5500.0 kg"' in told
+    assert "cycles: 1: 129 samples at 0.00390625 s, 0.5 s long, peak 5 m/s^2 (0.51 g)" in told
     code, told, _ = typed("run", "scene.toml", "-o", "out.nc")
     assert code == 0
     assert "Verdict: Did not overturn" in told
@@ -530,3 +532,25 @@ def test_runs_that_cannot_be_finished_have_an_exit_code(words, told, typed):
     code, said, _ = typed(*shlex.split(words))
     assert (code, told in " ".join(said.split())) == (1, True)
     assert "stands throughout" not in said
+
+
+def test_what_no_figure_shows_is_told_with_what_does(typed, folder):
+    axes = '[axes]\nscale = [1, 2]\nwidth = ["0.8 m", "0.9 m"]\nheight = ["3 m", "3.2 m"]\n'
+    (folder / "study.toml").write_text(f'scene = "scene.toml"\n{axes}')
+    typed("template")
+    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    code, _, err = typed("plot", "runs.nc", "-o", "runs.png")
+    assert code == 2
+    assert "runs.nc: found a study with more than 2 axes" in err
+    assert "(scale, width, height, motion)" in err
+    assert "'rockframe report' lists its cases" in err
+
+
+def test_an_axis_in_a_stack_is_answered_for_a_file(typed, folder):
+    axes = '[axes]\nwidth = ["0.8 m", "0.9 m"]\n'
+    (folder / "study.toml").write_text(f'scene = "statue.toml"\n{axes}')
+    (folder / "statue.toml").write_text(TEMPLATES["statue"])
+    code, _, err = typed("study", "study.toml")
+    assert code == 2
+    assert "a part of the Stack; no file of a study varies it: write a scene for each" in err
+    assert "function" not in err

@@ -13,6 +13,7 @@ from rockframe.command.files.scenes import read_scene
 from rockframe.command.files.studies import read_study
 from rockframe.command.files.tables import lines_of
 from rockframe.command.files.templates import TEMPLATES, every_key
+from rockframe.command.files.written import tables_of
 from rockframe.errors import FileError, StudyError
 
 pytestmark = pytest.mark.unit
@@ -398,3 +399,35 @@ def test_every_key_that_can_be_written_is_told():
     assert all(tomllib.loads(one) for one in examples)
     assert "``" not in text
     assert max(map(len, text.splitlines())) < 125
+
+
+STATUE = rf.Block(width="0.6 m", height="2 m", mass="1 t", eccentricity="0.02 m")
+PLINTH = rf.Block(width="1 m", height="1 m", mass="2 t")
+PADS = rf.TwoSpringSupport(frequency_ratio=40, damping_ratio=0.1)
+TIE = rf.Restrainer(
+    on=("-0.3 m", "2 m"), to=("-1.5 m", "2 m"), stiffness="2 MN/m", brittle=True,
+    strength="20 kN", name='upper "tie", new',
+)  # fmt: skip
+LOAD = rf.Load(at=("0 m", "2 m"), vertical="1 kN")
+WRITTEN = {
+    "a block with ties": (STATUE, rf.RigidGround(friction=0.5), TIE, LOAD),
+    "one tie": (STATUE, PADS, TIE),
+    "a stack": (rf.Stack(STATUE, PLINTH, interfaces=[PADS], offsets=["0.05 m"]), PADS),
+    "columns": (rf.RockingFrame(PLINTH, columns=3, beam_mass="20 t"),),
+    "a building": (
+        rf.FrameEquivalent.from_members(
+            storeys=2, width="4 m", height="6 m", column_width="0.25 m", beam_height="0.3 m",
+            beam_width="0.25 m", density="2500 kg/m^3",
+        ),
+        PADS,
+        rf.CushionCap(height="0.9 m", mass="36 t"),
+        rf.WinklerSoil(stiffness="9 MPa", damping_ratio=0.2),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_written_parts_are_a_file_of_the_same_parts(name, file):
+    system = rf.System(*WRITTEN[name])
+    lines = [line for head, keys in tables_of(system.parts.structural()) for line in (head, *keys)]
+    assert read_scene(file("\n".join(lines))).system == system

@@ -222,3 +222,17 @@ def test_serve_tells_its_address_and_ends(typed, monkeypatch):
         assert code == 2
         assert said in err
     assert len(served) == 1
+
+
+@pytest.mark.usefixtures("records")
+def test_a_fragility_of_runs_without_their_records_names_the_store(typed, folder, monkeypatch):
+    words = 'scene = "scene.toml"\nmotions = ["records"]\nstore = "kept"\n[axes]\nscale = [1, 2]\n'
+    (folder / "study.toml").write_text(words)
+    assert typed("study", "study.toml", "-o", "runs.nc")[0] == 0
+    monkeypatch.setattr("rockframe.studies.sweeps.case._studies", {})
+    code, _, err = typed("fragility", "runs.nc")
+    assert code == 2
+    assert "runs.nc: the record " in err
+    assert "is not in this result; name the store of the study" in err
+    assert "motions=" not in err
+    assert typed("fragility", "kept")[0] == 0

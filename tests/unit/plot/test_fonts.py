@@ -82,6 +82,17 @@ def test_letters_that_no_font_has_are_told_once(name, run, monkeypatch):
     assert "install a font with these letters, such as Noto Sans CJK" in str(issued[0])
 
 
+def test_a_report_with_several_figures_tells_them_once(run, monkeypatch, tmp_path):
+    fonts = [one for one in font_manager.fontManager.ttflist if one.name == "DejaVu Sans"]
+    monkeypatch.setattr(font_manager.fontManager, "ttflist", fonts)
+    with pytest.warns(RockframeWarning, match="no installed font has") as issued:
+        rf.report(run, tmp_path / "report.html", motion=PULSE, certify=False)
+    assert [str(one.message).partition(";")[0] for one in issued] == [
+        "no installed font has 神 戸 地 震, written as '?' in the figures"
+    ]
+    assert issued[0].filename == __file__
+
+
 @pytest.mark.parametrize("name", SOME_DRAWN)
 def test_letters_are_written_in_a_font_that_has_them(name, run, installed):
     texts, issued = drawn(name, run)

@@ -151,6 +151,13 @@ def test_a_dataset_read_back_plots_and_tabulates_itself(tmp_path):
     assert f"peak_rotation: {run.peak_rotation.item():.4g} rad" in summary
 
 
+def test_what_has_not_occurred_has_no_line_in_a_summary():
+    still = rf.System(BLOCK).simulate(PULSE.scaled(0.01))
+    assert np.isnan(still.overturning_time)
+    assert "nan" not in repr(still.rockframe)
+    assert "impact_count: 0" in repr(still.rockframe)
+
+
 def test_each_kind_of_dataset_finds_what_draws_it():
     rocking = rf.System(rf.Block(width="0.8 m", height="4 m", mass="2 t"))
     options = {"free_vibration": "2 s", "progress": False}
