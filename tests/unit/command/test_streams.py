@@ -157,6 +157,7 @@ def test_progress_is_shown_on_a_terminal_alone(name, typed, monkeypatch):
 def test_an_interrupted_analysis_tells_what_it_has(name, typed, monkeypatch):
     Path("study.toml").write_text('scene = "scene.toml"\n[axes]\nscale = [1.0, 2.0]\n')
     run_chunk, calls = execution.run_chunk, []
+    before = signal.getsignal(signal.SIGINT)
 
     def interrupted(*given, **named):
         calls.append(given)
@@ -167,7 +168,7 @@ def test_an_interrupted_analysis_tells_what_it_has(name, typed, monkeypatch):
     monkeypatch.setattr(execution, "run_chunk", interrupted)
     code, told, _ = typed(*ANALYSES[name], "--json")
     assert code == json.loads(told)["exit_code"] == 130
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_a_terminal_is_spared_what_it_cannot_show(typed, monkeypatch):
