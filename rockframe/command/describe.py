@@ -5,7 +5,7 @@ import argparse
 from rockframe.command.answer import Answer
 from rockframe.command.files.scenes import read_scene
 from rockframe.command.files.written import tables_of
-from rockframe.command.motion import in_words
+from rockframe.command.motion import words_of_motion
 from rockframe.system.words import describe
 
 
@@ -18,7 +18,7 @@ def execute(arguments: argparse.Namespace, answer: Answer) -> int:
     motion = "none"
     if found.motion is not None:
         vertical = "" if found.motion.si.vertical is None else ", with vertical"
-        motion = f"{found.motion.name}: {in_words(found.motion)}{vertical}"
+        motion = f"{found.motion.name}: {words_of_motion(found.motion)}{vertical}"
     answer.text(
         f"{described}\nMotion:\n  {motion}",
         model=assembly.setting.model,

@@ -63,7 +63,7 @@ def _numbered(picture: str | None, count: int) -> list[Path]:
     return [path.with_stem(f"{path.stem}-{number}") for number in range(1, count + 1)]
 
 
-def in_words(motion: GroundMotion) -> str:
+def words_of_motion(motion: GroundMotion) -> str:
     """Write the number of samples, the time step, the length and the peak of a motion."""
     peak = motion.peak_acceleration.to("m/s^2").magnitude
     return (
@@ -73,7 +73,7 @@ def in_words(motion: GroundMotion) -> str:
 
 
 def _motion_lines(name: str, motion: GroundMotion) -> list[str]:
-    lines = [name, f"  {in_words(motion)}"]
+    lines = [name, f"  {words_of_motion(motion)}"]
     metadata = motion.metadata
     lines += [f"  {words}: {metadata[key]}" for key, words in _ABOUT if metadata.get(key)]
     return lines

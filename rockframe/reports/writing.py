@@ -34,8 +34,8 @@ from rockframe.writing import checked_path, write_file
 _OWNER: Final = "report"
 
 
-@hinted()
 @warning_once
+@hinted()
 def report(
     response: xr.Dataset,
     path: "str | PathLike[str]",
