@@ -40,7 +40,7 @@ _studies: Final[OrderedDict[str, Study]] = OrderedDict()
 @proposing
 @dataclass(frozen=True)
 class SweepCase:
-    """A case: its system, its motion, and what its run was asked for.
+    """A case of a sweep: its system, its motion, and the arguments of its run.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def case(
     motions: object = None,
     **labels: Any,
 ) -> SweepCase:
-    """Give a case of a sweep back, to be run alone.
+    """Return a case of a sweep, to be run alone.
 
     Parameters
     ----------
@@ -97,13 +97,13 @@ def case(
         Result of :func:`rockframe.sweep`, also one read from a file, or the folder in which
         a sweep is kept.
     scene : callable, optional
-        The function of the sweep, where its scene was one and this process does not have it
-        from the sweep itself.
+        The function that was the scene of the sweep; required if the sweep was not run in this
+        process.
     motions : GroundMotion, or iterable or mapping of them, optional
-        The records of the sweep, where neither the dataset nor this process has them.
+        The records of the sweep; required if neither the dataset nor this process has them.
     **labels
-        A value along each axis, as in the result or with a unit; ``motion`` by its name or
-        its number. An axis of one value, or of which one was picked, needs none.
+        A value along each axis, as in the result or with a unit; ``motion`` by its name or its
+        number. An axis with a single or already selected value may be omitted.
 
     Returns
     -------
@@ -112,9 +112,9 @@ def case(
     Raises
     ------
     SchemaError
-        Not the result of a sweep.
+        The dataset is not the result of a sweep.
     StudyError
-        No such case; or the function or the motion must be given.
+        There is no such case; or the function or the motion must be given.
     AssemblyError
         The case cannot be assembled, which is why it has no result.
 
