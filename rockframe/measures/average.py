@@ -49,17 +49,17 @@ def average_spectral_acceleration(
     Returns
     -------
     xarray.Dataset
-        Scalars, of several over ``motion`` [m s^-2]: of motions
-        ``average_spectral_acceleration``, :eq:`eq-average-acceleration`; of pairs
-        ``average_geometric_mean_acceleration`` and ``average_median_rotated_acceleration``, these
-        averages of the spectra of :func:`rockframe.rotated_spectrum`.
+        Scalars, over ``motion`` if there are several [m s^-2]. For motions:
+        ``average_spectral_acceleration``, :eq:`eq-average-acceleration`. For pairs:
+        ``average_geometric_mean_acceleration`` and ``average_median_rotated_acceleration``, the
+        averages of these spectra of :func:`rockframe.rotated_spectrum`.
 
     Raises
     ------
     UnitsError
         Periods without a unit, or with one of another kind.
     ComponentError
-        Neither motions nor pairs, or an argument out of range.
+        The input is neither motions nor pairs, or an argument is out of range.
 
     Examples
     --------
