@@ -169,7 +169,7 @@ def critical_scale(
     def plan_at(scale: float) -> Plan:
         return replace(plan, motion=motion.scaled(scale))
 
-    # of all that is needed here only warnings of friction need samples
+    # samples are needed here only for warnings of friction
     rubs = has_limit(system.assembly)
     step = plan.output_step if rubs else None
 

@@ -203,7 +203,7 @@ def incremental_dynamic_analysis(
 
 
 def _at_the_least(found: xr.Dataset) -> Array:
-    """Give which motions overturned at the least scale: their capacities may lie below it."""
+    """Find the motions that overturned at the least scale: their capacities may lie below it."""
     capacity = found["capacity_scale"].isel(limit_state=-1).to_numpy()
     return capacity == float(found[SCALE].min())
 

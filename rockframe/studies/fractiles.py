@@ -278,7 +278,7 @@ def _line(
 def fractiles_of(rows: Array, shares: Array) -> Array:
     """Give the least values up to which at least these shares of the rows lie, :eq:`eq-fractiles`.
 
-    By sorting, so that infinite values need no arithmetic.
+    Sorting avoids arithmetic with infinite values.
     """
     place = np.ceil(len(rows) * shares - 1e-9).astype(int) - 1
     return np.sort(rows, axis=0)[np.clip(place, 0, len(rows) - 1)]

@@ -276,8 +276,8 @@ def _of_one(one: xr.Dataset, curve: HazardCurve, measure: str) -> dict[str, Any]
 def _of_trials(one: xr.Dataset, measure: str) -> tuple[float, float]:
     """Give the least and the greatest intensity of trials.
 
-    The curve is drawn from the least to the greatest of all structures; a stripe may be a group of
-    intensities about its own.
+    The curve is drawn over the range of all structures; a stripe may be a group of intensities
+    around its own.
     """
     along, stripes = one[measure].to_numpy(), one["stripe_intensity"].to_numpy()
     (tried,) = np.nonzero(one["stripe_trials"].to_numpy() > 0)
@@ -313,8 +313,8 @@ def of_lognormal(median: float, spread: float, edges: Array, rates: Array, slope
             if spread > 0.0
             else np.where(edges < median, -np.inf, np.inf)
         )
-    # the hazard at the median, by the power law of each part, is large where that is steep, and the
-    # share of capacities within it small: their logarithms are added
+    # where the power law of a part is steep, the hazard at the median is large and the share of
+    # capacities within the part is small: their logarithms are added
     shift = slopes * spread
     at_median = np.log(rates[:-1]) + slopes * np.log(edges[:-1] / median)
     with np.errstate(invalid="ignore"):  # without a spread eta is infinite

@@ -93,7 +93,7 @@ def read_correlation(argument: object, names: Sequence[str], *, owner: str) -> A
     else:
         try:
             matrix = np.asarray(argument, dtype=np.float64)
-        except (TypeError, ValueError, OverflowError):  # no matrix of numbers
+        except (TypeError, ValueError, OverflowError):  # not a matrix of numbers
             matrix = np.empty(0)
     alike = matrix.shape == (size, size) and np.array_equal(matrix, matrix.T)
     if not alike or not np.allclose(np.diag(matrix), 1.0, rtol=0.0, atol=1e-12):
@@ -209,7 +209,7 @@ class Matters(NamedTuple):
     # first-order index: variance of the share that overturns given the parameter, over that of the
     # verdict, less its expectation without any dependence [1]
     first_order: float = np.nan
-    # greatest difference of the parameter's distributions in cases of either verdict; NaN where
+    # greatest difference between the parameter's distributions for the two verdicts; NaN where
     # values are words [1]
     distance: float = np.nan
     chance: float = np.nan  # p-value of the uneven shares if the parameter had no influence [1]
@@ -218,9 +218,9 @@ class Matters(NamedTuple):
 def ranked(columns: Mapping[str, Generic], verdict: Array) -> dict[str, Matters]:
     """Give the sensitivity of the verdict to each parameter, the greatest first.
 
-    The index is the correlation ratio of groups of equal size, less its expectation if there
-    were no dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given
-    data, within the width of the groups. The distance is that of Hornberger and Spear (1981).
+    The index is the correlation ratio of groups of equal size, minus its expectation without
+    dependence (the adjusted ratio, Kelley 1935): a first-order Sobol index from given data, within
+    the width of the groups. The distance is that of Hornberger and Spear (1981).
     """
     found = {name: _matters(values, verdict) for name, values in columns.items()}
     return dict(sorted(found.items(), key=lambda one: -one[1].first_order))

@@ -105,7 +105,7 @@ def _by_shape_factor(system: System, owner: str) -> System:
         raise ComponentError(msg)
     if block.given.inertia is None and block.given.centre_height is None:
         return system
-    with collected_warnings():  # block and system have warned when they were made
+    with collected_warnings():  # block and system already gave their warnings when they were made
         scaling = block.replace(shape_factor=block.shape_factor, centre_height=None)
         others = [part for part in system.parts.structural() if part is not block]
         options: dict[str, Any] = system.options.to_dict()

@@ -259,7 +259,7 @@ class _Sampler:
         self.said += warned
         if not whole:
             raise KeyboardInterrupt
-        # of a function that makes the motion the sweep has a dimension for it
+        # if a function makes the motion, the sweep has a dimension for it
         self.runs.append(runs.isel({MOTION: 0}) if MOTION in runs.dims else runs)
         return demands(self.runs[-1], self._state).to_numpy()
 
@@ -269,7 +269,7 @@ class _Sampler:
 
         count = len(self._spreads)
         normal = scores[:, :count] @ self._root.T
-        # each by the probability of its own tail, which loses no digits
+        # each from the probability of its own tail, which loses no digits
         beyond = ndtr(-np.abs(normal))
         table: dict[str, Any] = {
             head(one.name, one.unit): np.where(
@@ -286,7 +286,7 @@ class _Sampler:
 
 
 def _collected(every: Iterator[Level], *, kept: bool) -> tuple[list[Level], bool]:
-    """Give the levels, and whether sampling went to its end."""
+    """Give the levels, and whether sampling was completed."""
     found: list[Level] = []
     try:
         found.extend(every)

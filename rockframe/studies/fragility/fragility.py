@@ -1,4 +1,4 @@
-"""Fragility of runs, of dynamic analyses and of counts: what users call."""
+"""Fragility of runs, of dynamic analyses and of counts: the public function."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import repeat
@@ -288,7 +288,7 @@ def _of_counts(
         raise ComponentError(msg)
     means = Means(_bands(bands, Bands.PROFILE, 1), read_level(confidence, owner=_OWNER))
     made = Trials.of_verdicts(np.log(values)[:, None], over, count)
-    # the runs: of each intensity those that exceeded, and then the others
+    # the runs: at each intensity first those that exceeded, then the others
     times = np.column_stack([over, count - over]).astype(int).ravel()
     verdicts = np.repeat(np.tile([1.0, 0.0], len(values)), times)
     runs = np.repeat(np.repeat(values, 2), times)[:, None], verdicts
@@ -322,7 +322,7 @@ def _states(runs: xr.Dataset, limits: Iterable[object] | None) -> tuple[LimitSta
 def _of_capacities(
     analysis: xr.Dataset, state: LimitState, verdict: xr.DataArray, measures: Sequence[xr.DataArray]
 ) -> StructureTrials:
-    """Give what a dynamic analysis tells of a limit state."""
+    """Give the capacities that a dynamic analysis found for a limit state."""
     if SCALE not in analysis.dims:
         msg = f"{_OWNER}: found a dynamic analysis at one scale; expected one with all its scales"
         raise SchemaError(msg)
@@ -346,7 +346,7 @@ def _ordered(
 
 
 def _sliding(runs: xr.Dataset, *, of_capacities: bool) -> str:
-    """Say in how many runs friction would not hold the block; nothing where none was given."""
+    """Say in how many runs friction would not hold the block; nothing if no friction was given."""
     if "would_slide" not in runs:
         return ""
     which = "runs of the scan" if of_capacities else "runs"

@@ -46,17 +46,17 @@ class Fit:
 
     @property
     def complete(self) -> bool:
-        """Whether there is a fit without each cluster too, where those were asked for."""
+        """Whether there is also a fit without each cluster, if those were requested."""
         return self.without is None or bool(np.isfinite(self.without[0]).all())
 
     @property
     def clusters(self) -> float:
-        """Number of clusters of a jackknife; infinite of other fits."""
+        """Number of clusters of a jackknife; infinite for other fits."""
         return math.inf if self.without is None else float(self.without[1].sum())
 
     @classmethod
     def none(cls, status: FragilityStatus, measures: int) -> "Fit":
-        """Give the fit of trials that no coefficients fit best."""
+        """Give the fit of trials for which no maximum-likelihood fit exists."""
         square = np.full((1 + measures,) * 2, np.nan)
         return cls(status, square[0], square, square)
 
@@ -129,7 +129,7 @@ def _fit(trials: Trials) -> Fit:
     ends = np.concatenate([upper[trials.has_upper], lower[trials.has_lower]])
     middle, spread = ends[:, 1:].mean(axis=0), ends[:, 1:].std(axis=0)
     size = 1 + trials.measures
-    # coefficients of measures that are centred, and of spread one, are all of one size
+    # coefficients of measures that are centred and have unit spread are of similar size
     back = np.eye(size)
     back[0, 1:] = -middle / spread
     back[np.arange(1, size), np.arange(1, size)] = 1.0 / spread
@@ -204,8 +204,9 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
     """Give the boundary of the region :eq:`eq-fragility-region`, for a fit of one measure.
 
     The range of any function of the coefficients in this region is its interval by profile
-    likelihood. Of separated trials the likelihood has a bound and no maximum, and the region no end
-    towards small dispersions: there its boundary stands where the dispersion is all but zero.
+    likelihood. The likelihood of separated trials has a bound but no maximum, and the region is
+    unbounded towards small dispersions: its boundary is set there where the dispersion is almost
+    zero.
     """
     from scipy import linalg
     from scipy.special import chdtri
@@ -232,7 +233,7 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
         inner, outer = np.zeros(reach.shape), np.full(reach.shape, np.inf)
         for _ in range(_DOUBLINGS):  # the end of each ray comes to lie outside, if there is one
             beyond = excess(reach)
-            # where an upper end of a bracket falls below its lower one there is no likelihood
+            # there is no likelihood where the upper end of a bracket is below its lower end
             nowhere, within = ~np.isfinite(beyond), beyond < 0.0
             if not (nowhere | within).any():
                 break
@@ -292,7 +293,7 @@ def _slopes_along(trials: Trials, coefficients: Array, rays: Array) -> Array:
 
 
 def _without_maximum(trials: Trials) -> FragilityStatus | None:
-    """Tell why the likelihood has no maximum: some way of changing coefficients never lowers it."""
+    """Say why the likelihood has no maximum: some change of the coefficients never lowers it."""
     from scipy import optimize
 
     if not len(trials.weight):

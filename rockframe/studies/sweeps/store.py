@@ -92,7 +92,7 @@ def read_shapes(path: Path) -> dict[str, tuple[int, ...]]:
 
 
 def write_whole(path: Path, content: bytes, *, replace: bool = True) -> None:
-    """Write a file so that others see all of it or nothing, even if this process is killed."""
+    """Write a file atomically, even if this process is killed."""
     part = path.with_name(f".{path.name}.{os.getpid()}.{os.urandom(4).hex()}.part")
     try:
         with part.open("xb") as file:
@@ -167,7 +167,7 @@ class Store:
                 "the one that is asked for: give another folder"
             )
             raise StudyError(msg)
-        if not (path / _LABELS).exists():  # removed, as a damaged one is to be
+        if not (path / _LABELS).exists():  # removed, as damaged files should be
             try:
                 _make(path, study, kept["cases_of_a_chunk"])
             except OSError as problem:
@@ -195,7 +195,7 @@ class Store:
         }
 
     def described(self) -> dict[str, Any]:
-        """Give what the study is made of, as it was described when it was begun."""
+        """Give the description of the study made when it was begun."""
         return _read_head(self.folder)["study"]
 
     def chunks(self) -> list[Chunk]:
@@ -211,7 +211,7 @@ class Store:
         return self._file(chunk).exists()
 
     def put(self, chunk: Chunk, rows: CaseResults) -> None:
-        """Keep what a chunk showed."""
+        """Store the results of a chunk."""
         arrays = {
             **dict(zip(_OF_CHUNKS, (rows.status, rows.message), strict=True)),
             **{f"{_SCALAR}{name}": each for name, each in sorted(rows.scalars.items())},
@@ -228,7 +228,7 @@ class Store:
             raise StudyError(msg) from problem
 
     def check(self) -> None:
-        """Try whether anything can be kept, before hours of work."""
+        """Check that results can be stored, before hours of work."""
         part = self.folder / f".{os.getpid()}.{os.urandom(4).hex()}.part"
         try:
             part.write_bytes(bytes(_BLOCK))
@@ -239,7 +239,7 @@ class Store:
                 part.unlink(missing_ok=True)
 
     def get(self, chunk: Chunk) -> CaseResults:
-        """Read what a chunk showed."""
+        """Read the results of a chunk."""
         file = self._file(chunk)
         described, arrays = _read(file)
         texts = described.pop("texts")
