@@ -108,7 +108,7 @@ def average_spectral_acceleration(
 
 
 def _not_none(periods: object) -> object:
-    """Refuse None, for which spectra have periods of their own."""
+    """Refuse None, for which spectra have default periods."""
     if periods is None:
         msg = f"{_OWNER}: periods must be given, for example (np.linspace(0.2, 3, 57), 's')"
         raise ComponentError(msg)

@@ -174,7 +174,7 @@ class _Found:
             self.components.append(component)
 
     def complete(self) -> None:
-        """Add what tables tell, and put components together."""
+        """Add the metadata of tables, and group components."""
         tables = {name.casefold(): metadata for name, metadata in self._tables.items()}
         there: set[str] = set()
         for component in self.components:

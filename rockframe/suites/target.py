@@ -488,7 +488,7 @@ def _check_array(seconds: object, owner: str) -> None:
 
 
 def check_target(value: object, *, owner: str) -> TargetSpectrum:
-    """Refuse what is no target."""
+    """Refuse anything but a target."""
     if isinstance(value, TargetSpectrum):
         return value
     msg = (
