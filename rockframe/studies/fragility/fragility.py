@@ -55,7 +55,7 @@ _COMMON: Final = "common"
 _DISPERSIONS: Final = ("each", _COMMON)
 _MOST_MEASURES: Final = 2
 _MOST_LEFT_OUT: Final = 80
-"""Motions up to which each is left out in turn; of more the sandwich holds as often."""
+"""Motions up to which each is left out in turn; with more the sandwich has equal coverage."""
 
 
 @hinted()
@@ -113,8 +113,8 @@ def fragility(
     bands : {"profile", "jackknife", "sandwich"}, optional
         Source of the confidence bounds: the profile of the likelihood, which assumes independent
         runs; fits that leave out each motion in turn; or the sandwich covariance with the runs of
-        one motion as a cluster. The default is ``"profile"``; if motions were run more than once,
-        ``"jackknife"``, or ``"sandwich"`` for more than 80 motions.
+        one motion as a cluster. If motions were run more than once, the default is ``"jackknife"``,
+        or ``"sandwich"`` for more than 80 motions.
     confidence : float, optional
         Nominal confidence level of all bounds [1]. The measured coverage with few motions is in
         :ref:`coverage of bounds <coverage>`; the verdict says when it is lower than nominal.

@@ -22,7 +22,7 @@ _POINTS: Final = 101
 _SIDE: Final = 41
 """Intensities of each of two measures."""
 _NO_DISPERSION: Final = 1e6
-"""Slopes beyond which a dispersion is none: rays of a region without an end go far beyond."""
+"""Slopes beyond which a dispersion counts as zero: rays of an unbounded region go far beyond."""
 _MOST_STRIPES: Final = 30
 _BINS: Final = 10
 """Groups into which intensities are sorted that differ from run to run."""

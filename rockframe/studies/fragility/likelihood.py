@@ -81,7 +81,7 @@ def fit(trials: Trials, bands: Bands) -> Fit:
 
 
 def jackknife(best: Array, rows: Array, alike: Array) -> Array:
-    """Give the covariance of estimates, of which `rows` lack a cluster each.
+    """Give the covariance of estimates; each of the `rows` omits one cluster.
 
     By :eq:`eq-fragility-jackknife`.
     """
@@ -103,7 +103,7 @@ def _without_each(trials: Trials) -> Iterator[tuple[Trials, float]]:
 
 
 def _near(trials: Trials, start: Array) -> Array:
-    """Give the most likely coefficients, by Newton's method where they lie near others."""
+    """Give the most likely coefficients, by Newton's method if they are near known ones."""
     at = start
     for _ in range(20):
         step = np.linalg.lstsq(information(trials, at), scores(trials, at).sum(axis=0))[0]
@@ -174,9 +174,10 @@ def information(trials: Trials, coefficients: Array) -> Array:
 
 
 def slopes_of_shares(upper: Array, lower: Array, eta_upper: Array, eta_lower: Array) -> Array:
-    """Give the slopes of the logarithms of shares between two ends by the coefficients.
+    """Give the derivatives of the log shares between two ends by the coefficients.
 
-    From what these multiply at the ends, and eta there; an open end has zeros, and eta is infinite.
+    From the factors of the coefficients at the ends, and eta there; an open end has zeros and an
+    infinite eta.
     """
     at_upper, at_lower = _densities(eta_upper, eta_lower)
     return at_upper[:, None] * upper - at_lower[:, None] * lower
@@ -258,8 +259,8 @@ def boundary(trials: Trials, found: Fit, level: float) -> Array:
 def _within(trials: Trials, drop: float) -> tuple[Array, Array, float]:
     """Give coefficients of separated trials near their likelihood's bound, with that bound.
 
-    With the information at these coefficients. Where the gap is one intensity, at
-    which some trials exceed, their share is the most likely probability there.
+    With the information at these coefficients. If the gap is a single intensity at which some
+    trials exceed, their share is the most likely probability there.
     """
     from scipy.special import ndtri
 
@@ -331,7 +332,7 @@ def _etas(trials: Trials, coefficients: Array) -> tuple[Array, Array]:
 
 
 def _ends(trials: Trials, coefficients: Array) -> tuple[Array, Array, Array, Array]:
-    """Give what coefficients multiply at both ends, and eta there."""
+    """Give the factors of the coefficients at both ends, and eta there."""
     eta_upper, eta_lower = _etas(trials, coefficients[:, None])
     return *_design(trials), eta_upper[:, 0], eta_lower[:, 0]
 
@@ -346,7 +347,7 @@ def log_shares(upper: Array, lower: Array) -> Array:
     """Give ln(Phi(upper) - Phi(lower)), to the last digits in both tails."""
     from scipy.special import log_ndtr
 
-    # in the upper tail the distribution seen from above has the digits
+    # in the upper tail the complementary distribution keeps the digits
     turned = lower + upper > 0.0
     high = log_ndtr(np.where(turned, -lower, upper))
     low = log_ndtr(np.where(turned, -upper, lower))
@@ -360,7 +361,7 @@ def _log_density(eta: Array) -> Array:
 
 
 def _filling(trials: Trials, best: Array) -> Array:
-    """Give the scores' products, summed over clusters, with the usual factor for few clusters."""
+    """Give the products of the scores, summed over clusters, with the usual small-sample factor."""
     of_trial = scores(trials, best)
     if trials.cluster is None:
         weight = trials.weight

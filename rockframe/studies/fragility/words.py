@@ -17,7 +17,7 @@ from rockframe.studies.intensities import PERIOD_OF, measure_words
 from rockframe.studies.sweeps.axes import in_unit
 
 POOLED: Final = "pooled"
-"""Attribute that tells which structures were taken for one."""
+"""Attribute that names the structures that were treated as one."""
 _DIGITS: Final = (4, 3)
 """Of medians and of dispersions."""
 
@@ -40,7 +40,7 @@ COVERAGE: Final = {
     },
 }
 """By numbers of independent trials or motions; with fewer than the least there are no bounds, with
-the greatest they are what they are called. Measured, :ref:`coverage of bounds <coverage>`."""
+the greatest they have nominal coverage. Measured, :ref:`coverage of bounds <coverage>`."""
 
 
 def bounded(bands: Bands, independent: int) -> bool:
@@ -86,7 +86,7 @@ def sentences(fragility: xr.Dataset) -> str:
 
 
 def verdict_of_fragility(dataset: xr.Dataset) -> str:
-    """Say what was fitted, for a part of a fragility only that part; else nothing new."""
+    """Say what was fitted; for a part of a fragility, what was fitted of that part."""
     text = str(dataset.attrs.get("verdict", ""))
     if "independent_count" not in dataset:  # as of a cloud
         return text

@@ -97,8 +97,8 @@ def case(
         Result of :func:`rockframe.sweep`, also one read from a file, or the folder in which
         a sweep is kept.
     scene : callable, optional
-        The function that was the scene of the sweep; required if the sweep was not run in this
-        process.
+        The scene of the sweep if that was a function; required if this process did not run the
+        sweep.
     motions : GroundMotion, or iterable or mapping of them, optional
         The records of the sweep; required if neither the dataset nor this process has them.
     **labels

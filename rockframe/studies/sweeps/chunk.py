@@ -36,15 +36,15 @@ from rockframe.studies.sweeps.lanes import (
 from rockframe.studies.sweeps.study import FEWEST_IN_LANES, Histories, SweepJob
 
 SCREEN: Final = "screen"
-"""What stands for the accuracy of screened sweeps."""
+"""The accuracy argument of screened sweeps."""
 FIRST: Final = AccuracyLevel.FAST
 """Level at which all cases run."""
 AGAIN: Final = AccuracyLevel.STANDARD
-"""Level at which cases run again whose verdict is in doubt."""
+"""Level at which cases with a doubtful verdict run again."""
 NO_TEXT: Final = 0
-"""Place of the text that says nothing, in the texts of a chunk."""
+"""Place of the empty text in the texts of a chunk."""
 DRIVER: Final = "driver"
-"""Column that tells how cases were run; no result, and in no dataset."""
+"""Column that records how cases were run; it is not a result and in no dataset."""
 
 
 class Driver(IntEnum):

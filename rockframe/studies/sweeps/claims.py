@@ -18,7 +18,7 @@ from rockframe.errors import StudyError
 _CLAIMS: Final = "claims"
 """Folder of claims, in that of a study."""
 _BEAT: Final = 10.0
-"""Time after which a living job says again that it lives [s]."""
+"""Time after which a running job renews its claims [s]."""
 _SILENCE: Final = 150.0
 """Time of silence after which a job is dead; longer than shared file systems keep what they told
 before [s]."""

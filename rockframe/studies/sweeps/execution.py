@@ -23,9 +23,9 @@ from rockframe.studies.sweeps.chunk import CaseResults, run_chunk
 from rockframe.studies.sweeps.study import SweepJob, worker_count
 
 _DELAY: Final = 1.0
-"""What takes no longer shows no bar, unless one is asked for [s]."""
+"""Work that takes no longer shows no bar, unless one is requested [s]."""
 _GROWS: Final = "total grows"
-"""What is said where more cases are to come than are known by now."""
+"""Text of a bar when further cases are to come whose number is not known yet."""
 
 
 @runtime_checkable
@@ -117,15 +117,15 @@ def _made(value: object, owner: str, unit: str) -> ProgressBar:
 
 
 _PER_WORKER: Final = 2
-"""Chunks that are handed out at once, so that no worker waits for its next one."""
+"""Chunks submitted at once for each worker, so that no worker waits for its next one."""
 _MANY: Final = 128
-"""Workers of an executor that does not tell how many it has."""
+"""Assumed number of workers of an executor that does not state it."""
 _GLANCE: Final = 0.2
-"""Longest wait in which an interrupt might go unheard [s]."""
+"""Longest wait during which an interrupt may be delayed [s]."""
 
 
 _END: Final = Chunk(-1, range(0))
-"""What follows the last chunk."""
+"""Marks the end of the chunks."""
 
 
 def workers_of(executor: Executor | None) -> int:
@@ -151,8 +151,8 @@ def run_chunks(
 ) -> bool:
     """Run chunks, and yield their results as they are completed.
 
-    None among the chunks says that all others are run elsewhere by now; then it is asked again.
-    `glance` is called from time to time meanwhile.
+    None among the chunks means that all others are being run elsewhere; it is asked again later.
+    `glance` is called periodically.
     """
     if executor is not None and not hasattr(executor, "submit"):
         msg = f"{OWNER}: executor must be a concurrent.futures.Executor, got {shown(executor)}"

@@ -62,7 +62,7 @@ def digest_of(described: object) -> str:
 
 
 def difference(one: object, other: object) -> list[str]:
-    """Name the entries in which two descriptions differ, those inside them in brackets."""
+    """Name the entries in which two descriptions differ, with nested ones in brackets."""
     a, b = _entries(one), _entries(other)
     found: list[str] = []
     for name in dict.fromkeys([*a, *b]):
@@ -76,7 +76,7 @@ def difference(one: object, other: object) -> list[str]:
 
 
 def _entries(described: object) -> dict[str, Any]:
-    """Give what has names in a description: of a dataclass, of a mapping, of a row of named."""
+    """Give the named entries of a description: a dataclass, a mapping, or a list of named items."""
     if isinstance(described, dict):
         return cast("dict[str, Any]", described)
     rows = cast("list[Any]", described) if isinstance(described, list) else []

@@ -18,7 +18,7 @@ from rockframe.studies.sweeps.store import Store
 from rockframe.studies.sweeps.study import Study
 
 _OWN: Final = ("grid", "motions")
-"""In what studies may differ of which one takes cases of the other."""
+"""Fields in which studies may differ when one takes cases of the other."""
 _NOBODY: Final = -1
 
 

@@ -178,10 +178,10 @@ class FinishedTogether:
     status: Status
     said: list[str]  # what was warned of when their scenes were assembled, and of their runs
     scalars: dict[str, Generic | float]  # of each, or of all
-    look: Look  # what tells of their verdicts, with arrays in the places of numbers
+    look: Look  # indications of their verdicts, with arrays instead of numbers
 
     def looks(self) -> list[tuple[int, Look]]:
-        """Give what tells of the verdict of each."""
+        """Give the indications of each verdict."""
         count = len(self.cases)
         columns = (
             [each] * count if isinstance(each, bool) else in_each(each, count).tolist()
@@ -294,7 +294,7 @@ def _told(
     for k in np.flatnonzero(alone).tolist():
         try:
             system, messages = cases.scene(int(ran[k]))
-        except Exception:  # noqa: S112 - the case tells of it where it runs alone
+        except Exception:  # noqa: S112 - reported when the case runs alone
             continue
         summary = outcomes.summary(k, groups[group_of[k]].one.run.begun.substeps)
         if has_no_cautions(system, summary):

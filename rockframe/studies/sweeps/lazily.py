@@ -27,7 +27,7 @@ _AT_HAND: Final = 8
 _BLOCK: Final = 1_000_000
 """Numbers of a block of dask, or those of a chunk where these are more."""
 _Key: TypeAlias = tuple[Any, ...]
-"""For each dimension a whole number, a slice, or a row of whole numbers."""
+"""For each dimension a whole number, a slice, or a sequence of whole numbers."""
 
 
 def lazy_dataset(kept: Store) -> xr.Dataset:
@@ -110,7 +110,7 @@ class _Column(BackendArray):
 
 
 _GAPS: Final[Mapping[str, Any]] = {_STATUS: RunStatus.NOT_RUN, MESSAGE: NONE}
-"""What stands where nothing has been run; NaN otherwise."""
+"""Values of cases that have not been run; NaN for other variables."""
 
 
 @lru_cache(maxsize=_AT_HAND)

@@ -19,10 +19,10 @@ from rockframe.studies.sweeps.study import Histories
 _FLOAT: Final = 8.0
 """Size of a number [bytes]."""
 _COPIES: Final = 2.5
-"""How often a number is there at once: of its chunk, of all, some in the order of the axes too."""
+"""Copies of a number in memory at once: in its chunk, in all, and partly in axis order."""
 LAZILY: Final = "they are read from the store as they are used (rf.open_study, lazy=True)"
 _TOLD: Final = 0.5
-"""Share of what there is from which on it is told what a study needs."""
+"""Share of the available memory above which the memory that a study needs is reported."""
 _MEMORY: Final = Path("/proc/meminfo")
 _GROUPS: Final = (
     # most, and now, of a container or a job: control groups of both versions

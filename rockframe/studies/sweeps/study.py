@@ -19,28 +19,28 @@ from rockframe.system.assembly import Assembly
 from rockframe.version import __version__
 
 LONG_ENOUGH: Final = 1.0
-"""What a chunk should take, so that handing it out costs little [s]."""
+"""Target time of a chunk, so that submitting it costs little [s]."""
 LARGEST_CHUNK: Final = 10_000
 FEWEST_IN_LANES: Final = 16
-"""Cases below which lanes stand empty, and save next to nothing."""
+"""Number of cases below which lanes are partly empty and save almost nothing."""
 FEWEST_OF_LANES: Final = 64
-"""Cases of a chunk below which lanes stand empty."""
+"""Number of cases of a chunk below which lanes are partly empty."""
 COMPILING_SHARE: Final = 1.0
 """Longest time to compile what lanes need, over the time that they save in the sweep."""
 IN_LANES: Final = 0.25
-"""Of the time of a run alone."""
+"""Time of a run in lanes, over that of a run alone [1]."""
 _OVERHEAD: Final = 5e-4
-"""Of a run, beside its integration [s]."""
+"""Time for a run, without its integration [s]."""
 _FIXED: Final = 4e-7
-"""Of an interval of the motion, with fixed sub-steps [s]."""
+"""Time for an interval of the motion, with fixed sub-steps [s]."""
 _BY_TOLERANCE: Final = 2e-6
 """The same at the tolerance of the level standard [s]."""
 _SCREENED: Final = 2.5
-"""Time of a run and of one with half as many steps again, over that of the first."""
+"""Time of a run and of one with 1.5 times as many steps, over that of the first."""
 _SLOWER: Final = 300.0
 """Without compilation."""
 _SCENES_TOLD: Final = 16
-"""Cases at which it is looked what a function makes of them."""
+"""Number of cases at which the result of a function is inspected."""
 _GOLDEN: Final = 0.6180339887498949
 """The golden section, by whose multiples these cases are spread evenly, whatever their number."""
 

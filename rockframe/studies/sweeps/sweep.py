@@ -1,4 +1,4 @@
-"""Many runs at once: what users call, and a planned sweep from its chunks to the dataset."""
+"""Many runs at once: the public functions, and a planned sweep from its chunks to the dataset."""
 
 import math
 import time
@@ -45,9 +45,9 @@ _LARGEST_CHUNK: Final = 1_000_000
 _DAY: Final = 86_400.0
 """A day [s]."""
 _GLIMPSE: Final = 1e-3
-"""Share of a run that tells whether its law can be compiled."""
+"""Share of a run that shows whether its law can be compiled."""
 _LOOK: Final = 1.0
-"""Time between two looks at what other jobs have run [s]."""
+"""Time between two checks of the chunks run by other jobs [s]."""
 
 
 @hinted()

@@ -20,10 +20,10 @@ from rockframe.simulation.soundness import counts_of_slides
 from rockframe.studies.sweeps.axes import OWNER
 
 SCREENED: Final = (REPEATED, VERDICT_CHANGED)
-"""What every case of a screened sweep has beside."""
+"""Additional variables of the cases of a screened sweep."""
 _BROKEN: Final = "broken_restrainer_count"
 MOST_ALIKE: Final = 16
-"""Texts that differ in their numbers alone and are still told one by one."""
+"""Most texts differing only in their numbers that are reported one by one."""
 _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
 
 
