@@ -57,8 +57,8 @@ def read_suite(
     Returns
     -------
     MotionSuite
-        All components that could be read, in the order of the files; horizontal ones as
-        motions, vertical ones beside them. Files that could not be read are in ``unread``.
+        All components that could be read, in the order of the files; horizontal ones as motions,
+        vertical ones in `verticals`. Files that could not be read are in ``unread``.
 
     Raises
     ------
