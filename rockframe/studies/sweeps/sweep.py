@@ -248,7 +248,7 @@ def run_study(
 ) -> tuple[xr.Dataset, bool]:
     """Run the cases of a study that are not kept yet, and label all of them.
 
-    Tell, too, whether it went to its end. An interrupt may come when all cases have been run.
+    Also return whether it was completed. An interrupt may come when all cases have been run.
     """
     workers = workers_of(executor)
     as_python = not COMPILED
@@ -275,7 +275,7 @@ def run_study(
 
 
 def _warn_of_long_study(study: Study, workers: int, *, as_python: bool, kept: bool) -> None:
-    """Warn of what takes more than a day."""
+    """Warn of sweeps that take more than a day."""
     days = study.grid.count * study.time_of_case(as_python=as_python) / workers / _DAY
     if days > 1.0:
         ways = "several jobs on it share the work" if kept else "with one a kill would not lose it"
@@ -367,7 +367,7 @@ def _free(
 ) -> Iterator[Chunk | None]:
     """Give the chunks that no other job has, as they are claimed; None while others have them.
 
-    Chunks of which all is known from other studies are kept here, and given to nobody.
+    Chunks that are fully known from other studies are stored here, and not returned.
     """
     looked = -math.inf
     while missing:
